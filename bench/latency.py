@@ -185,7 +185,7 @@ def _wait_for_rest(board: EmulatorClient) -> None:
 
 
 def _wait_for_drive(board: EmulatorClient) -> float:
-    """When it was, s since 1970."""
+    """Time of the first fin's movement, s since 1970."""
     end = time.monotonic() + _LATE
     while not any(board.fins().drives):
         if time.monotonic() > end:
@@ -195,5 +195,5 @@ def _wait_for_drive(board: EmulatorClient) -> float:
 
 
 def _started(board: EmulatorClient) -> float:
-    """When, in s since 1970, the board's clock stood at zero; it is at most a millisecond behind."""
+    """Time at which the board's clock stood at zero, s since 1970; at most a millisecond late."""
     return min(time.time() - board.stats()["time"] for _ in range(50))

@@ -1,4 +1,4 @@
-"""How tests and measurements sign in as programs of this computer do."""
+"""Sign-in of tests and measurements, as programs of this computer."""
 
 from collections.abc import Generator
 

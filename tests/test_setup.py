@@ -1,4 +1,4 @@
-"""What a person types first: the set-up's words where something is missing, and the README's commands."""
+"""First commands of a new user: the set-up's words where something is missing, and the README's."""
 
 import os
 import re

@@ -32,7 +32,7 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def available() -> str:
-    """Why two hosts cannot be made here; empty where they can."""
+    """The reason why two hosts cannot be made here; empty where they can."""
     try:
         probe = subprocess.run(
             ["unshare", "--user", "--map-root-user", "--net", "ip", "tuntap", "add", "probe", "mode", "tun"],

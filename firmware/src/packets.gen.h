@@ -43,7 +43,7 @@ enum class ResetCause : uint8_t {
   kWatchdog = 4,
 };
 
-// Host to board: disarm at once. Accepted always, from anybody, as often as it comes.
+// Host to board: disarm at once. Always accepted, also outside a session and repeatedly.
 struct __attribute__((packed)) Stop {
   static constexpr uint8_t kType = 0x00;
 };
@@ -52,11 +52,11 @@ static_assert(sizeof(Stop) == 1, "Stop has another size");
 // Host to board: arm. Refused unless the epoch is this boot's and valid traffic came for 500 ms.
 struct __attribute__((packed)) Start {
   static constexpr uint8_t kType = 0x01;
-  uint16_t epoch;  // the boot that is meant, from the board's Hello; 0: none, void
+  uint16_t epoch;  // epoch of the addressed boot, from the board's Hello; 0: none
 };
 static_assert(sizeof(Start) == 2, "Start has another size");
 
-// Host to board: the wanted force and torque, each as a share of the most. Expires after 500 ms.
+// Host to board: the commanded force and torque, each as a share of the maximum. Expires after 500 ms.
 struct __attribute__((packed)) Navigation {
   static constexpr uint8_t kType = 0x02;
   int8_t x;  // forwards; x 0.00787401575
@@ -88,7 +88,7 @@ struct __attribute__((packed)) Depth {
 };
 static_assert(sizeof(Depth) == 12, "Depth has another size");
 
-// Board to host, 10 Hz: which light-beacon detectors hear their tone.
+// Board to host, 10 Hz: the light-beacon detectors.
 struct __attribute__((packed)) Beacon {
   static constexpr uint8_t kType = 0x05;
   uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
@@ -97,11 +97,11 @@ struct __attribute__((packed)) Beacon {
 };
 static_assert(sizeof(Beacon) == 6, "Beacon has another size");
 
-// Board to host, 50 Hz: the four fins, wanted and measured, and what drives them.
+// Board to host, 50 Hz: commanded and measured angles of the four fins, and the H-bridge commands.
 struct __attribute__((packed)) Motor {
   static constexpr uint8_t kType = 0x06;
   uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
-  int16_t wanted[4];  // wanted fin angle; x 0.001 rad
+  int16_t wanted[4];  // commanded fin angle; x 0.001 rad
   int16_t angle[4];  // measured fin angle; x 0.001 rad
   int8_t drive[4];  // H-bridge command, -63 to 63
 };
@@ -118,72 +118,72 @@ struct __attribute__((packed)) Debug {
 };
 static_assert(sizeof(Debug) == 46, "Debug has another size");
 
-// Both ways: who speaks. The board answers each Hello with its own, and says one when it starts.
+// Both ways: identifies the sender. The board answers each Hello, and sends one at its start.
 struct __attribute__((packed)) Hello {
   static constexpr uint8_t kType = 0x0a;
   uint32_t definitions;  // hash of the packet definitions
-  uint16_t epoch;  // this boot of the board, or this run of the host
-  uint16_t credit;  // bytes that the sender can take in at once; B
+  uint16_t epoch;  // epoch of the board's boot or of the host's run
+  uint16_t credit;  // bytes that the sender can receive at once; B
 };
 static_assert(sizeof(Hello) == 8, "Hello has another size");
 
-// Board to host, 10 Hz: its state and its health.
+// Board to host, 10 Hz: the board's state and health.
 struct __attribute__((packed)) Status {
   static constexpr uint8_t kType = 0x0b;
   uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
-  uint16_t epoch;  // this boot of the board
+  uint16_t epoch;  // epoch of the board's boot
   uint8_t flags;  // see StatusFlag
   uint8_t faults;  // see SensorFault
   uint8_t reset_cause;  // see ResetCause
-  uint16_t battery;  // battery; x 0.001 V
+  uint16_t battery;  // battery voltage; x 0.001 V
   uint16_t loop_worst;  // longest pass of the main loop since the last status; µs
   uint16_t missed_ticks;  // passes of the main loop missed since the start
-  uint16_t frames_invalid;  // frames thrown away since the start
-  uint16_t bytes_lost;  // received bytes lost for want of room since the start
-  uint16_t debug_lost;  // debug lines lost for want of room since the start
-  uint16_t stack_free;  // memory that the stack never touched; B
+  uint16_t frames_invalid;  // invalid frames dropped since the start
+  uint16_t bytes_lost;  // received bytes lost to a full buffer since the start
+  uint16_t debug_lost;  // debug lines lost to a full buffer since the start
+  uint16_t stack_free;  // memory that the stack has never used; B
 };
 static_assert(sizeof(Status) == 23, "Status has another size");
 
-// Host to board, 10 Hz: somebody is there.
+// Host to board, 10 Hz: the host is alive.
 struct __attribute__((packed)) Heartbeat {
   static constexpr uint8_t kType = 0x0c;
-  uint32_t time;  // the host's clock, for the log alone; ms
+  uint32_t time;  // the host's clock, for logs only; ms
 };
 static_assert(sizeof(Heartbeat) == 4, "Heartbeat has another size");
 
-// Both ways: which reliable frames came after the first that is missing.
+// Both ways: the reliable frames received after the first missing one.
 struct __attribute__((packed)) Acknowledge {
   static constexpr uint8_t kType = 0x0d;
-  uint8_t held;  // bit n: frame acknowledged + 1 + n is here; bit 7: no room, wait
+  uint8_t held;  // bit n: frame acknowledged + 1 + n was received; bit 7: no room
 };
 static_assert(sizeof(Acknowledge) == 1, "Acknowledge has another size");
 
-// Both ways, in the communication test alone: a number.
+// Both ways, only in the communication test: a number.
 struct __attribute__((packed)) TestMsg {
   static constexpr uint8_t kType = 0x0e;
   uint16_t number;
 };
 static_assert(sizeof(TestMsg) == 2, "TestMsg has another size");
 
-// Host to board, in the communication test alone: asks what has come.
+// Host to board, only in the communication test: asks for the result.
 struct __attribute__((packed)) RequestResult {
   static constexpr uint8_t kType = 0x0f;
 };
 static_assert(sizeof(RequestResult) == 1, "RequestResult has another size");
 
-// Board to host, in the communication test alone: what has come.
+// Board to host, only in the communication test: counts of received numbers and frames.
 struct __attribute__((packed)) TestResult {
   static constexpr uint8_t kType = 0x10;
-  uint16_t right;  // numbers of the test, each above all right ones before it
+  uint16_t right;  // numbers of the test in ascending order
   uint16_t out_of_sequence;  // other numbers
-  uint16_t frames_invalid;  // frames thrown away
+  uint16_t frames_invalid;  // invalid frames dropped
   uint16_t frames_repeated;  // reliable frames sent again
-  uint16_t bytes_lost;  // received bytes lost for want of room
+  uint16_t bytes_lost;  // received bytes lost to a full buffer
 };
 static_assert(sizeof(TestResult) == 10, "TestResult has another size");
 
-// Host to board, in the loop with a simulator alone: what its sensors would show; the newest counts.
+// Host to board, only with hardware in the loop: simulated sensor readings; the newest counts.
 struct __attribute__((packed)) Sense {
   static constexpr uint8_t kType = 0x11;
   uint32_t pressure;  // absolute pressure; Pa
@@ -192,14 +192,14 @@ struct __attribute__((packed)) Sense {
   int16_t force[3];  // specific force (8192 counts per g); x 0.0011971008 m/s²
   uint8_t right;  // 1 while the right detector sees the beacon
   uint8_t left;  // 1 while the left detector sees the beacon
-  uint16_t battery;  // battery; x 0.001 V
+  uint16_t battery;  // battery voltage; x 0.001 V
 };
 static_assert(sizeof(Sense) == 22, "Sense has another size");
 
-// Host to board: a value to take. Board to host, in answer: the value in force, taken or not.
+// Host to board: a new value of a parameter. Board to host, in answer: the value in force.
 struct __attribute__((packed)) Parameter {
   static constexpr uint8_t kType = 0x12;
-  uint8_t number;  // place in CHIP_PARAMETERS
+  uint8_t number;  // index in CHIP_PARAMETERS
   uint16_t value;  // in the parameter's own unit; x 0.001
 };
 static_assert(sizeof(Parameter) == 3, "Parameter has another size");

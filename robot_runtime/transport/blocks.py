@@ -58,7 +58,7 @@ class Block:
         return is_after(self.first, self.count, number)
 
     def time_of(self, number: int) -> float:
-        """When the sample of this number was taken (s, steady clock).
+        """Time of the sample with this number (s, steady clock).
 
         Raises IndexError where it is not in this block, LayoutError where the block is damaged.
         """

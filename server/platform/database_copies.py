@@ -44,7 +44,7 @@ def open_database(database: Path, mode: Literal["ro", "rw"]) -> sqlite3.Connecti
 
 
 def place(folder: DataFolder, kind: Kind, revision: str = "") -> Path:
-    """Where a new copy of this kind goes. Raises OSError."""
+    """Path for a new copy of this kind, in a folder that exists. Raises OSError."""
     make_folder(folder.backups)
     moment = time.strftime("%Y-%m-%d_%H-%M-%S", time.gmtime())
     return folder.backups / "-".join(["mucat", kind, *([revision] if revision else []), f"{moment}.db"])

@@ -246,7 +246,7 @@ class TuningRunRow(SQLModel, table=True):
 
 
 class LayoutRow(SQLModel, table=True):
-    """Where the panels of Operate stand, under a name; `document` as JSON. Time is UTC (s since 1970)."""
+    """A named arrangement of the panels of Operate; `document` as JSON. Time is UTC (s since 1970)."""
 
     __tablename__ = "layout"
     __table_args__ = (UniqueConstraint("name", name="layout_name"),)

@@ -1,4 +1,4 @@
-"""Brings the database to this version's tables before anything else opens it."""
+"""The database's schema: creation, and upgrade from older versions."""
 
 import errno
 import sqlite3
@@ -12,7 +12,7 @@ from server.platform.database_copies import copy_database, open_database, place,
 from server.platform.settings import DataFolder, SetupError
 
 INCREMENTAL = 2
-"""SQLite's auto_vacuum in which pages that became free are given back a few at a time, when asked for."""
+"""SQLite's auto_vacuum mode that returns free pages to the disk in small steps, on request."""
 
 
 def prepare(folder: DataFolder) -> None:
@@ -21,7 +21,7 @@ def prepare(folder: DataFolder) -> None:
     Raises SetupError where the database is of a newer version, damaged, or cannot be written.
     """
     try:
-        # For writing: what a killed upgrade has left is rolled back by this.
+        # Opened for writing, which rolls back the upgrade of a killed server.
         revision = read_revision(folder.database, "rw")
         if revision == HEAD:
             return
@@ -38,7 +38,7 @@ def prepare(folder: DataFolder) -> None:
 
 
 def explain(problem: sqlite3.DatabaseError | OSError, folder: Path) -> str:
-    """A sentence for a person: the cause, and the remedy."""
+    """A sentence for a person with the cause and the remedy."""
     words = str(problem)
     if "disk is full" in words or (isinstance(problem, OSError) and problem.errno == errno.ENOSPC):
         return f"the disk that holds {folder} is full. Free some space, and try again."
@@ -48,7 +48,7 @@ def explain(problem: sqlite3.DatabaseError | OSError, folder: Path) -> str:
 
 
 def read_revision(database: Path, mode: Literal["ro", "rw"] = "ro") -> str | None:
-    """The revision that a database is at; None where there is none yet. Raises sqlite3.DatabaseError."""
+    """The schema revision of a database; None where there is none yet. Raises sqlite3.DatabaseError."""
     if not database.exists():
         return None
     with closing(open_database(database, mode)) as connection:
@@ -64,7 +64,7 @@ def read_revision(database: Path, mode: Literal["ro", "rw"] = "ro") -> str | Non
 
 
 def refuse_unknown(revision: str, database: Path) -> None:
-    """Raises SetupError where this version does not know the revision."""
+    """Raise SetupError where this version does not know the revision."""
     from alembic.script import ScriptDirectory
 
     known = {script.revision for script in ScriptDirectory(_scripts()).walk_revisions()}
@@ -76,7 +76,7 @@ def refuse_unknown(revision: str, database: Path) -> None:
 
 
 def _make_shrinkable(database: Path) -> None:
-    """Have room given back of which an older version only made use again; it takes a copy of everything."""
+    """Switch an older database to returning free pages to the disk; SQLite copies it whole for that."""
     with closing(sqlite3.connect(database, isolation_level=None)) as connection:
         (kind,) = connection.execute("PRAGMA auto_vacuum").fetchone()
         if kind != INCREMENTAL:
@@ -92,13 +92,13 @@ def _upgrade(database: Path) -> None:
 
     def connect() -> sqlite3.Connection:
         connection = sqlite3.connect(database, isolation_level=None)
-        # Of a database that has tables already this changes nothing.
+        # Without effect on a database that already has tables.
         connection.execute(f"PRAGMA auto_vacuum = {INCREMENTAL}")
         connection.execute("PRAGMA synchronous = FULL")
         return connection
 
     engine = create_engine("sqlite://", poolclass=pool.NullPool, creator=connect)
-    # The driver by itself begins no transaction before it changes tables; half an upgrade must not stay.
+    # The driver begins no transaction for changes of tables: a failed upgrade would stay half done.
     event.listen(engine, "begin", lambda begun: begun.exec_driver_sql("BEGIN IMMEDIATE"))
     config = Config()
     config.set_main_option("script_location", str(_scripts()))

@@ -1,7 +1,7 @@
 """The database: one writing connection in a thread of its own, and connections that only read.
 
-SQLite before 3.51.3 can corrupt a write-ahead log that two connections write, so nothing else may write: who
-does holds the database's folder. What `write` has returned from survives a power cut
+SQLite before 3.51.3 can corrupt a write-ahead log that two connections write, so there is one writer: it
+holds a lock on the database's folder. A change survives a power cut once `write` has returned
 (docs/reference/durability.md).
 """
 
@@ -35,14 +35,14 @@ class StoreError(UnavailableError):
 
 
 class Reader:
-    """A database that `schema.prepare` has made ready, open only for reading; also beside a server."""
+    """Read access to a database that `schema.prepare` has upgraded; works beside a running server."""
 
     def __init__(self, database: Path) -> None:
         self._reader = _engine(database, "mode=ro", pool.QueuePool)
 
     @contextmanager
     def read(self) -> Iterator[Session]:
-        """A session that only reads. Keep it short: a long one keeps the write-ahead log growing."""
+        """Open a session for reading. Keep it short: during a long one the write-ahead log grows."""
         try:
             with Session(self._reader) as session:
                 yield session
@@ -55,20 +55,20 @@ class Reader:
 
 
 class Store(Reader):
-    """An open database that is also written; `failing` says why the last write failed.
+    """Read and write access to the database; `failing` is the reason of the last write's failure.
 
-    Raises StoreError where another one is open for writing.
+    Raises StoreError where another program has the database open for writing.
     """
 
     def __init__(self, database: Path) -> None:
         self._folder = _hold(database.parent)
         super().__init__(database)
         self.failing: str | None = None
-        # Without a power-safe overwrite SQLite lets no two commits share a sector, so that a cut that spoils
-        # the sector being written spoils nothing that was synced before it.
+        # With psow=0 no two commits share a sector: a power cut that damages the sector being written damages
+        # no earlier commit.
         self._writer = _engine(database, "psow=0", pool.StaticPool)
         event.listen(self._writer, "connect", _make_durable)
-        # The driver by itself begins a transaction only before a row changes: each PRAGMA would be one alone.
+        # The driver begins a transaction only before a row changes: each PRAGMA would be one of its own.
         event.listen(self._writer, "begin", lambda begun: begun.exec_driver_sql("BEGIN IMMEDIATE"))
         self._thread = ThreadPoolExecutor(1, "writer")
         self._thread.submit(self._open).result()
@@ -81,15 +81,15 @@ class Store(Reader):
         return await asyncio.wrap_future(self._thread.submit(self._commit, change))
 
     async def execute(self, change: UpdateBase, rows: Sequence[Mapping[str, Any]] | None = None) -> int:
-        """Run one statement in a transaction, for each of `rows` if given; the number of changed rows."""
+        """Run one statement in a transaction, for each of `rows` if given; returns the rows changed."""
         return await self.write(lambda connection: connection.execute(change, rows).rowcount)
 
     async def probe(self) -> None:
-        """Write next to nothing, to learn whether writing works. Raises StoreError where it does not."""
+        """Test writing with a minimal change. Raises StoreError where it does not."""
         await self.write(_touch)
 
     def close(self) -> None:
-        """Wait for what is being written, and close. Blocks; call it once."""
+        """Wait for pending writes, and close. Blocks; call it once."""
         self._thread.submit(self._connection.close).result()
         self._thread.shutdown()
         super().close()
@@ -111,7 +111,7 @@ class Store(Reader):
 
 
 def insert_row(connection: Connection, table: type[SQLModel], values: Mapping[str, Any]) -> int:
-    """Insert a row, within a transaction; its number."""
+    """Insert a row, within a transaction; returns its number."""
     key = connection.execute(insert(table).values(**values)).inserted_primary_key
     assert key is not None
     return int(key[0])
@@ -123,7 +123,7 @@ def _touch(connection: Connection) -> None:
 
 
 def _hold(folder: Path) -> int:
-    """Take the right to write. A folder's lock does not touch those that SQLite has on its files."""
+    """Lock the folder for one writer. A folder's lock does not affect SQLite's locks on its files."""
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)

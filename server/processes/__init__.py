@@ -1,1 +1,1 @@
-"""The other processes: started, watched, adopted and ended."""
+"""Processes of the robot: supervision, adoption and logs."""

@@ -1,23 +1,23 @@
-"""Pauses before a process that has died is started again."""
+"""Pauses before the restart of a process that has died."""
 
 FIRST = 0.1
-"""s after the second death; after the first there is nothing to wait for."""
+"""s, after the second death; after the first there is no pause."""
 KILLED_MAX = 1.0
-"""s, at most, for what was killed."""
+"""s, longest pause for a process that was killed."""
 MAX = 5.0
-"""s, at most, for what ends by itself: it will probably do so again, and each start costs much."""
+"""s, longest pause for a process that ends by itself: it probably will again, and a start is costly."""
 STEADY_SECONDS = 10.0
-"""What lived this long is started again at once when it ends."""
+"""A process that ran this long is restarted without a pause."""
 
 
 class Backoff:
-    """Longer from death to death, for as long as they follow each other quickly."""
+    """Pauses that double from death to death, until a run lasts `STEADY_SECONDS`."""
 
     def __init__(self) -> None:
         self._next = 0.0
 
     def after(self, lived: float, *, killed: bool) -> float:
-        """s to wait after a life of `lived` s; `killed`: a signal ended it."""
+        """The pause in s after a run of `lived` s; `killed`: a signal ended it."""
         if lived >= STEADY_SECONDS:
             self._next = 0.0
         pause = min(self._next, KILLED_MAX) if killed else self._next
@@ -26,5 +26,5 @@ class Backoff:
 
 
 def describe_pause(pause: float) -> str:
-    """When it is started again, in words."""
+    """The pause before a restart, in words."""
     return f"in {pause:.1f} s" if pause else "at once"

@@ -1,4 +1,4 @@
-"""Logs of supervised processes: each writes to its file itself, and needs no server for it."""
+"""Logs of supervised processes; each writes its file itself, without the server."""
 
 import os
 from pathlib import Path
@@ -10,20 +10,20 @@ LINE_BYTES_MAX = 2_000
 
 
 class ProcessLog:
-    """The file `path`, and the one before it as `path`.1; together at most twice `FILE_BYTES_MAX` is kept."""
+    """The log file `path` and the one before it, `path`.1; together about twice `FILE_BYTES_MAX`."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
 
     def open(self) -> IO[bytes]:
-        """The file to be written by a process. A full disk costs it its lines, and nobody else anything."""
+        """Open the file for a process to write. On a full disk its lines are lost, without further effect."""
         try:
             return self._path.open("ab", buffering=0)
         except OSError:
             return Path(os.devnull).open("ab", buffering=0)
 
     def trim(self) -> None:
-        """Set aside what is there where it has grown too long; the process goes on writing to the file."""
+        """Move the content to `path`.1 where it has grown too long; the process goes on writing to `path`."""
         try:
             if self._path.stat().st_size <= FILE_BYTES_MAX:
                 return
@@ -35,14 +35,14 @@ class ProcessLog:
             return
 
     def size(self) -> int:
-        """Bytes that there are."""
+        """Size of the file in bytes."""
         try:
             return self._path.stat().st_size
         except OSError:
             return 0
 
     def last(self, count: int, since: int = 0) -> str:
-        """The last lines after so many bytes, one after the other; empty where nothing was printed."""
+        """The last `count` lines after the first `since` bytes, on one line; empty where there are none."""
         try:
             with self._path.open("rb") as file:
                 size = file.seek(0, os.SEEK_END)

@@ -22,7 +22,7 @@ KILL_SECONDS = 1.0
 
 
 class ProcessGroup(ABC):
-    """A running process and its group, by the number of both. Call it in the event loop's thread."""
+    """A running process and its group, whose number is the same. Used in the event loop's thread only."""
 
     def __init__(self, pid: int) -> None:
         self.pid = pid
@@ -32,7 +32,7 @@ class ProcessGroup(ABC):
         self._loop.add_reader(self._handle, self._end)
 
     async def wait(self) -> int | None:
-        """Wait until the process has ended, and end what it had started.
+        """Wait until the process has ended and its group was killed.
 
         Returns the exit status, negative for the signal that ended it; None if it is not available.
         """
@@ -68,8 +68,8 @@ class ProcessGroup(ABC):
 class Process(ProcessGroup):
     """A process started at once, in a session and group of its own; its output goes to `output`.
 
-    It reads `given` on its standard input, or nothing. Call `close` in the end. Raises OSError if it cannot
-    be started.
+    `given` is its standard input, if any. Call `close` when done with it. Raises OSError if it cannot be
+    started.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class Process(ProcessGroup):
 
 
 class PipedProcess(Process):
-    """A process whose `output` is called with what it and its children print."""
+    """A process whose output, with its children's, goes to the function `output`."""
 
     def __init__(
         self, arguments: Sequence[str], output: Callable[[bytes], None], given: IO[bytes] | None = None
@@ -119,13 +119,13 @@ class PipedProcess(Process):
 
     def _reap(self) -> int | None:
         status = super()._reap()
-        # All of its own output is in the pipe by now, which holds no more than one reading takes.
+        # All of its own output is in the pipe by now, which holds no more than one read returns.
         self._read()
         return status
 
 
 class AdoptedProcess(ProcessGroup):
-    """A process that another server has started, at the time `started` (see `started_at`).
+    """A process that an earlier server has started, at the time `started` (see `started_at`).
 
     Its exit status is not available. Raises OSError if it has ended.
     """
@@ -135,14 +135,14 @@ class AdoptedProcess(ProcessGroup):
         if started_at(pid) != started:
             self._loop.remove_reader(self._handle)
             os.close(self._handle)
-            raise ProcessLookupError(f"process {pid} is another one by now")
+            raise ProcessLookupError(f"process {pid} has ended; its number belongs to another process now")
 
     def _reap(self) -> None:
         select.select([self._handle], [], [], KILL_SECONDS)
 
 
 def describe_status(status: int | None) -> str:
-    """The end of a process, in words that follow its name; `status` is None if it is not known."""
+    """Describe the end of a process, in words that follow its name; `status` is None if it is not known."""
     if status is None:
         return "has ended; its exit status is not known, because an earlier server had started it"
     if status >= 0:

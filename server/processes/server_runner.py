@@ -4,8 +4,8 @@ Most of a server's start is the loading of its libraries: 2 s here, a minute on 
 runner has loaded them once and never runs a thread, so that a fork of it serves at once. It also holds the
 listening socket, at which clients wait meanwhile, and the lock of the data folder.
 
-The runner itself is not guarded. When it is killed, the kernel kills the server with it; the robot's other
-processes run on, and the next `mucat run` adopts them. Starting that again is the work of systemd.
+The runner itself is not supervised. When it is killed, the kernel kills the server with it; the robot's other
+processes run on, and the next `mucat run` adopts them. Restarting the runner is the work of systemd.
 """
 
 import gc
@@ -26,23 +26,23 @@ from server.processes.backoff import Backoff, describe_pause
 from server.processes.process import describe_status
 
 Serve = Callable[[str], int]
-"""Serves until the server ends, and returns its exit status. The argument says how the server before it
-ended; "" for the first one."""
+"""Serves until the server ends, and returns its exit status. The argument describes the end of the server
+before it; "" for the first one."""
 
 _STOPS = (signal.SIGINT, signal.SIGTERM)
 _ALL = (*_STOPS, signal.SIGCHLD)
 
 
 class ServerRunner:
-    """Forks servers that call `serve`. Create and `run` it before there is any thread."""
+    """Forks servers that call `serve`. Create and `run` it before any thread is started."""
 
     def __init__(self, serve: Serve, folder: DataFolder) -> None:
         self._serve = serve
         self._file = PidFile(folder.runner)
 
     def run(self) -> int:
-        """Run servers until one ends in order, or the first cannot start. Its exit status."""
-        # What is loaded stays shared with the children: collecting garbage would write to all of it.
+        """Run servers until one ends in order or the first cannot start; returns the exit status."""
+        # Keeps the loaded modules' memory shared with the children: a garbage collection would write to it.
         gc.freeze()
         _set_name("mucat-runner")
         self._file.write(os.getpid(), "")
@@ -95,12 +95,12 @@ class ServerRunner:
 
 
 def _wait(server: int) -> tuple[int, bool]:
-    """The exit status of a server, negative for a signal, and true if it was asked to stop."""
+    """Wait for a server's end. Returns its status, negative for a signal, and true if told to stop."""
     stopping = False
     while True:
         if signal.sigwait(_ALL) in _STOPS:
             stopping = True
-            # Not yet waited for, so that no other process can have its number.
+            # The server is not reaped yet, so no other process can have its number.
             os.kill(server, signal.SIGTERM)
         ended, status = os.waitpid(server, os.WNOHANG)
         if ended:

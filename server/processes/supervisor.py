@@ -1,9 +1,9 @@
 """Supervises the robot's processes: starts them in order, restarts them, ends them.
 
-A part runs in a session of its own, so that Ctrl-C reaches the server alone and nothing that the part has
-started outlives it. It writes its log itself and needs nothing of the server: where that is killed the robot
-swims on, and the next server adopts the parts that it would start the same way. Where no server comes, they
-end by themselves (`robot_runtime.transport.lifetime`), but for a real robot's runtime.
+Each process runs in a session of its own, so that Ctrl-C reaches the server alone and no child outlives the
+process. It writes its log itself and does not depend on the server: when the server is killed, the robot goes
+on, and the next server adopts the processes that it would start in the same way. Without a next server they
+end by themselves (`robot_runtime.transport.lifetime`), except a real robot's runtime.
 """
 
 import asyncio
@@ -35,23 +35,23 @@ NEED_POLL_SECONDS = 0.05
 LINES_SHOWN = 3
 TRIM_SECONDS = 1.0
 HEARTBEAT_SECONDS = 4.0
-"""After which, and half a second, the runtime stops a robot whose server is silent: 5 s are allowed."""
+"""Silence of the server after which, plus half a second, the runtime stops the robot; the limit is 5 s."""
 
 SIMULATION = ("simulator", "scene")
-"""Parts that may be left to another computer."""
+"""Processes that may run on another computer."""
 SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT."
 
 State = Literal["waiting", "running", "failed", "ended", "paused"]
 Notify = Callable[[str, Severity, str], None]
 SeeDown = Callable[[str, str], None]
-"""Told a part's name, and in a sentence how it has ended unexpectedly."""
+"""Called with a process's name and a sentence about its unexpected end."""
 
 
 @dataclass(frozen=True, slots=True)
 class ProcessCommand:
     """Command of a process; `needs` are files that must exist first, `made_of` those that it reads.
 
-    A part that runs is taken over by the next server where these hold the same as when it was started.
+    The next server adopts a running process of the same command, version and content of `made_of`.
     """
 
     name: str
@@ -70,7 +70,7 @@ class ProcessCommand:
 
 
 class ManagedProcess:
-    """One supervised process; its PID file in the folder `run` is for the next server."""
+    """One supervised process; the next server finds it by its PID file in the folder `run`."""
 
     def __init__(
         self, command: ProcessCommand, log: ProcessLog, run: Path, clock: Clock, see_down: SeeDown
@@ -90,14 +90,14 @@ class ManagedProcess:
 
     @property
     def pid(self) -> int | None:
-        """The process's number while it runs."""
+        """The process's number; None while it does not run."""
         return self._process.pid if self._process is not None and self.state == "running" else None
 
     async def run(self) -> None:
-        """Keep the process running until this is cancelled; then end it."""
+        """Start the process, and restart it when it ends; on cancellation end it."""
         try:
             if await self._adopt():
-                # What was heard of it while this server started counts: `since` stays as it is.
+                # Its messages during this server's start count: `since` is not reset.
                 self.state = "running"
             else:
                 self._set("waiting")
@@ -115,9 +115,9 @@ class ManagedProcess:
             self._set("ended")
 
     async def _adopt(self) -> bool:
-        """Take over the process that a killed server has left, or end it where it is not the same.
+        """Adopt the process that a killed server has left, or end it where its fingerprint differs.
 
-        Returns True if there is one to go on with.
+        Returns True if a process was adopted.
         """
         found = self._pid_file.read()
         if found is None:
@@ -135,7 +135,7 @@ class ManagedProcess:
             await asyncio.sleep(NEED_POLL_SECONDS)
 
     async def _run_once(self) -> tuple[str, bool]:
-        """Run the process to its end. Returns what happened, in words, and whether a signal ended it."""
+        """Run the process to its end. Returns a description of the end, and True where a signal ended it."""
         try:
             process = self._process = self._process or self._start()
         except OSError as problem:
@@ -163,7 +163,7 @@ class ManagedProcess:
         try:
             self._pid_file.write(process.pid, self.command.fingerprint())
         except OSError as problem:
-            log.warning("%s: the next server will not find it: %s", self.command.name, problem)
+            log.warning("%s: the PID file cannot be written: %s", self.command.name, problem)
         return process
 
     async def _trim(self) -> None:
@@ -184,7 +184,7 @@ class ManagedProcess:
         self._see_down(self.command.name, text)
 
     async def end(self) -> None:
-        """End the process, also one that a killed server has left and that was not taken over yet."""
+        """End the process, also one that a killed server has left and that was not adopted yet."""
         if self._process is None and (found := self._pid_file.read()) is not None:
             with suppress(OSError):
                 self._process = AdoptedProcess(found.pid, found.started)
@@ -197,13 +197,13 @@ class ManagedProcess:
         self._release()
 
     def end_hung(self, problem: str) -> None:
-        """End a process that no longer listens; `problem` goes on after its name. It is started again."""
+        """Kill a process that no longer answers; `problem` follows its name in the alarm. It is restarted."""
         if self._process is not None:
             self._hung = problem
             self._process.signal(signal.SIGKILL)
 
     async def pause(self, why: str) -> None:
-        """End the process on purpose; `why` is a sentence."""
+        """End the process without a restart; `why` is a sentence for a person."""
         await self.end()
         self.problem = why
         self._set("paused")
@@ -229,17 +229,17 @@ class ProcessSupervisor:
         self._tasks: dict[str, asyncio.Task[None]] = {}
 
     async def end_others(self) -> None:
-        """End what a killed server has left and this one does not have, such as another mode's board."""
+        """End processes that a killed server has left and this one does not use, such as another mode's."""
         await asyncio.to_thread(end_parts, self._run, self._processes)
 
     def start(self) -> None:
-        """Start everything, each as soon as what it needs is there; what is paused is not started."""
+        """Start every process that is not paused, each as soon as the files that it needs exist."""
         for name, part in self._processes.items():
             if part.state != "paused":
                 self._tasks[name] = asyncio.create_task(part.run())
 
     async def stop(self) -> None:
-        """End every process, also what a killed server has left, and wait until they are gone."""
+        """End every process, also those that a killed server has left, and wait for their end."""
         tasks = self._tasks.values()
         for task in tasks:
             task.cancel()
@@ -247,7 +247,7 @@ class ProcessSupervisor:
         await asyncio.gather(*(part.end() for part in self._processes.values()))
 
     async def pause(self, name: str, why: str) -> None:
-        """End a part, and leave it so until it is resumed; `why` is a sentence for a person."""
+        """End a process until it is resumed; `why` is a sentence for a person."""
         task = self._tasks.pop(name, None)
         if task is not None:
             task.cancel()
@@ -256,13 +256,13 @@ class ProcessSupervisor:
             await self._processes[name].pause(why)
 
     def resume(self, name: str) -> None:
-        """Start a part that was paused."""
+        """Start a paused process again."""
         part = self._processes.get(name)
         if part is not None and part.state == "paused":
             self._tasks[name] = asyncio.create_task(part.run())
 
     def get(self, name: str) -> ManagedProcess | None:
-        """The part of this name; None where this robot has none."""
+        """The process of this name; None where this robot has none."""
         return self._processes.get(name)
 
 
@@ -273,7 +273,7 @@ def plan(settings: Settings) -> list[ProcessCommand]:
     runtime += ["--data", str(folder.path), "--heartbeat", f"{HEARTBEAT_SECONDS:g}"]
     runtime_files = (settings.config,)
     if settings.mode == "robot":
-        # Nothing ends it but a server: it is what keeps a robot under water in hand.
+        # Without --server-lock it outlives the server: it must go on controlling a robot under water.
         return [ProcessCommand("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files)]
     lock = ("--server-lock", str(folder.lock))
     simulator = [sys.executable, "-m", "robot_runtime.simulation"]

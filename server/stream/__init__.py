@@ -1,1 +1,1 @@
-"""Streams: blocks from the other processes, and all of them to every open page."""
+"""Streams: blocks received from the other processes and sent to every open page."""

@@ -30,27 +30,27 @@ from server.stream.gap_filler import GapFiller
 log = logging.getLogger(__name__)
 
 ROUND_SECONDS = 0.024
-"""The lever between latency and cost: waking the event loop costs more than what there is to do in it."""
+"""Pause between two emptyings: a longer one costs latency, a shorter one CPU time for waking the loop."""
 QUEUE_MAX = 20_000
-"""Blocks that wait while the event loop is held up; far more than can be normal."""
+"""Most blocks that wait while the event loop is busy; far more than in normal operation."""
 ANSWER_SECONDS = 2.0
 COMMANDS_AT_ONCE = 4
 BLOCK_BYTES_MAX = 4_000_000
 BACKLOG_SECONDS = 3.0
 BACKLOG_FIRST_SECONDS = 0.3
-"""s to wait for the first answer; four times as long for each next one. The first question to a process
-that has just been started sometimes gets no answer at all."""
+"""Timeout of the first request in s, four times as long for each next one. The first request to a process
+that has just started sometimes gets no answer at all."""
 BACKLOG_PAUSE = 0.1
-"""s. A process that is heard can be asked after Zenoh's discovery."""
+"""s between two requests; a process answers only after Zenoh has discovered it."""
 CONTACT_SECONDS = 10.0
-"""For which a server that starts waits for processes that a killed one has left."""
+"""Time that a starting server waits for the answer of a process that a killed server has left."""
 
 QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
 """The query topics at which the processes answer with their backlog."""
 
 
 class RuntimeSilentError(ApiError):
-    """The runtime did not answer; `waited` says whether it was there to be asked at all."""
+    """The runtime did not answer; `waited` is false where it was not reachable at all."""
 
     def __init__(self, text: str, waited: bool) -> None:
         super().__init__(text)
@@ -59,12 +59,12 @@ class RuntimeSilentError(ApiError):
 
     @classmethod
     def answers(cls) -> Mapping[int, str]:
-        """Both statuses."""
+        """Both statuses with their meanings."""
         return {503: "It is not running", 504: f"It did not answer within {ANSWER_SECONDS:g} s"}
 
 
 class Bridge:
-    """One Zenoh session. `deliver` is called in the event loop with what has arrived, in order.
+    """One Zenoh session. `deliver` is called in the event loop with the received blocks, in order.
 
     Nothing is delivered before `begin_delivery`.
     """
@@ -87,7 +87,7 @@ class Bridge:
         self._ready: list[Block] = []
         self._emptying = False
         self._resting = True
-        """Nothing is about to empty the queue: the next arrival wakes the event loop."""
+        """True while no emptying of the queue is scheduled: the next arrival wakes the event loop."""
         self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
@@ -117,7 +117,7 @@ class Bridge:
         return {name: backlog for name, backlog in zip(named, answers, strict=True) if backlog is not None}
 
     def begin_delivery(self, backlog: Mapping[str, BacklogReply]) -> None:
-        """Deliver what was kept, by the processes' names, and from now on what arrives."""
+        """Deliver these backlogs, by the processes' names, and from now on every received block."""
         for name, filler in self._fillers.items():
             filler.begin_delivery(backlog.get(name))
 
@@ -127,15 +127,15 @@ class Bridge:
 
     @property
     def run(self) -> str:
-        """Of the runtime's process, as it was last heard; empty before."""
+        """The run of the runtime's process, from its newest block; empty before the first."""
         return self._fillers["runtime"].run
 
     def drive(self, command: bytes) -> None:
-        """Send the runtime a driving command; it is lost where no runtime listens."""
+        """Send the runtime a driving command; it is dropped where no runtime is connected."""
         self._messages.publish(PILOT, command)
 
     async def send_lease(self, epoch: int) -> None:
-        """Have the runtime drop driving commands of earlier epochs.
+        """Make the runtime drop driving commands of earlier epochs.
 
         Raises RefusedError, or RuntimeSilentError.
         """
@@ -147,23 +147,23 @@ class Bridge:
             raise RuntimeSilentError(str(problem), waited=False) from problem
 
     def watch_pictures(self, first_numbers: frozenset[str]) -> None:
-        """Subscribe to these topics of pictures and no other; they are made only while somebody does."""
+        """Subscribe to these picture topics and no other; a picture is encoded only for subscribers."""
         for name in self._pictures.keys() - first_numbers:
             self._pictures.pop(name).close()
         for name in first_numbers - self._pictures.keys():
             self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Have the runtime perform a command; its answer. Raises RefusedError, RuntimeSilentError.
+        """Make the runtime execute a command; returns its answer. Raises RefusedError, RuntimeSilentError.
 
-        Commands that change parameters go through `Changes`, which notes them.
+        Commands that change parameters go through `Changes`, which records them.
         """
         if name == "stop" and self.on_stop is not None:
             self.on_stop()
         return await self._ask(f"command/{name}", payload, stop=name == "stop")
 
     async def disarm(self) -> None:
-        """STOP as a scenario's own step, which ends no scenario. Raises RuntimeSilentError."""
+        """Send a STOP as a step of a scenario, without ending the scenario. Raises RuntimeSilentError."""
         await self._ask("command/stop", {}, stop=True)
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -235,7 +235,7 @@ class Bridge:
                     patience = min(4 * patience, seconds)
                 await asyncio.sleep(BACKLOG_PAUSE)
             except (RefusedError, LayoutError) as problem:
-                log.warning("what the %s has kept cannot be had: %s", name, problem)
+                log.warning("the backlog of the %s cannot be read: %s", name, problem)
                 break
         return None
 
@@ -245,19 +245,19 @@ class Bridge:
         )
 
     def _receive(self, name: str, data: bytes, run: str) -> None:
-        """Called in Zenoh's thread."""
+        """Queue a message. Called in Zenoh's thread."""
         self._queue.append((name, data, run))
         if self._resting:
             self._resting = False
             try:
                 self._loop.call_soon_threadsafe(self._drain)
             except RuntimeError:
-                log.debug("a block of %s came after the end", name)
+                log.debug("a block of %s arrived after the event loop had ended", name)
 
     def _drain(self) -> None:
         if not self._queue:
             self._resting = True
-            # What came before that line has woken nobody.
+            # A block that arrived before the line above has not woken the event loop.
             if not self._queue:
                 return
             self._resting = False
@@ -274,7 +274,7 @@ class Bridge:
                 blocks = read_blocks(data, run)
             except LayoutError as problem:
                 self.damaged += 1
-                log.warning("a message of %s was thrown away: %s", name, problem)
+                log.warning("an invalid message of %s was dropped: %s", name, problem)
                 continue
             if name != STREAM:
                 self._pass_on(blocks)

@@ -23,7 +23,7 @@ Totals = dict[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """The same bytes for every client; `before` and `after` count the samples up to it and with it."""
+    """A message as all clients get it; `before` and `after`: sample counts without it and with it."""
 
     data: bytes
     before: Totals
@@ -31,11 +31,11 @@ class Message:
 
 
 class BroadcastBuffer:
-    """The newest messages; the oldest are dropped when they are too many or together too large."""
+    """Queue of the newest messages; the oldest are dropped when the number or the size is exceeded."""
 
     def __init__(self, messages_max: int, bytes_max: int) -> None:
         self.first = self.end = 0
-        """The number of the oldest message, and that which the next one will have."""
+        """Numbers of the oldest message and of the next one to come."""
         self.totals: Totals = {}
         self._messages: deque[Message] = deque()
         self._messages_max = messages_max
@@ -43,7 +43,7 @@ class BroadcastBuffer:
         self._bytes = 0
 
     def append(self, blocks: list[Block]) -> None:
-        """Make one message of these blocks."""
+        """Append these blocks as one message."""
         totals = dict(self.totals)
         for block in blocks:
             totals[block.topic.id] = totals.get(block.topic.id, 0) + block.count
@@ -59,13 +59,13 @@ class BroadcastBuffer:
             self.first += 1
 
     def get(self, number: int) -> Message:
-        """The message of this number. Raises IndexError where it has left or is not there yet."""
+        """The message of this number. Raises IndexError where it was dropped or does not exist yet."""
         if not self.first <= number < self.end:
             raise IndexError(f"message {number} is not among {self.first} to {self.end - 1}")
         return self._messages[number - self.first]
 
     def lost(self, seen: Totals) -> list[tuple[Topic, int]]:
-        """Samples after the totals `seen` that have left the buffer."""
+        """Dropped samples after the totals `seen`, by topic."""
         before = self._messages[0].before if self._messages else self.totals
         counts = ((topic, total - seen.get(topic, 0)) for topic, total in before.items())
         return [(BY_ID[topic], count) for topic, count in counts if count > 0]
@@ -73,7 +73,7 @@ class BroadcastBuffer:
 
 @dataclass(frozen=True, slots=True)
 class _Chunk:
-    """Blocks one after the other that went out up to `tick`; rows begin at the time `since`."""
+    """Consecutive blocks that were sent up to `tick`; rows begin at the time `since`."""
 
     tick: int
     since: float
@@ -110,7 +110,7 @@ class _TopicBacklog:
         self.bytes = 0
 
     def chunks(self) -> Iterable[_Chunk]:
-        # What is given now must not be part of a chunk with what comes later.
+        # Blocks that are returned now must not share a chunk with later ones.
         self._gather()
         return self._chunks
 
@@ -124,10 +124,10 @@ class _TopicBacklog:
 
 
 class TopicHistory:
-    """The last `seconds` of every topic, each within `bytes_max`; of some topics the newest block only.
+    """The last `seconds` of every topic, at most `bytes_max` each; of some topics only the newest block.
 
-    A block is small, and Python's own bytes around it are as many again. So those of two seconds become one,
-    which is soon sent, too.
+    A Python object per small block doubles its memory: blocks of two seconds are merged into one chunk, which
+    is also faster to send.
     """
 
     def __init__(self, seconds: float, bytes_max: int) -> None:
@@ -136,18 +136,18 @@ class TopicHistory:
         self._topics: dict[int, _TopicBacklog] = {}
 
     def add(self, block: Block, tick: int, now: float) -> None:
-        """Keep a block that goes out at `tick`, at `now` (s, steady clock)."""
+        """Add a block that is sent at `tick`, at `now` (s, steady clock)."""
         backlog = self._topics.setdefault(block.topic.id, _TopicBacklog(block.topic))
         if block.topic.newest_only:
             backlog.forget_all()
-        # What a server takes over from an earlier one is older than now.
+        # A backlog from before this server's start is older than now.
         backlog.add(block, tick, block.time_of(block.first) if block.topic.kind is Kind.ROWS else now)
         backlog.forget(now - self._seconds, self._bytes_max)
 
     def since(self, tick: int, message_bytes: int, rows_from: float = -inf) -> list[list[bytes]]:
-        """Every block that went out after `tick`, topic by topic, in groups of about `message_bytes`.
+        """Every block sent after `tick`, topic by topic, in groups of about `message_bytes`.
 
-        Of rows only what is not before `rows_from` (s, steady clock), or a little more.
+        Rows before `rows_from` (s, steady clock) are left out, but for up to `CHUNK_SECONDS`.
         """
         groups: list[list[bytes]] = []
         room = 0
@@ -164,7 +164,7 @@ class TopicHistory:
         return groups
 
     def rows(self, topics: Collection[str], until: float) -> bytes:
-        """The rows of these topics that are kept, up to `until` (s, steady clock) or a little more."""
+        """The stored rows of these topics up to `until` (s, steady clock), and up to `CHUNK_SECONDS` more."""
         return b"".join(
             one.data
             for backlog in self._topics.values()
@@ -175,7 +175,7 @@ class TopicHistory:
 
 
 def _join(blocks: Sequence[Block]) -> bytes:
-    """These blocks of one topic; rows that follow each other as one block, which saves their heads."""
+    """Join blocks of one topic; consecutive rows become one block with one header."""
     runs: list[list[Block]] = []
     count = 0
     for block in blocks:

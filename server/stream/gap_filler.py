@@ -1,8 +1,8 @@
-"""Fills gaps in what a process of the robot sends: missing samples are asked for again.
+"""Fills gaps in the stream of a process: requests missing samples again.
 
-Samples are numbered by topic, and whoever sends them keeps those of the last minutes
-(`robot_runtime.transport.replay_cache`).
-While a question for them is out, what arrives waits, so that everything is passed on in order and once.
+Samples are numbered by topic, and their sender stores those of the last minutes
+(`robot_runtime.transport.replay_cache`). While a request is pending, received blocks wait, so that every
+sample is passed on once and in order.
 """
 
 import asyncio
@@ -13,13 +13,13 @@ from robot_runtime.transport.blocks import Block
 from robot_runtime.transport.replay_cache import BacklogReply
 
 Ask = Callable[[Mapping[str, int]], Awaitable[BacklogReply | None]]
-"""Asks for the blocks from these numbers on, by the topics' names; None where nobody answers."""
+"""Requests the blocks from these numbers on, by the topics' names; returns None without an answer."""
 
 
 class GapFiller:
-    """One process, through any number of its runs, and what only it sends.
+    """Gap filler of one process, across its restarts, for the topics that only it sends.
 
-    `deliver` is called with its blocks, in order. At first everything waits, until `begin_delivery`.
+    `deliver` is called with its blocks, in order. Blocks before `begin_delivery` wait.
     """
 
     def __init__(self, topics: Sequence[Topic], ask: Ask, deliver: Callable[[list[Block]], None]) -> None:
@@ -27,7 +27,7 @@ class GapFiller:
         self._ask = ask
         self._deliver = deliver
         self.run = ""
-        """Of the process, as it was last heard; empty before."""
+        """The run of the process, from its newest block; empty before the first."""
         self._over: set[str] = set()
         self._expected: dict[int, int] = {}
         self._last_request: dict[str, int] = {}
@@ -40,12 +40,12 @@ class GapFiller:
         return {topic.name: 0 for topic in self.topics}
 
     def begin_delivery(self, backlog: BacklogReply | None) -> None:
-        """Pass on the process's backlog, if any, and then what arrives."""
+        """Pass on the process's backlog, if any, and from now on received blocks."""
         self._paused = False
         self._merge(backlog)
 
     def take(self, run: str, blocks: list[Block]) -> None:
-        """Blocks have arrived from this run of the process; where it has no name, nothing is asked for."""
+        """Take blocks of this run of the process; without a run's name no gap is filled."""
         if self._paused:
             self._waiting.append((run, blocks))
         elif not run or run in self._over:
@@ -57,14 +57,14 @@ class GapFiller:
         else:
             numbers = {topic.name: self._expected.get(topic.id, 0) for topic in self.topics}
             if numbers == self._last_request:
-                # It was asked for these already, and has not got them: they stay missing.
+                # These were requested already, and the process does not have them: they stay missing.
                 self._pass_on(blocks)
             else:
                 self._last_request = numbers
                 self._catch_up(run, blocks, numbers)
 
     async def close(self) -> None:
-        """Ask no more."""
+        """Cancel a pending request."""
         if self._asking is not None:
             self._asking.cancel()
             await asyncio.gather(self._asking, return_exceptions=True)
@@ -77,7 +77,7 @@ class GapFiller:
     async def _ask_and_merge(self, run: str, first_numbers: Mapping[str, int]) -> None:
         backlog = await self._ask(first_numbers)
         if backlog is not None and backlog.run != run:
-            # Another run by now, whose numbers begin anew.
+            # The process was restarted: its numbers begin anew.
             backlog = await self._ask(self.everything())
         self.begin_delivery(backlog)
 
@@ -85,7 +85,7 @@ class GapFiller:
         waiting, self._waiting = self._waiting, []
         first = waiting[0][0] if waiting else ""
         if backlog is None:
-            # Whatever is missing stays so.
+            # Without a backlog the missing samples stay missing.
             self._begin(first or self.run)
         elif backlog.run != self.run:
             if first != backlog.run:

@@ -1,9 +1,10 @@
-"""Everything to every open page, without one page ever holding up another, the recorder or the robot.
+"""Sends all live blocks to every open page; no page can block another one, the recorder or the robot.
 
-Rows go through one buffer that all clients share: who falls behind loses the oldest and is told how many.
-Documents go through a second buffer and are never skipped: who falls behind too far is sent away with a
-reason, and finds the rest in the recording. Of pictures there is only the newest. A send that hangs for
-`STALL_SECONDS` ends the connection; measured: the alternatives freeze everybody or fill the memory.
+Rows go through one buffer that all clients share: a slow client loses the oldest and gets their number.
+Documents go through a second buffer and are never skipped: a client that falls too far behind is
+disconnected with a reason, and finds the rest in the recording. Of pictures only the newest is sent. A send
+that hangs for `STALL_SECONDS` ends the connection; without this limit one client blocked all, or the memory
+filled (measured).
 """
 
 import asyncio
@@ -22,9 +23,9 @@ HISTORY_SECONDS = 600.0
 HISTORY_TOPIC_BYTES = 4_000_000
 """At the robot's full rate all topics together have 7 MB in ten minutes, the largest 2.3 MB."""
 FIRST_SECONDS = 65.0
-"""Of rows, what every page gets when it connects: a minute's chart. What shows more asks for it."""
+"""Rows that a page gets when it connects: a minute's chart. A longer chart requests more."""
 HISTORY_MESSAGE_BYTES = 256_000
-"""Small enough that one of them passes a poor radio link within `STALL_SECONDS`."""
+"""One message of history passes a poor radio link within `STALL_SECONDS`."""
 HISTORY_ROUNDS = 10
 ROWS_MESSAGES, ROWS_BYTES = 200, 1_000_000
 DOCUMENTS_MESSAGES, DOCUMENTS_BYTES = 2_000, 2_000_000
@@ -33,14 +34,14 @@ CLIENTS_MAX = 50
 STALL_SECONDS = 5.0
 WATCH_SECONDS = 1.0
 TRY_AGAIN_LATER = 1013
-"""WebSocket close code for a client that the server cannot go on serving now."""
+"""WebSocket close code for a client that the server cannot serve any longer."""
 
 Send = Callable[[bytes | str], Awaitable[None]]
 _NO_PICTURE = (0, b"")
 
 
 class EvictedError(Exception):
-    """A client cannot be served any longer; the text is the reason sent to it, `code` WebSocket's."""
+    """A client is disconnected; the text is the reason sent to it, `code` the WebSocket close code."""
 
     def __init__(self, reason: str, code: int = TRY_AGAIN_LATER) -> None:
         super().__init__(reason)
@@ -48,7 +49,7 @@ class EvictedError(Exception):
 
 
 class Client:
-    """One open socket: its positions in the buffers, and what is for it alone."""
+    """One open socket: its positions in the buffers and its own messages."""
 
     def __init__(self, hub: "Hub", send: Send, clock: Clock, device: int) -> None:
         self.device = device
@@ -64,27 +65,27 @@ class Client:
         self._seen: Totals = {}
         self._pictures: dict[str, int] = {}
         self.watching = frozenset({"picture"})
-        """Topics of pictures that it wants."""
+        """Picture topics that it has subscribed to."""
 
     def answer(self, message: dict[str, Any]) -> None:
-        """Send this soon, in order. Raises EvictedError where too many answers already wait to be read."""
+        """Queue a message; all are sent, in order. Raises EvictedError where too many wait already."""
         if len(self._answers) >= ANSWERS_MAX:
             raise EvictedError("Too many answers wait unread.")
-        # In ASCII: what a client has said may hold halves of characters, which no other text can.
+        # In ASCII: text from a client may hold lone surrogates, which UTF-8 cannot encode.
         self._answers.append(json.dumps(message))
         self._wake.set()
 
     def notify(self, kind: str, text: str) -> None:
-        """Send this soon; of each kind only the newest."""
+        """Queue a message of which only the newest of each kind is sent."""
         self._newest[kind] = text
         self._wake.set()
 
     def wake(self) -> None:
-        """A buffer has a new message."""
+        """Wake the sender: a buffer has a new message."""
         self._wake.set()
 
     async def run(self) -> None:
-        """Send the past, then the present, for ever. Raises EvictedError where the client is too slow."""
+        """Send the history, then live messages. Raises EvictedError where the client is too slow."""
         await self._send_history()
         while True:
             while self._behind:
@@ -108,7 +109,7 @@ class Client:
 
     @property
     def _behind(self) -> bool:
-        """True where something waits to be sent."""
+        """True where a message waits to be sent."""
         hub = self._hub
         if self._rows < hub.rows.end or self._documents < hub.documents.end:
             return True
@@ -116,14 +117,14 @@ class Client:
 
     @property
     def _picture(self) -> str | None:
-        """The topic of a picture that it wants and has not got."""
+        """A subscribed topic with a picture that was not sent yet."""
         for topic in self.watching:
             if self._pictures.get(topic, 0) < self._hub.pictures.get(topic, _NO_PICTURE)[0]:
                 return topic
         return None
 
     async def _send_one(self) -> None:
-        """Send what is most urgent, if there is anything."""
+        """Send the most urgent waiting message, if any."""
         hub = self._hub
         if self._answers:
             await self._send(self._answers.popleft())
@@ -160,7 +161,7 @@ class Client:
 
 
 class Hub:
-    """Takes in blocks and hands them to all clients; `audience` is called with what pictures they want."""
+    """Takes in blocks and hands them to all clients; `audience` gets the picture topics in use."""
 
     def __init__(self, clock: Clock, audience: Callable[[frozenset[str]], None]) -> None:
         self.rows = BroadcastBuffer(ROWS_MESSAGES, ROWS_BYTES)
@@ -168,7 +169,7 @@ class Hub:
         self.history = TopicHistory(HISTORY_SECONDS, HISTORY_TOPIC_BYTES)
         self.tick = 0
         self.pictures: dict[str, tuple[int, bytes]] = {}
-        """The newest of each topic that somebody wants, and its number."""
+        """The newest picture of each subscribed topic, with its number."""
         self._picture_number = 0
         self._watched: frozenset[str] = frozenset()
         self._clock = clock
@@ -182,7 +183,7 @@ class Hub:
         return len(self._clients)
 
     def add(self, blocks: list[Block]) -> None:
-        """Hand these blocks to everybody, as one message each for rows and for documents."""
+        """Pass these blocks to all clients, as one message each for rows and for documents."""
         self.tick += 1
         now = self._clock.now()
         rows: list[Block] = []
@@ -207,7 +208,7 @@ class Hub:
             client.wake()
 
     def notify(self, message: dict[str, Any]) -> None:
-        """Tell everybody, now and on connecting; of each `op` only the newest."""
+        """Send a message to all clients, now and on connecting; of each `op` only the newest."""
         kind, text = message["op"], json.dumps(message, ensure_ascii=False)
         if self._newest.get(kind) == text:
             return
@@ -216,7 +217,7 @@ class Hub:
             client.notify(kind, text)
 
     def show(self, client: Client, topics: frozenset[str]) -> None:
-        """Give this client pictures of these topics and of no other."""
+        """Subscribe this client to pictures of these topics and no other."""
         client.watching = topics
         self._count_audience()
         client.wake()
@@ -230,8 +231,8 @@ class Hub:
     async def serve(
         self, send: Send, greeting: dict[str, Any], receive: Callable[[Client], Awaitable[None]], device: int
     ) -> None:
-        """Serve one socket of a device until `receive` returns. Raises EvictedError with the reason where it
-        must go.
+        """Serve one socket of a device until `receive` returns. Raises EvictedError with the
+        reason where it is disconnected.
         """
         if len(self._clients) >= CLIENTS_MAX:
             raise EvictedError(f"{CLIENTS_MAX} pages are open already; close one.")
@@ -257,7 +258,7 @@ class Hub:
                 raise outcome
 
     async def watch(self) -> None:
-        """End connections that have stopped reading, for ever."""
+        """Disconnect clients that have stopped reading; runs for ever."""
         while True:
             await asyncio.sleep(WATCH_SECONDS)
             limit = self._clock.now() - STALL_SECONDS

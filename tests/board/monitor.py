@@ -19,7 +19,7 @@ class Monitor:
         self._rig = rig
 
     def boot(self) -> int:
-        """Let it start; the reset cause as in MCUSR."""
+        """Start the board; returns the reset cause as in MCUSR."""
         self._rig.board.run(0.002)
         said = self._rig.port.read()
         assert len(said) == 2, said

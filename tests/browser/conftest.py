@@ -52,7 +52,7 @@ def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
 
 @pytest.fixture(scope="package")
 def cookies(browser: Browser, stack: Stack) -> StorageState:
-    """What an operator's browser keeps."""
+    """Cookies and storage of a signed-in operator."""
     context = browser.new_context()
     sign_in(context, stack.url, stack.data)
     kept = context.storage_state()
@@ -95,7 +95,7 @@ def open_page(browser: Browser, stack: Stack, cookies: StorageState, size: Viewp
 
 
 def put_to_rest(stack: Stack) -> None:
-    """Let the next test find the robot as this one did."""
+    """Bring the robot back to the state in which a test finds it."""
     stack.api.post("/comm-tests/cancel").raise_for_status()
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.post("/robot/commands/acknowledge").raise_for_status()

@@ -54,7 +54,7 @@ def fill(stack: Stack) -> None:
 
 
 def samples(stack: Stack, session: int) -> int:
-    """How many it holds."""
+    """Number of samples that a session holds."""
     return int(stack.api.get(f"/sessions/{session}").json()["samples"])
 
 

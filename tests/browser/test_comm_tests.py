@@ -21,7 +21,7 @@ Place = tuple[int, float, float]
 
 
 class Grid(NamedTuple):
-    """What is varied in a test."""
+    """Bauds and delays that a test varies."""
 
     bauds: tuple[int, ...]
     arduino_delays: tuple[float, ...]

@@ -82,7 +82,7 @@ def check_order(order: list[str]) -> None:
 
 
 def check_files(page: Page, folder: Path) -> None:
-    """What is shown can be saved as a picture."""
+    """Charts can be saved as pictures."""
     beginnings = {"PNG": b"\x89PNG\r\n", "SVG": b"<svg "}
     for name, beginning in beginnings.items():
         with page.expect_download() as download:

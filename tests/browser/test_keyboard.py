@@ -69,7 +69,7 @@ def test_escape_stops_and_leaves_a_sheet_open(page: Page) -> None:
 
 
 def click(button: Locator) -> None:
-    """What screen readers, switches and voice control send: a click without a pointer."""
+    """Click without a pointer, as screen readers, switches and voice control do."""
     button.evaluate("(one) => one.click()")
 
 

@@ -1,4 +1,4 @@
-"""What a figure or a field means is said to fingers and keys too, not to a resting mouse alone."""
+"""Meanings of figures and fields, by touch and keyboard as well as by a resting mouse."""
 
 from playwright.sync_api import Browser, Page, StorageState, expect
 

@@ -1,4 +1,4 @@
-"""Who may come in, and what they may do: links, roles, revocation."""
+"""People: links, roles, revocation."""
 
 import re
 

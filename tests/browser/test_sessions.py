@@ -1,4 +1,4 @@
-"""What people do with sessions: record, mark, rename, tag, search, delete, and take back."""
+"""Sessions: record, bookmark, rename, tag, search, delete, and undo."""
 
 import re
 

@@ -29,7 +29,7 @@ WITH_A_SERVER = ("run/access.md",)
 
 
 def run(commands: list[str], folder: Path) -> list[str]:
-    """What each command printed. `make` is only asked if it knows the target."""
+    """The output of each command. `make` is only asked if it knows the target."""
     printed = []
     for command in commands:
         name, *arguments = shlex.split(command)

@@ -62,7 +62,7 @@ class Swim(Flight):
         self.supervisor._heartbeat = HEARTBEAT
 
     def told(self, fault: str, since: float) -> float | None:
-        """When this fault's alarm was told, s; None where it was not since then."""
+        """Time of this fault's first alarm since then, s; None without one."""
         for event in self.events:
             if event.kind == fault and event.time >= since:
                 time: float = event.time

@@ -41,7 +41,7 @@ class Guard:
     """Entries of `guarded.list_guarded` that it covers."""
 
     def problem(self, root: Path) -> str:
-        """Why it cannot be taken away there; empty where it can."""
+        """The reason why the guard cannot be removed there; empty where it can."""
         path = root / self.file
         found = path.read_text(encoding="utf-8").count(self.guard) if path.is_file() else 0
         if found != 1:

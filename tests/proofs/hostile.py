@@ -56,7 +56,7 @@ class Field:
         self.words = Words(self.canary, self.secret, seed)
 
     def ask(self, method: str, path: str, body: object = None) -> requests.Response:
-        """What the server answers to JSON as Python writes it, NaN and all; never a 5xx, never the secret."""
+        """Send JSON as Python writes it, NaN included; never answered by a 5xx or the secret."""
         self.surface.take_control()
         data = None if body is None else json.dumps(body).encode()
         url = f"{self.surface.url}/api/{path}"
@@ -144,7 +144,7 @@ def check_document(field: Field) -> None:
 
 @entrance("place of a run")
 def start_run(field: Field) -> None:
-    """What is no test begins nothing."""
+    """An upload that is no test starts no run."""
     text = json.dumps([{"id": field.words.value(), "name": field.words.word()}])
     answer = field.ask("POST", "comm-tests/runs", {"text": text, "place": field.words.value()})
     assert answer.status_code == 422
@@ -180,7 +180,7 @@ def scenario_to_run(field: Field) -> None:
 
 @entrance("robot.toml")
 def configuration(field: Field) -> None:
-    """What of it reaches a command line is one argument there."""
+    """A value of the file that reaches a command line is one argument there."""
     words = field.words
     given = {
         "name": "turtle",
@@ -257,7 +257,7 @@ def stretch(field: Field) -> None:
 
 @entrance("report")
 def report(field: Field) -> None:
-    """What is compared is chosen among what there is."""
+    """The report is asked for hostile signals and bookmarks."""
     words = field.words
     query = (
         f"sessions=1&signals={escape(words.word())}&marker={escape(words.word())}&by={escape(words.word())}"

@@ -92,7 +92,7 @@ class Fins:
         return self._last(since, lambda one: one.powered)
 
     def silence(self, since: float) -> float:
-        """When the chip had received the last that was under way then (s, steady clock)."""
+        """Time at which the chip had received the last byte then under way (s, steady clock)."""
         seen = [one for one in self.seen if one.time >= since]
         for index, one in enumerate(seen):
             later = next((other for other in seen[index:] if other.board >= one.board + SILENCE), None)

@@ -78,7 +78,7 @@ class Board:
         return sum(heard == type_ for _, heard, _ in self.heard)
 
     def told(self, name: str) -> list[float]:
-        """What it was told of this parameter."""
+        """Values of this parameter that the board received."""
         packets = [
             Parameter.from_bytes(payload) for _, type_, payload in self.heard if type_ == Parameter.type
         ]

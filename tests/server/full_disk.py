@@ -88,7 +88,7 @@ async def record(data: DataFolder, config: Path) -> dict[str, Any]:
 
 
 def beside(data: DataFolder, runs: CommTestStore, run: int) -> list[Callable[[], Awaitable[object]]]:
-    """What else is stored: a communication test's next cell, a scenario, a backup."""
+    """Other writes to the disk: a communication test's next cell, a scenario, a backup."""
 
     async def keep() -> None:
         keep_scenario(data.scenarios, _shipped()["figure_14"].replace('"figure_14"', '"mine"', 1))

@@ -62,7 +62,7 @@ def fill_tables(database: sqlite3.Connection) -> None:
 
 
 def read_tables(database: sqlite3.Connection) -> dict[str, list[dict[str, Any]]]:
-    """What is in each table, but for Alembic's own."""
+    """The rows of each table, without Alembic's own."""
     tables = database.execute(
         "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite_%' "
         "AND name != 'alembic_version'"

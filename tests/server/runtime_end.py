@@ -73,7 +73,7 @@ class RuntimeEnd:
         self._messages.publish(STREAM, data)
 
     def is_heard(self, topic: str) -> bool:
-        """Whether anybody listens to a topic."""
+        """True where somebody subscribes to a topic."""
         return self._messages.watched(topic)
 
     def _pick(self, question: dict[str, Any]) -> Mapping[str, Any]:

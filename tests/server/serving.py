@@ -65,7 +65,7 @@ class Served:
                     await asyncio.sleep(0.005)
 
     async def take_control(self) -> None:
-        """Let the client have control, from now on."""
+        """Give the client control, from now on."""
         (await self.api.post("/control/take")).raise_for_status()
 
 
@@ -101,7 +101,7 @@ async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> 
 def play(
     settings: Settings, scenario: Callable[[Served], Awaitable[None]], *commands: ProcessCommand
 ) -> None:
-    """Let `scenario` be played with the server of these settings."""
+    """Run `scenario` with the server of these settings."""
 
     async def run() -> None:
         async with serve(settings, commands) as served:

@@ -27,7 +27,7 @@ def table(archive: zipfile.ZipFile, name: str) -> list[dict[str, str]]:
 
 @pytest.fixture(scope="module")
 def swum(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], zipfile.ZipFile]:
-    """What the robot told of a dive in the loop, through a poor network that was cut for a while."""
+    """Answers and session file of a dive in the loop, over a poor network that was cut for a while."""
     obstacle = available()
     if obstacle:
         pytest.skip(f"no two hosts on this computer: {obstacle}")

@@ -170,7 +170,7 @@ def expected(who: Who, least: Least, *, safe: bool, host: Where, origin: Where) 
 
 @dataclass
 class Somebody:
-    """Who asks, by what is sent with each request."""
+    """A requester, by the headers of each request."""
 
     headers: dict[str, str] = field(default_factory=dict)
 
@@ -292,11 +292,11 @@ class LiveSocket:
         self.to_server.put_nowait({"type": "websocket.connect"})
 
     async def receive(self) -> Message:
-        """What the server hears."""
+        """The next message to the server."""
         return await self.to_server.get()
 
     async def send(self, message: Message) -> None:
-        """What the server says."""
+        """Record a message of the server."""
         if message["type"] in ("websocket.accept", "websocket.close"):
             self.opened = self.opened or message["type"] == "websocket.accept"
         elif (text := message.get("text")) is not None:
@@ -355,7 +355,7 @@ async def place_things_to_ask_for(house: House) -> None:
 
 
 def routes() -> Iterator[tuple[str, str]]:
-    """What the application has, but for sockets."""
+    """Method and path of every route but the sockets'."""
     app = create_app(Settings(data=cast("Any", None), config=cast("Any", None)))
     for route in iter_route_contexts(app.routes):
         for method in getattr(route, "methods", None) or ():

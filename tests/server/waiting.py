@@ -10,7 +10,7 @@ SECONDS = 10.0
 
 
 async def until(condition: Callable[[], object], what: str, seconds: float = SECONDS) -> None:
-    """Let the event loop run until the condition holds. Fails with `what` when it never does."""
+    """Wait in the event loop until the condition holds. Fails with `what` when it never does."""
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end, f"waited {seconds:g} s in vain for {what}"
@@ -18,7 +18,7 @@ async def until(condition: Callable[[], object], what: str, seconds: float = SEC
 
 
 def alive(pid: int) -> bool:
-    """Whether a process runs; one that has ended and was not buried yet does not."""
+    """True while a process runs; one that has ended and was not reaped yet does not."""
     try:
         return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
     except psutil.NoSuchProcess:

@@ -101,7 +101,7 @@ export const ROW_TOPICS = {
     meaning: 'fins: set points, angles, drives',
     fields: [
       { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
-      { name: 'wanted', code: 'h', offset: 12, count: 4, scale: 0.001, unit: 'rad', meaning: 'wanted fin angle' },
+      { name: 'wanted', code: 'h', offset: 12, count: 4, scale: 0.001, unit: 'rad', meaning: 'commanded fin angle' },
       { name: 'angle', code: 'h', offset: 20, count: 4, scale: 0.001, unit: 'rad', meaning: 'measured fin angle' },
       { name: 'drive', code: 'b', offset: 28, count: 4, scale: 1, unit: '', meaning: 'H-bridge command, -63 to 63' },
     ],
@@ -113,17 +113,17 @@ export const ROW_TOPICS = {
     meaning: 'the board\'s state and health',
     fields: [
       { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
-      { name: 'epoch', code: 'H', offset: 12, count: 1, scale: 1, unit: '', meaning: 'this boot of the board' },
+      { name: 'epoch', code: 'H', offset: 12, count: 1, scale: 1, unit: '', meaning: 'epoch of the board\'s boot' },
       { name: 'flags', code: 'B', offset: 14, count: 1, scale: 1, unit: '', meaning: 'see StatusFlag' },
       { name: 'faults', code: 'B', offset: 15, count: 1, scale: 1, unit: '', meaning: 'see SensorFault' },
       { name: 'reset_cause', code: 'B', offset: 16, count: 1, scale: 1, unit: '', meaning: 'see ResetCause' },
-      { name: 'battery', code: 'H', offset: 17, count: 1, scale: 0.001, unit: 'V', meaning: 'battery' },
+      { name: 'battery', code: 'H', offset: 17, count: 1, scale: 0.001, unit: 'V', meaning: 'battery voltage' },
       { name: 'loop_worst', code: 'H', offset: 19, count: 1, scale: 1, unit: 'µs', meaning: 'longest pass of the main loop since the last status' },
       { name: 'missed_ticks', code: 'H', offset: 21, count: 1, scale: 1, unit: '', meaning: 'passes of the main loop missed since the start' },
-      { name: 'frames_invalid', code: 'H', offset: 23, count: 1, scale: 1, unit: '', meaning: 'frames thrown away since the start' },
-      { name: 'bytes_lost', code: 'H', offset: 25, count: 1, scale: 1, unit: '', meaning: 'received bytes lost for want of room since the start' },
-      { name: 'debug_lost', code: 'H', offset: 27, count: 1, scale: 1, unit: '', meaning: 'debug lines lost for want of room since the start' },
-      { name: 'stack_free', code: 'H', offset: 29, count: 1, scale: 1, unit: 'B', meaning: 'memory that the stack never touched' },
+      { name: 'frames_invalid', code: 'H', offset: 23, count: 1, scale: 1, unit: '', meaning: 'invalid frames dropped since the start' },
+      { name: 'bytes_lost', code: 'H', offset: 25, count: 1, scale: 1, unit: '', meaning: 'received bytes lost to a full buffer since the start' },
+      { name: 'debug_lost', code: 'H', offset: 27, count: 1, scale: 1, unit: '', meaning: 'debug lines lost to a full buffer since the start' },
+      { name: 'stack_free', code: 'H', offset: 29, count: 1, scale: 1, unit: 'B', meaning: 'memory that the stack has never used' },
     ],
   },
   navigation: {
@@ -246,7 +246,7 @@ export interface MotorRow {
   time: number;
   /** µs, the board's own clock, which wraps after 71 minutes */
   board_time: number;
-  /** rad, wanted fin angle */
+  /** rad, commanded fin angle */
   wanted: number[];
   /** rad, measured fin angle */
   angle: number[];
@@ -259,7 +259,7 @@ export interface StatusRow {
   time: number;
   /** µs, the board's own clock, which wraps after 71 minutes */
   board_time: number;
-  /** this boot of the board */
+  /** epoch of the board's boot */
   epoch: number;
   /** see StatusFlag */
   flags: number;
@@ -267,19 +267,19 @@ export interface StatusRow {
   faults: number;
   /** see ResetCause */
   reset_cause: number;
-  /** V, battery */
+  /** V, battery voltage */
   battery: number;
   /** µs, longest pass of the main loop since the last status */
   loop_worst: number;
   /** passes of the main loop missed since the start */
   missed_ticks: number;
-  /** frames thrown away since the start */
+  /** invalid frames dropped since the start */
   frames_invalid: number;
-  /** received bytes lost for want of room since the start */
+  /** received bytes lost to a full buffer since the start */
   bytes_lost: number;
-  /** debug lines lost for want of room since the start */
+  /** debug lines lost to a full buffer since the start */
   debug_lost: number;
-  /** B, memory that the stack never touched */
+  /** B, memory that the stack has never used */
   stack_free: number;
 }
 

@@ -1,7 +1,7 @@
-"""The packets between Raspberry Pi and Arduino. `make generate` writes everything else from this file.
+"""The packets of the serial link. `make generate` writes the firmware's and the documentation's copy of them.
 
 The first eight types keep the numbers of the thesis's Table 3. Body axes are forward, right, down; the world
-is north, east, down, with north wherever the robot looked when the board started. Fin order: front right,
+is north, east, down, where north is the robot's heading at the board's start. Fin order: front right,
 back right, back left, front left. A fin's angle is 0 where its tip lies along its mount (outwards and aft for
 the front fins, outwards and forward for the back fins) and grows as the tip goes down.
 """
@@ -16,10 +16,10 @@ from robot_runtime.contract.packets.layout import LayoutError, Record, Text, Wir
 
 FIN_COUNT = 4
 FRAME_BYTES_MAX = 64
-"""Bytes of a whole frame on the line: its overhead, its messages and the closing zero."""
+"""Bytes of a whole frame on the serial line: overhead, messages and the closing zero."""
 
 NOT_READY = 0x80
-"""In ACKNOWLEDGE, beside the bits of what is held: the sender has no room for the next reliable frame."""
+"""In ACKNOWLEDGE, beside the bits of held frames: the sender has no room for the next reliable frame."""
 
 Micros = Annotated[int, Wire("I", unit="µs", meaning="the board's own clock, which wraps after 71 minutes")]
 Fins = tuple[float, float, float, float]
@@ -48,7 +48,7 @@ class StatusFlag(IntFlag):
 
 
 class SensorFault(IntFlag):
-    """Devices that did not answer, or answered nonsense, when last asked; one bit each."""
+    """Devices whose last reading failed or was invalid; one bit each."""
 
     IMU = 1
     PRESSURE = 2
@@ -59,7 +59,7 @@ class SensorFault(IntFlag):
 
 
 class ResetCause(IntEnum):
-    """Why the board started."""
+    """Cause of the board's last start."""
 
     UNKNOWN = 0
     POWER_ON = 1
@@ -72,16 +72,16 @@ ENUMERATIONS: tuple[type[IntEnum] | type[IntFlag], ...] = (DebugLevel, StatusFla
 
 
 class TelemetryRate(NamedTuple):
-    """Packets that the board sends by itself in ten slots of its schedule, or on a slow line in three."""
+    """Packets per ten slots of the board's schedule, and per three slots on a slow line."""
 
     in_ten: int
     in_three: int
 
 
 class Packet(Record):
-    """Base of everything on the line: a record with a type number.
+    """Base of all packets: a record with a type number.
 
-    A reliable packet is repeated until it is acknowledged; of the others the next one is worth more.
+    A reliable packet is sent again until it is acknowledged; any other is superseded by the next one.
     """
 
     __slots__ = ()
@@ -111,19 +111,19 @@ def _packet(
 
 @_packet(0x00)
 class Stop(Packet):
-    """Host to board: disarm at once. Accepted always, from anybody, as often as it comes."""
+    """Host to board: disarm at once. Always accepted, also outside a session and repeatedly."""
 
 
 @_packet(0x01, reliable=True)
 class Start(Packet):
     """Host to board: arm. Refused unless the epoch is this boot's and valid traffic came for 500 ms."""
 
-    epoch: Annotated[int, Wire("H", meaning="the boot that is meant, from the board's Hello; 0: none, void")]
+    epoch: Annotated[int, Wire("H", meaning="epoch of the addressed boot, from the board's Hello; 0: none")]
 
 
 @_packet(0x02)
 class Navigation(Packet):
-    """Host to board: the wanted force and torque, each as a share of the most. Expires after 500 ms."""
+    """Host to board: the commanded force and torque, each as a share of the maximum. Expires after 500 ms."""
 
     x: Annotated[float, Wire("b", scale=1 / 127, meaning="forwards")]
     y: Annotated[float, Wire("b", scale=1 / 127, meaning="to the right")]
@@ -164,7 +164,7 @@ class Depth(Packet):
 
 @_packet(0x05, telemetry=TelemetryRate(1, 1))
 class Beacon(Packet):
-    """Board to host, 10 Hz: which light-beacon detectors hear their tone."""
+    """Board to host, 10 Hz: the light-beacon detectors."""
 
     time: Micros
     right: Annotated[int, Wire("B", meaning="1 while the right detector sees the beacon")]
@@ -173,10 +173,10 @@ class Beacon(Packet):
 
 @_packet(0x06, telemetry=TelemetryRate(5, 1))
 class Motor(Packet):
-    """Board to host, 50 Hz: the four fins, wanted and measured, and what drives them."""
+    """Board to host, 50 Hz: commanded and measured angles of the four fins, and the H-bridge commands."""
 
     time: Micros
-    wanted: Annotated[Fins, Wire("h", scale=0.001, unit="rad", count=4, meaning="wanted fin angle")]
+    wanted: Annotated[Fins, Wire("h", scale=0.001, unit="rad", count=4, meaning="commanded fin angle")]
     angle: Annotated[Fins, Wire("h", scale=0.001, unit="rad", count=4, meaning="measured fin angle")]
     drive: Annotated[Fins, Wire("b", count=4, meaning="H-bridge command, -63 to 63")]
 
@@ -192,79 +192,79 @@ class Debug(Packet):
 
 @_packet(0x0A)
 class Hello(Packet):
-    """Both ways: who speaks. The board answers each Hello with its own, and says one when it starts."""
+    """Both ways: identifies the sender. The board answers each Hello, and sends one at its start."""
 
     definitions: Annotated[int, Wire("I", meaning="hash of the packet definitions")]
-    epoch: Annotated[int, Wire("H", meaning="this boot of the board, or this run of the host")]
-    credit: Annotated[int, Wire("H", unit="B", meaning="bytes that the sender can take in at once")]
+    epoch: Annotated[int, Wire("H", meaning="epoch of the board's boot or of the host's run")]
+    credit: Annotated[int, Wire("H", unit="B", meaning="bytes that the sender can receive at once")]
 
 
 @_packet(0x0B, telemetry=TelemetryRate(1, 1))
 class Status(Packet):
-    """Board to host, 10 Hz: its state and its health."""
+    """Board to host, 10 Hz: the board's state and health."""
 
     time: Micros
-    epoch: Annotated[int, Wire("H", meaning="this boot of the board")]
+    epoch: Annotated[int, Wire("H", meaning="epoch of the board's boot")]
     flags: Annotated[int, Wire("B", meaning="see StatusFlag")]
     faults: Annotated[int, Wire("B", meaning="see SensorFault")]
     reset_cause: Annotated[int, Wire("B", meaning="see ResetCause")]
-    battery: Annotated[float, Wire("H", scale=0.001, unit="V", meaning="battery")]
+    battery: Annotated[float, Wire("H", scale=0.001, unit="V", meaning="battery voltage")]
     loop_worst: Annotated[
         int, Wire("H", unit="µs", meaning="longest pass of the main loop since the last status")
     ]
     missed_ticks: Annotated[int, Wire("H", meaning="passes of the main loop missed since the start")]
-    frames_invalid: Annotated[int, Wire("H", meaning="frames thrown away since the start")]
-    bytes_lost: Annotated[int, Wire("H", meaning="received bytes lost for want of room since the start")]
-    debug_lost: Annotated[int, Wire("H", meaning="debug lines lost for want of room since the start")]
-    stack_free: Annotated[int, Wire("H", unit="B", meaning="memory that the stack never touched")]
+    frames_invalid: Annotated[int, Wire("H", meaning="invalid frames dropped since the start")]
+    bytes_lost: Annotated[int, Wire("H", meaning="received bytes lost to a full buffer since the start")]
+    debug_lost: Annotated[int, Wire("H", meaning="debug lines lost to a full buffer since the start")]
+    stack_free: Annotated[int, Wire("H", unit="B", meaning="memory that the stack has never used")]
 
 
 @_packet(0x0C)
 class Heartbeat(Packet):
-    """Host to board, 10 Hz: somebody is there."""
+    """Host to board, 10 Hz: the host is alive."""
 
-    time: Annotated[int, Wire("I", unit="ms", meaning="the host's clock, for the log alone")]
+    time: Annotated[int, Wire("I", unit="ms", meaning="the host's clock, for logs only")]
 
 
 @_packet(0x0D)
 class Acknowledge(Packet):
-    """Both ways: which reliable frames came after the first that is missing."""
+    """Both ways: the reliable frames received after the first missing one."""
 
-    held: Annotated[int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here; bit 7: no room, wait")]
+    held: Annotated[int, Wire("B", meaning="bit n: frame acknowledged + 1 + n was received; bit 7: no room")]
 
 
-# The communication test: the messages of the thesis's Table 4, whose numbers are taken here.
+# The communication test: the messages of the thesis's Table 4, with other type numbers.
 
 
 @_packet(0x0E, reliable=True)
 class TestMsg(Packet):
-    """Both ways, in the communication test alone: a number."""
+    """Both ways, only in the communication test: a number."""
 
     number: Annotated[int, Wire("H")]
 
 
 @_packet(0x0F, reliable=True)
 class RequestResult(Packet):
-    """Host to board, in the communication test alone: asks what has come."""
+    """Host to board, only in the communication test: asks for the result."""
 
 
 @_packet(0x10, reliable=True)
 class TestResult(Packet):
-    """Board to host, in the communication test alone: what has come."""
+    """Board to host, only in the communication test: counts of received numbers and frames."""
 
-    right: Annotated[int, Wire("H", meaning="numbers of the test, each above all right ones before it")]
+    right: Annotated[int, Wire("H", meaning="numbers of the test in ascending order")]
     out_of_sequence: Annotated[int, Wire("H", meaning="other numbers")]
-    frames_invalid: Annotated[int, Wire("H", meaning="frames thrown away")]
+    frames_invalid: Annotated[int, Wire("H", meaning="invalid frames dropped")]
     frames_repeated: Annotated[int, Wire("H", meaning="reliable frames sent again")]
-    bytes_lost: Annotated[int, Wire("H", meaning="received bytes lost for want of room")]
+    bytes_lost: Annotated[int, Wire("H", meaning="received bytes lost to a full buffer")]
 
 
-# Hardware in the loop: a board without sensors and motors of its own is told by a simulator.
+# Hardware in the loop: a board without sensors and motors gets its readings from a simulator.
 
 
 @_packet(0x11)
 class Sense(Packet):
-    """Host to board, in the loop with a simulator alone: what its sensors would show; the newest counts."""
+    """Host to board, only with hardware in the loop: simulated sensor readings; the newest counts."""
 
     pressure: Annotated[int, Wire("I", unit="Pa", meaning="absolute pressure")]
     temperature: Annotated[float, Wire("h", scale=0.01, unit="°C", meaning="temperature of the water")]
@@ -278,17 +278,17 @@ class Sense(Packet):
     ]
     right: Annotated[int, Wire("B", meaning="1 while the right detector sees the beacon")]
     left: Annotated[int, Wire("B", meaning="1 while the left detector sees the beacon")]
-    battery: Annotated[float, Wire("H", scale=0.001, unit="V", meaning="battery")]
+    battery: Annotated[float, Wire("H", scale=0.001, unit="V", meaning="battery voltage")]
 
 
-# What may be tuned while the board runs.
+# Parameters of the running board.
 
 
 @_packet(0x12, reliable=True)
 class Parameter(Packet):
-    """Host to board: a value to take. Board to host, in answer: the value in force, taken or not."""
+    """Host to board: a new value of a parameter. Board to host, in answer: the value in force."""
 
-    number: Annotated[int, Wire("B", meaning="place in CHIP_PARAMETERS")]
+    number: Annotated[int, Wire("B", meaning="index in CHIP_PARAMETERS")]
     value: Annotated[float, Wire("H", scale=0.001, meaning="in the parameter's own unit")]
 
 
@@ -306,7 +306,7 @@ def decode(type_: int, payload: bytes | memoryview) -> Packet:
 
 
 def canonical() -> str:
-    """Everything that both sides must agree on, as text; its hash is what they compare."""
+    """The definitions that both ends must share, as text; they compare its hash."""
     lines = [f"fins {FIN_COUNT} frame {FRAME_BYTES_MAX} not_ready {NOT_READY}"]
     for type_, cls in sorted(PACKETS.items()):
         fields = [

@@ -68,7 +68,7 @@ class TargetBall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
-    """Where it happens: a pool with walls, or natural water without; lengths in m."""
+    """The surroundings: a pool with walls, or natural water without; lengths in m."""
 
     kind: Literal["pool", "natural"]
     depth: float

@@ -84,7 +84,7 @@ class Trim:
 
 @dataclass(frozen=True, slots=True)
 class StartPose:
-    """Where the hull is at time 0, at rest. Raises ValueError beyond its limits."""
+    """Pose of the hull at time 0, at rest. Raises ValueError beyond its limits."""
 
     north: float = 0.0
     east: float = 0.0

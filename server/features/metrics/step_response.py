@@ -89,7 +89,7 @@ def measure_step(
 
 
 def _crossing(times: np.ndarray, share: np.ndarray, level: float) -> float | None:
-    """When the level is first reached, between samples by interpolation."""
+    """Time of the first crossing of the level, interpolated between samples; None without one."""
     above = np.flatnonzero(share >= level)
     if not above.size:
         return None

@@ -14,7 +14,7 @@ MESSAGES = 20_000
 
 
 class Layout:
-    """How long a payload is, as far as the decoder needs it."""
+    """Size of a payload, all that the decoder needs of its layout."""
 
     def __init__(self, size: int) -> None:
         self.size = size
@@ -79,14 +79,14 @@ class Wire:
         self._arrivals.append((arrival, self._flip(frame)))
 
     def receive(self, now: float) -> bytes:
-        """What has arrived by now."""
+        """The bytes that have arrived by now."""
         data = b""
         while self._arrivals and self._arrivals[0][0] <= now:
             data += self._arrivals.pop(0)[1]
         return data
 
     def due(self) -> float:
-        """When the next bytes arrive."""
+        """Time at which the next bytes arrive."""
         return self._arrivals[0][0] if self._arrivals else float("inf")
 
     def _flip(self, frame: bytes) -> bytes:
@@ -129,7 +129,7 @@ class Line:
         self.wires = (Wire(baud, noise, chance), Wire(baud, noise, chance))
 
     def run(self, until: float) -> None:
-        """Let time pass."""
+        """Run both ends up to this time."""
         while self.now < until:
             for end, out, into in zip(self.ends, self.wires, reversed(self.wires), strict=True):
                 end.take(into.receive(self.now), self.now)

@@ -42,7 +42,7 @@ class World:
 
     @property
     def joined(self) -> bool:
-        """Whether both know of each other, so that what is sent now must arrive."""
+        """True where both ends have joined, so that a frame sent now must arrive."""
         board = self.session.board
         established = self.session.stage is SessionStage.ESTABLISHED
         return established and board is not None and board.epoch == self._board_epoch and self.board.joined
@@ -88,7 +88,7 @@ class World:
             self._to_board.send(self.session.poll(self.now), self.now)
 
     def settle(self) -> None:
-        """Let the line be good until all that is owed has come, but no longer than 3 s."""
+        """Run 3 s without noise, and check that everything owed has arrived."""
         self._set_line(Noise())
         self.run(3.0)
         assert self.joined

@@ -1,4 +1,4 @@
-"""How often telemetry comes; tests/board/test_speeds.py lays this beside the firmware."""
+"""Rates of telemetry by baud; tests/board/test_speeds.py compares them with the firmware."""
 
 import pytest
 

@@ -14,7 +14,7 @@ from robot_runtime.vision.picture import Picture
 
 
 class Found(NamedTuple):
-    """What counts in a picture."""
+    """A detection: colour, box and area."""
 
     colour: str
     box: Box
@@ -24,7 +24,7 @@ class Found(NamedTuple):
 def find(
     picture: Picture, wanted: str, area_min: float = 0.01, colours: Mapping[str, ColourRange] = COLOURS
 ) -> Found | None:
-    """What the detector finds when it looks for this colour first."""
+    """Run the detector with this colour first; None where it finds nothing."""
     settings = VisionSettings(colour=wanted, colours=dict(colours), area_min=area_min)
     sight = Detector(settings).search(picture)
     if sight.patch is None:

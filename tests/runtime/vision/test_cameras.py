@@ -87,7 +87,7 @@ def video(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
 
 def shown(camera: Camera) -> int:
-    """Which of the video's pictures this is."""
+    """Number of the video's picture that the camera returns now."""
     return round(float(camera.read().picture.mean()) / 20)
 
 
@@ -150,7 +150,7 @@ class TestFileCamera:
 
 
 class StandIn:
-    """What PiCamera uses of picamera2.Picamera2."""
+    """Stands in for picamera2.Picamera2, as far as PiCamera uses it."""
 
     made: "list[StandIn]"
     picture: Picture

@@ -1,4 +1,4 @@
-"""When pictures are due, in simulated time."""
+"""Times at which pictures are due, in simulated time."""
 
 import math
 
@@ -11,7 +11,7 @@ from robot_runtime.vision.node import RateTimer
 def count(
     pace: RateTimer, clock: SimulatedClock, seconds: float, step: float = 0.001, costs: float = 0.0
 ) -> int:
-    """How many are due in this time, when each takes `costs` seconds."""
+    """Number of pictures due in this time, when each takes `costs` seconds."""
     done, end = 0, clock.now() + seconds
     while clock.now() < end - 1e-9:
         if pace.remaining() <= 0:

@@ -34,7 +34,7 @@ class AlarmRig(MonitorRig):
         )
 
     def spend(self, seconds: float, **said: Any) -> None:
-        """Let time pass; `said` is called with each step's number."""
+        """Advance the clock; each callable of `said` gets every step's number."""
         end = self.clock.now() + seconds
         while self.clock.now() < end:
             self.clock.forward(PERIOD)

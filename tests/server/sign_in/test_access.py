@@ -19,7 +19,7 @@ from tests.server.waiting import until
 
 
 async def closing_of(socket: ClientConnection) -> tuple[int, str]:
-    """How the server closes a socket: code and reason."""
+    """Code and reason with which the server closes a socket."""
     async with asyncio.timeout(10):
         with suppress(ConnectionClosed):
             async for _ in socket:

@@ -33,7 +33,7 @@ async def answers(served: Served) -> list[tuple[int, str]]:
 
 
 def says(served: Served, armed: bool) -> bool:
-    """Whether the newest state says so."""
+    """True where the newest state has this value of `armed`."""
     state = served.container.monitor.state()
     return state is not None and state["armed"] is armed
 

@@ -68,7 +68,7 @@ class SigningIn(RuleBasedStateMachine):
         self.start()
 
     def start(self) -> None:
-        """What a server does: it knows who was paired, and no codes."""
+        """Start as a server does: it knows the paired devices, and no codes."""
         self.store = Store(self.settings.data.database)
         self.access = Access(
             self.settings,
@@ -111,7 +111,7 @@ class SigningIn(RuleBasedStateMachine):
         return [code for code in self.made if not code.void and self.clock.now() < code.until]
 
     def waits(self) -> bool:
-        """Whether too many wrong codes have been tried."""
+        """True while too many wrong codes have been tried."""
         now = self.clock.now()
         recent = [now - time for time in self.wrong]
         return sum(age < 60.0 for age in recent) >= 3 or sum(age < 3600.0 for age in recent) >= 10

@@ -1,4 +1,4 @@
-"""What the server does with holes. The kept blocks come from real caches."""
+"""Gaps in the stream, filled from real caches."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping

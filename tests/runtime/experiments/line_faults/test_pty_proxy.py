@@ -33,7 +33,7 @@ LOOK = 0.05
 
 
 def is_part(part: bytes, whole: bytes) -> bool:
-    """Whether `part` is `whole` with some bytes left out."""
+    """True where `part` is `whole` with some bytes left out."""
     rest = iter(whole)
     return all(byte in rest for byte in part)
 

@@ -52,7 +52,7 @@ class Told:
         return [document["text"] for document in self.documents.get(topic, [])]
 
     def time_of(self, topic: str, words: str) -> float:
-        """When the first document of this topic with these words came, s."""
+        """Time of the first document of this topic with these words, s."""
         return float(next(one["time"] for one in self.documents[topic] if words in one["text"]))
 
     @property
@@ -62,7 +62,7 @@ class Told:
 
     @property
     def ended(self) -> dict[str, Any]:
-        """How it ended."""
+        """The event that ended it."""
         assert self.events[-1]["event"] == "ended"
         return self.events[-1]
 

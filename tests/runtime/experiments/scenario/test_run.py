@@ -44,7 +44,7 @@ def read_messages(data: bytes) -> Iterator[tuple[int, bytes]]:
 
 
 def read_events(data: bytes) -> list[dict[str, Any]]:
-    """What was told beside blocks."""
+    """The events beside the blocks."""
     return [json.loads(message) for kind, message in read_messages(data) if kind == 0]
 
 

@@ -36,7 +36,7 @@ class Rig:
         self._decoder = Decoder()
 
     def run(self, seconds: float) -> dict[int, list[bytes]]:
-        """What the board said meanwhile, by type."""
+        """Run for this time; returns the board's messages by type."""
         said: dict[int, list[bytes]] = {}
         for frame in self._decoder.feed(self.board.run(round(seconds / PERIOD))):
             for type_, payload in frame.messages:

@@ -1,4 +1,4 @@
-"""Where the robot is, in degrees, for pictures to look at."""
+"""Poses of the robot, in degrees, for rendered pictures."""
 
 from math import cos, radians, sin
 

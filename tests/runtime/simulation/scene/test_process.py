@@ -233,7 +233,7 @@ def wait_until(condition: Callable[[], bool]) -> None:
 
 
 def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: VisionConfig) -> list[Event]:
-    """Let a vision node look through the camera "scene" until something holds; what it told."""
+    """Run a vision node on the camera "scene" until the condition holds; returns its events."""
     events: list[Event] = []
     found: list[Detection] = []
     vision = VisionNode(

@@ -1,4 +1,4 @@
-"""What the camera sees, from where it is and through how much water."""
+"""The rendered picture, by position and water."""
 
 from dataclasses import asdict
 from itertools import product

@@ -91,7 +91,7 @@ class Flapping:
         return a, b, c, d
 
     def swim(self, body: Body, seconds: float, duration: float = 0.002, start: float = 0.0) -> BodyState:
-        """Let the body swim; the state after it."""
+        """Move the body through the water; returns the state after it."""
         for index in range(round(seconds / duration)):
             before, after = self.at(start + index * duration), self.at(start + (index + 1) * duration)
             a, b, c, d = ((late - early) / duration for early, late in zip(before, after, strict=True))

@@ -1,4 +1,4 @@
-"""What the running water may be asked for: what it does, and what it refuses."""
+"""Requests to the running water: their effects and refusals."""
 
 from collections.abc import Callable
 from math import isnan, pi

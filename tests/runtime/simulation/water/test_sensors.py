@@ -1,4 +1,4 @@
-"""What the sensors show of a known motion."""
+"""Sensor readings of a known motion."""
 
 from dataclasses import replace
 from math import cos, pi, sin

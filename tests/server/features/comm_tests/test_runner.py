@@ -59,7 +59,7 @@ async def start(served: Served, *tests: dict[str, Any]) -> int:
 
 
 async def news_until(socket: ClientConnection, *, cell: int | None = None) -> list[dict[str, Any]]:
-    """What is told of the tests up to this cell, or until nothing runs any longer."""
+    """Messages about the tests up to this cell, or until nothing runs any longer."""
     told: list[dict[str, Any]] = []
     async with asyncio.timeout(90):
         while True:

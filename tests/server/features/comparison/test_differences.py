@@ -1,4 +1,4 @@
-"""What was different about sessions: the parameters that were in force while armed."""
+"""Differences between sessions: the parameters in force while armed."""
 
 from server.features.comparison.differences import CHANGED, find_differences
 from server.features.comparison.moments import ControlHistory, ParameterValues, Span

@@ -211,7 +211,7 @@ def test_mcap_has_schemas_that_foxglove_can_read(store: Store, session: int) -> 
 
 
 def _look_at(schema: dict[str, Any]) -> None:
-    """What Foxglove's parser of JSON Schema takes, and no more."""
+    """Check that a schema stays within the subset that Foxglove's parser reads."""
     if "oneOf" in schema:
         assert all(isinstance(one["const"], int) for one in schema["oneOf"])
         return

@@ -73,7 +73,7 @@ class Driver:
 
 
 def commands(blocks: bytes, since: float) -> list[tuple[float, Navigation]]:
-    """What the runtime sent to the board after that, and when (s, steady clock)."""
+    """Commands that the runtime sent to the board after that, with their times (s, steady clock)."""
     topic = BY_NAME["navigation"]
     rows = [
         block.payload[place : place + topic.row_bytes]

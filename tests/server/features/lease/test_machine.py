@@ -50,7 +50,7 @@ class Contest(RuleBasedStateMachine):
         self.write(change, client, holder)
 
     def alive(self, client: ControlClient) -> bool:
-        """Whether requests of this client still name it; a program's lasts on by that."""
+        """True while requests of this client still name it; a program's requests extend its lease."""
         key = client.key or None
         return self.arbiter.clients.find(client.identity, key) is client
 
@@ -118,7 +118,7 @@ class Contest(RuleBasedStateMachine):
 
     @rule(device=st.integers(0, PEOPLE - 1), role=st.sampled_from(["viewer", "operator"]))
     def change_role(self, device: int, role: Role) -> None:
-        """Which ends everything that it had before, as a sign-out does."""
+        """A changed role dismisses the device's clients, as a sign-out does."""
         self.roles[device] = role
         for one in (device, PROGRAMS + device):
             self.arbiter.dismiss(one)

@@ -1,4 +1,4 @@
-"""What the server prints when it starts, and to whom it opens the door by that."""
+"""The server's greeting at its start, and the links in it."""
 
 import asyncio
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What a scenario sets up on water, line and robot, and that all of it is put back."""
+"""A scenario's set-up of water, line and robot, and its undoing."""
 
 import asyncio
 import tempfile

@@ -109,7 +109,7 @@ def begin_long(stack: Stack) -> None:
 
 
 def simulator_answers(stack: Stack) -> bool:
-    """Whether it does; its process runs, and is well, a moment before."""
+    """True where the simulator answers; its process was running a moment before."""
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
     with ZenohTransport("turtle", connect=[runtime], client=True) as messages, suppress(NoAnswerError):
         messages.query("simulator/surroundings", {})
@@ -118,7 +118,7 @@ def simulator_answers(stack: Stack) -> bool:
 
 
 def settings_of(stack: Stack) -> dict[str, Any]:
-    """What a scenario may change of the robot."""
+    """The robot's settings that a scenario may change."""
     names = ["loops", "set_point_default", "set_point_detected", "vision_rate"]
     found = robot(stack)
     return {name: found[name] for name in [*names, "vision_colour", "card", "armed"]}

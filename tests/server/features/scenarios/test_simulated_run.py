@@ -42,7 +42,7 @@ Work = Callable[[ScenarioRunner], Awaitable[None]]
 
 
 def perform(settings: Settings, store: Store, work: Work) -> list[ScenarioState]:
-    """What was told while `work` used the runs of a server without a robot."""
+    """Run `work` on the runs of a server without a robot; returns the published states."""
     told: list[ScenarioState] = []
 
     async def whole() -> None:
