@@ -113,7 +113,7 @@ faults: setup-test host-firmware ## inject every fault a hundred times, and meas
 chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
 	@nice $(PYTHON) -m tests.proofs.chaos $(CHAOS_SECONDS)
 
-firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
+firmware: build/.packages-run ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
 	@$(MAKE) --silent -C firmware robot
 	@python3 -m robot_runtime.simulation.boards.firmware
@@ -124,8 +124,7 @@ firmware: ## compile the firmware for the baud of robot.toml, the boot loader an
 host-firmware:
 	@$(MAKE) --silent -C firmware host hang
 
-setup: build/.packages-run .venv/.ready server/page/index.html server/help/index.html
-	@$(MAKE) --no-print-directory firmware
+setup: build/.packages-run .venv/.ready server/page/index.html server/help/index.html firmware
 
 setup-test: build/.packages-test setup
 
