@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from robot_runtime.contract.limits import SET_POINT, ConfigError, Range
 from robot_runtime.contract.parsing import parse
+from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.vision_settings import VisionSettings
 
 HIL_BAUD_MIN = 115_200
@@ -139,4 +140,4 @@ def load(path: Path) -> Config:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
         raise ConfigError(f"{path} cannot be read: {problem}") from problem
-    return parse(Config, table, path.name)
+    return parse(Config, table, DocumentEntry(path.name))

@@ -26,6 +26,7 @@ export type ExportFormat = Schemas['ExportOptions']['format'];
 export type NewExport = Pick<Schemas['NewExport'], 'session' | 'format'> & Partial<Schemas['NewExport']>;
 export type CommTestDocument = Schemas['TestDocument'];
 export type CommTestCheck = Schemas['Check'];
+export type EntryProblem = Schemas['EntryProblem'];
 export type CommTestPlace = Schemas['CommTestStart']['place'];
 export type CommTestSummary = Schemas['RunSummary'];
 export type CommTestRun = Schemas['CommTestRunDetails'];

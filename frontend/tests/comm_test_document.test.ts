@@ -1,17 +1,21 @@
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
+import type { EntryProblem } from '../src/api';
 import {
   change,
   changeFault,
+  countProblems,
   faultText,
   faultWords,
   listText,
   numberFields,
   numbersOf,
   problemsByField,
+  problemsOfAll,
   readDocument,
   readList,
   readNumber,
+  sentences,
   writeDocument,
   type Fields,
 } from '../src/pages/comm_tests/document';
@@ -97,23 +101,34 @@ describe('the form', () => {
 });
 
 describe('problems', () => {
+  const problems: readonly EntryProblem[] = [
+    problem([0, 'delay', 1], 'is -1; it must lie between 0 and 10'),
+    problem([0, 'expected'], 'is 5; it must be 2'),
+    problem([0, 'faults', 'bit_errors'], 'is 2; it must lie between 0 and 0.1'),
+    problem([0, 'faults', 'stall', 1], 'is 9; it must be above 0 and below the period, 1 s'),
+    problem([0], 'it must be an object in braces'),
+    problem([11, 'name'], 'is missing'),
+    problem([], 'the document has 600 cells; at most 500 can be run at once'),
+  ];
+
   it('stand with their fields', () => {
-    const problems = [
-      'test 1: delay[1] is -1; it must lie between 0 and 10',
-      'test 1: expected is 5; it must be 2, the count of numbers from from_val, 1, up to, and without, to_val, 3',
-      'test 1: faults: bit_errors is 2; it must lie between 0 and 0.1',
-      'test 1: faults: stall[1] is 9; it must be above 0 and below the period, 1 s',
-      'test 1: it must be an object in braces',
-      'test 12: name is missing',
-      'the document has 600 cells; at most 500 can be run at once',
-    ];
     const first = problemsByField(problems, 0);
+    const said = (field: string) => sentences(first.get(field) ?? []);
     expect([...first.keys()]).toEqual(['delay', 'expected', 'faults.bit_errors', 'faults.stall', '']);
-    expect(first.get('faults.bit_errors')).toEqual(['It is 2; it must lie between 0 and 0.1']);
-    expect(first.get('faults.stall')).toEqual(['Entry 2 is 9; it must be above 0 and below the period, 1 s']);
-    expect(first.get('delay')).toEqual(['Entry 2 is -1; it must lie between 0 and 10']);
-    expect(first.get('expected')?.[0]).toContain('from from_val, 1');
+    expect(said('faults.bit_errors')).toEqual(['It is 2; it must lie between 0 and 0.1']);
+    expect(said('faults.stall')).toEqual(['Entry 2 is 9; it must be above 0 and below the period, 1 s']);
+    expect(said('delay')).toEqual(['Entry 2 is -1; it must lie between 0 and 10']);
+    expect(said('expected')).toEqual(['It is 5; it must be 2']);
     expect([...problemsByField(problems, 11).keys()]).toEqual(['name']);
     expect(problemsByField(problems, 1).size).toBe(0);
   });
+
+  it('are counted by test, and those of the whole document stand apart', () => {
+    expect([0, 1, 11].map((index) => countProblems(problems, index))).toEqual([5, 0, 1]);
+    expect(problemsOfAll(problems)).toEqual(['the document has 600 cells; at most 500 can be run at once']);
+  });
 });
+
+function problem(path: (string | number)[], words: string): EntryProblem {
+  return { path, text: `${path.join(' ')} ${words}`.trim(), words };
+}

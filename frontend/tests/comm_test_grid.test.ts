@@ -3,7 +3,7 @@ import { compare, summarise, toggle, type Column } from '../src/pages/comm_tests
 import { drawFigure, type FigureCell } from '../src/pages/comm_tests/figure';
 import { facetColumns, gridOf, placesOf } from '../src/pages/comm_tests/grid';
 import { differencePaint, ratePaint } from '../src/pages/comm_tests/scale';
-import { countCauses, differenceText, reasonsOf, remainingWords, roughly } from '../src/pages/comm_tests/words';
+import { countCauses, differenceText, remainingWords, roughly } from '../src/pages/comm_tests/words';
 
 const place = (baud: number, arduino_delay: number, pi_delay: number) => ({ baud, arduino_delay, pi_delay });
 const column = (id: string, cells: Column['cells']): Column => ({ id, title: id, about: '', cells });
@@ -127,15 +127,6 @@ describe('words', () => {
 
   it('give differences their sign', () => {
     expect([0.25, -0.25, 0.001, -0.001, null].map(differenceText)).toEqual(['+0.25', '\u22120.25', '±0.00', '±0.00', '–']);
-  });
-
-  it('explain finding by finding', () => {
-    const explanation = 'ring overrun: 9 bytes were dropped; 5 of 100 numbers did not come; checksum: wrong: 3';
-    expect(reasonsOf({ explanation, causes: ['ring overrun', 'checksum'] })).toEqual([
-      'ring overrun: 9 bytes were dropped; 5 of 100 numbers did not come',
-      'checksum: wrong: 3',
-    ]);
-    expect(reasonsOf({ explanation: 'every number arrived', causes: [] })).toEqual(['every number arrived']);
   });
 
   it('count causes', () => {

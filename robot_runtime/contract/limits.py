@@ -7,13 +7,23 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, GroupedMetadata, Le
 
+from robot_runtime.contract.problems import EntryProblem
+
 
 class ConfigError(ValueError):
-    """A configuration or command that cannot be used; each of `problems` names an entry and its range."""
+    """A configuration or command that cannot be used; each of `problems` names an entry and its range.
 
-    def __init__(self, *problems: str) -> None:
-        super().__init__("; ".join(problems))
-        self.problems = problems
+    A problem that is given as text is one of the whole document.
+    """
+
+    def __init__(self, *problems: str | EntryProblem) -> None:
+        self.problems = tuple(EntryProblem((), one, one) if isinstance(one, str) else one for one in problems)
+        super().__init__("; ".join(self.texts))
+
+    @property
+    def texts(self) -> list[str]:
+        """The texts of the problems."""
+        return [one.text for one in self.problems]
 
 
 @dataclass(frozen=True, slots=True)

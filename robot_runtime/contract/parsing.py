@@ -8,12 +8,14 @@ from reprlib import Repr
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.problems import DocumentEntry, EntryProblem
 
 T = TypeVar("T")
+TOP = DocumentEntry()
 
 
-def parse(cls: type[T], table: Mapping[str, Any], where: str = "") -> T:
-    """A dataclass from a table; `where` is put before each problem.
+def parse(cls: type[T], table: Mapping[str, Any], where: DocumentEntry = TOP) -> T:
+    """A dataclass from the table at `where`.
 
     Raises ConfigError with all problems: names that are unknown or missing, wrong types, numbers out of
     range, and what the dataclass itself refuses with a ValueError.
@@ -21,23 +23,23 @@ def parse(cls: type[T], table: Mapping[str, Any], where: str = "") -> T:
     hints = get_type_hints(cls, include_extras=True)
     known = {one.name: one for one in fields(cls)}  # type: ignore[arg-type]
     problems = [
-        f"{place(where, repr(name))} is not known here; known are {', '.join(known)}"
+        where.field(name, repr(name)).problem(f"is not known here; known are {', '.join(known)}")
         for name in table
         if name not in known
     ]
     problems += [
-        f"{place(where, name)} is missing"
+        where.field(name).problem("is missing")
         for name, one in known.items()
         if name not in table and one.default is MISSING and one.default_factory is MISSING
     ]
     given = [name for name in table if name in known]
-    values = _values(((hints[name], table[name], place(where, name)) for name in given), problems)
+    values = _values(((hints[name], table[name], where.field(name)) for name in given), problems)
     try:
         return cls(**dict(zip(given, values, strict=True)))
-    except ConfigError:
-        raise
+    except ConfigError as problem:
+        raise ConfigError(*(one.within(where) for one in problem.problems)) from problem
     except ValueError as problem:
-        raise ConfigError(place(where, str(problem))) from problem
+        raise ConfigError(where.sentence(str(problem))) from problem
 
 
 _WORDS = {
@@ -51,12 +53,9 @@ _WORDS = {
 }
 
 
-def place(where: str, name: str) -> str:
-    """Returns the name of an entry in error messages."""
-    return f"{where}: {name}" if where else name
-
-
-def _values(parts: Iterable[tuple[Any, Any, str]], problems: Iterable[str] = ()) -> list[Any]:
+def _values(
+    parts: Iterable[tuple[Any, Any, DocumentEntry]], problems: Iterable[EntryProblem] = ()
+) -> list[Any]:
     """The value of each (hint, value, where). Raises ConfigError with these problems and their own."""
     values, found = [], list(problems)
     for hint, value, where in parts:
@@ -69,31 +68,30 @@ def _values(parts: Iterable[tuple[Any, Any, str]], problems: Iterable[str] = ())
     return values
 
 
-def read_value(hint: Any, value: Any, where: str) -> Any:
+def read_value(hint: Any, value: Any, where: DocumentEntry) -> Any:
     """The value as its type hint wants it. Raises ConfigError with all problems."""
     if get_origin(hint) is Annotated:
         inner, limits = get_args(hint)
         number = read_value(inner, value, where)
         if number is not None and not limits.minimum <= number <= limits.maximum:
             span = f"between {limits.minimum:.10g} and {limits.maximum:.10g}"
-            raise ConfigError(f"{where} is {_shown(value)}; it must lie {span}")
+            raise ConfigError(where.problem(f"is {_shown(value)}; it must lie {span}"))
         return number
     if is_dataclass(hint) and isinstance(hint, type):
         if not isinstance(value, dict):
-            raise ConfigError(f"{where} must be a table")
+            raise ConfigError(where.problem("must be a table"))
         return parse(hint, value, where)
     if get_origin(hint) is Literal:
         if value not in get_args(hint):
-            raise ConfigError(
-                f"{where} is {_shown(value)}; it must be one of {', '.join(map(repr, get_args(hint)))}"
-            )
+            known = ", ".join(map(repr, get_args(hint)))
+            raise ConfigError(where.problem(f"is {_shown(value)}; it must be one of {known}"))
         return value
     if get_origin(hint) in (types.UnionType, Union):
         return _read_union(get_args(hint), value, where)
     return _plain(hint, value, where)
 
 
-def _read_union(hints: tuple[Any, ...], value: Any, where: str) -> Any:
+def _read_union(hints: tuple[Any, ...], value: Any, where: DocumentEntry) -> Any:
     if value is None and types.NoneType in hints:
         return None
     kinds = [one for one in hints if one is not types.NoneType]
@@ -104,30 +102,29 @@ def _read_union(hints: tuple[Any, ...], value: Any, where: str) -> Any:
             return read_value(kind, value, where)
         except ConfigError:
             continue
-    raise ConfigError(f"{where} is {_shown(value)}; it must be {' or '.join(_WORDS[kind] for kind in kinds)}")
+    known = " or ".join(_WORDS[kind] for kind in kinds)
+    raise ConfigError(where.problem(f"is {_shown(value)}; it must be {known}"))
 
 
-def _plain(hint: Any, value: Any, where: str) -> Any:
+def _plain(hint: Any, value: Any, where: DocumentEntry) -> Any:
     origin, inner = get_origin(hint), get_args(hint)
     if origin is list and isinstance(value, list):
-        return _values((inner[0], one, f"{where}[{index}]") for index, one in enumerate(value))
+        return _values((inner[0], one, where.item(index)) for index, one in enumerate(value))
     if origin is tuple and isinstance(value, list):
         hints = (inner[0],) * len(value) if inner[-1] is Ellipsis else inner
         if len(hints) != len(value):
-            raise ConfigError(f"{where} is {_shown(value)}; it must be a list of {len(hints)} numbers")
+            raise ConfigError(where.problem(f"is {_shown(value)}; it must be a list of {len(hints)} numbers"))
         entries = enumerate(zip(hints, value, strict=True))
-        return tuple(_values((hint, one, f"{where}[{index}]") for index, (hint, one) in entries))
+        return tuple(_values((hint, one, where.item(index)) for index, (hint, one) in entries))
     if origin is dict and isinstance(value, dict):
         return dict(
-            zip(
-                value, _values((inner[1], one, f"{where}.{name}") for name, one in value.items()), strict=True
-            )
+            zip(value, _values((inner[1], one, where.key(name)) for name, one in value.items()), strict=True)
         )
     if hint is float and isinstance(value, int | float) and not isinstance(value, bool) and _finite(value):
         return float(value)
     if isinstance(hint, type) and type(value) is hint and hint is not float:
         return value
-    raise ConfigError(f"{where} is {_shown(value)}; it must be {_WORDS[origin or hint]}")
+    raise ConfigError(where.problem(f"is {_shown(value)}; it must be {_WORDS[origin or hint]}"))
 
 
 def _finite(value: float) -> bool:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import read_value
+from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.durable_files import write_whole
 
@@ -19,7 +20,7 @@ class VisionSettingsFile:
         """Reads the stored settings; None if there are none. Raises ConfigError if they cannot be used."""
         try:
             table = json.loads(self._path.read_bytes())
-            settings: VisionSettings = read_value(VisionSettings, table, self._path.name)
+            settings: VisionSettings = read_value(VisionSettings, table, DocumentEntry(self._path.name))
         except FileNotFoundError:
             return None
         except ConfigError:

@@ -1,12 +1,14 @@
 """Errors as answers: each with its HTTP status, and its text as `detail`."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.problems import DocumentEntry, EntryProblem
 from robot_runtime.errors import RefusedError
 from server.platform.errors import ApiError
 
@@ -31,20 +33,28 @@ async def _answer_refusal(_: Request, problem: Exception) -> JSONResponse:
 
 async def _answer_config_error(_: Request, problem: Exception) -> JSONResponse:
     assert isinstance(problem, ConfigError)
-    return _answer(422, "\n".join(problem.problems))
+    return _answer(422, "\n".join(problem.texts), problems=problem.problems)
 
 
 async def _answer_invalid_request(_: Request, problem: Exception) -> JSONResponse:
     assert isinstance(problem, RequestValidationError)
-    words = "; ".join(
-        f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}" for error in problem.errors()[:5]
-    )
-    return _answer(422, f"The request is not valid. {words}")
+    problems = [
+        DocumentEntry(".".join(map(str, error["loc"])), tuple(error["loc"])).sentence(error["msg"])
+        for error in problem.errors()[:5]
+    ]
+    words = "; ".join(one.text for one in problems)
+    return _answer(422, f"The request is not valid. {words}", problems=problems)
 
 
 async def _answer_unreadable_body(_: Request, __: Exception) -> JSONResponse:
     return _answer(422, "The request is not valid. Its body is not JSON in UTF-8.")
 
 
-def _answer(status: int, detail: str, headers: Mapping[str, str] | None = None) -> JSONResponse:
-    return JSONResponse({"detail": detail}, status, headers)
+def _answer(
+    status: int,
+    detail: str,
+    headers: Mapping[str, str] | None = None,
+    problems: Sequence[EntryProblem] = (),
+) -> JSONResponse:
+    body = {"detail": detail} | ({"problems": [asdict(one) for one in problems]} if problems else {})
+    return JSONResponse(body, status, headers)

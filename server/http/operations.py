@@ -8,6 +8,7 @@ from fastapi import APIRouter, Path
 from pydantic import BaseModel
 from starlette.responses import Response
 
+from robot_runtime.contract.problems import EntryProblem
 from server.http.sign_in.policy import Need, needs
 from server.platform.errors import ApiError
 from server.platform.models import IDENTIFIER_MAX
@@ -20,9 +21,13 @@ Errors = type[ApiError] | Mapping[int, str]
 
 
 class Problem(BaseModel):
-    """An error: what happened, why, and what to do."""
+    """An error: what happened, why, and what to do.
+
+    `problems` are those of a document or a request, by entry.
+    """
 
     detail: str
+    problems: list[EntryProblem] = []
 
 
 EVERYWHERE: dict[int | str, dict[str, Any]] = {

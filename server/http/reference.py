@@ -25,7 +25,8 @@ Times are in s, lengths in m and angles in rad, unless a field says otherwise.
 
 ## Errors
 
-An error is `{"detail": "..."}`: what happened, why, what to do.
+An error is `{"detail": "..."}`: what happened, why, what to do. Where entries of a document or a request
+are not valid, `problems` has each of them with its path, see [EntryProblem](#entryproblem).
 
 | status | reason |
 | --- | --- |

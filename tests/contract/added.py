@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.topics import BY_NAME, SENT_BY
 from robot_runtime.experiments.scenario.events import CommandEvent, read_event
 from robot_runtime.generate.reference import commands_page, topics_page
@@ -33,11 +34,12 @@ def look_for_http_and_access() -> None:
 
 
 def look_for_scenario_event() -> None:
-    event = read_event({"do": "blink", "at": 2, "times": 3}, "event 1")
+    where = DocumentEntry("event 1", ("events", 0))
+    event = read_event({"do": "blink", "at": 2, "times": 3}, where)
     assert isinstance(event, CommandEvent)
     assert (event.do, event.words, event.command.payload()) == ("blink", "Blinks the lamp", {"times": 3})
     with pytest.raises(ConfigError, match=r"^event 1: times is 10; it must lie between 1 and 9$"):
-        read_event({"do": "blink", "at": 2, "times": 10}, "event 1")
+        read_event({"do": "blink", "at": 2, "times": 10}, where)
 
 
 def look_for_page_and_reference() -> None:

@@ -58,4 +58,4 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
 
 
 def test_whole_numbers_serve_as_numbers() -> None:
-    assert parse(Config, {"control": {"rate": 20}}, "test").control.rate == 20.0
+    assert parse(Config, {"control": {"rate": 20}}).control.rate == 20.0

@@ -1955,8 +1955,6 @@ export interface components {
             causes: string[];
             /** Checksum Errors */
             checksum_errors: number;
-            /** Explanation */
-            explanation: string;
             /** Framing Errors */
             framing_errors: number;
             /** Line Errors */
@@ -1972,6 +1970,11 @@ export interface components {
              * @description share of the numbers that arrived right
              */
             rate: number;
+            /**
+             * Reasons
+             * @description of the rate, each begins with its cause
+             */
+            reasons: string[];
             /** Repeated */
             repeated: number;
             /** Right */
@@ -2034,7 +2037,7 @@ export interface components {
          */
         Check: {
             /** Problems */
-            problems: string[];
+            problems: components["schemas"]["EntryProblem"][];
             /** Tests */
             tests: components["schemas"]["CheckedTest"][];
         };
@@ -2546,6 +2549,21 @@ export interface components {
             state: "complete" | "cancelled" | "failed";
             /** Title */
             title: string;
+        };
+        /**
+         * EntryProblem
+         * @description A reason why an entry cannot be used; `text` names the entry, `words` is the text without that name.
+         *
+         *     `path` leads to the entry from the document: keys, and indices from 0. It is empty where the problem is
+         *     the whole document's.
+         */
+        EntryProblem: {
+            /** Path */
+            path: (string | number)[];
+            /** Text */
+            text: string;
+            /** Words */
+            words: string;
         };
         /**
          * ExportOptions
@@ -3293,10 +3311,17 @@ export interface components {
         /**
          * Problem
          * @description An error: what happened, why, and what to do.
+         *
+         *     `problems` are those of a document or a request, by entry.
          */
         Problem: {
             /** Detail */
             detail: string;
+            /**
+             * Problems
+             * @default []
+             */
+            problems: components["schemas"]["EntryProblem"][];
         };
         /**
          * Profile
@@ -3537,7 +3562,7 @@ export interface components {
          */
         ScenarioCheck: {
             /** Problems */
-            problems: string[];
+            problems: components["schemas"]["EntryProblem"][];
             summary: components["schemas"]["ScenarioSummary"] | null;
         };
         /**

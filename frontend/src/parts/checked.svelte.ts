@@ -6,7 +6,7 @@ import type { Draft } from './draft';
 const PAUSE = 250;
 
 /** A document that somebody writes, and what the server says to it. To be made while a component begins. */
-export class CheckedText<Check extends { readonly problems: readonly string[] }> {
+export class CheckedText<Check extends { readonly problems: readonly unknown[] }> {
   /** the last answer; null before the first */
   check = $state.raw<Check | null>(null);
   /** the text that `check` is about */

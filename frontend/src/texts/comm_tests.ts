@@ -67,7 +67,8 @@ export const commTests = {
   },
   editor: {
     test: 'Test of the document',
-    testOf: (number: number, all: number, name: string) => `Test ${number} of ${all}: ${name}`,
+    testOf: (number: number, all: number, name: string, problems: number) =>
+      `Test ${number} of ${all}: ${name}${problems === 0 ? '' : ` (${problemCount(problems)})`}`,
     json: 'The document as JSON',
     noForm: 'The form cannot show this document. Correct it as JSON, or choose another test.',
     notJson: (problem: string) => `The text is not JSON: ${problem}`,
@@ -84,6 +85,7 @@ export const commTests = {
     count: (numbers: number) => `${numbers} numbers are sent in each cell.`,
     framing: 'Framing',
     direction: 'Direction',
+    problem: (entry: number | null, words: string) => (entry === null ? `It ${words}` : `Entry ${entry + 1} ${words}`),
     problemOf: (field: string, problem: string) => `${field}: ${problem}`,
   },
   faults: {
@@ -127,7 +129,7 @@ export const commTests = {
     faults: 'Faults on the line',
     cells: 'Cells',
     invalid: 'This test cannot run. “Edit” shows each problem at its field.',
-    problemsAbove: (count: number) => `This test cannot run: ${count === 1 ? 'one problem' : `${count} problems`}, shown above.`,
+    problemsAbove: (count: number) => `This test cannot run: ${problemCount(count)}, shown above.`,
     more: (count: number) => `and ${count} more`,
     emulatedTime: 'of test time; emulated boards are much faster',
     realTime: 'in real time, plus the time of each upload',
@@ -250,3 +252,7 @@ export const commTests = {
     cellDifference: 'difference',
   },
 } as const;
+
+function problemCount(count: number): string {
+  return count === 1 ? 'one problem' : `${count} problems`;
+}

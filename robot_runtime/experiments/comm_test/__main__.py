@@ -50,7 +50,7 @@ def main() -> int:
     try:
         tests = read_document(_decode(sys.stdin.buffer.read(DOCUMENT_BYTES_MAX + 1)))
     except ConfigError as problem:
-        writer.tell("refused", problems=problem.problems)
+        writer.tell("refused", problems=problem.texts)
         return REFUSED
     lab: CommTestLab = EmulatedLab(arguments.build, stop)
     if arguments.where == "emulated":

@@ -12,7 +12,8 @@ from typing import Annotated, Any
 
 from robot_runtime.config import BAUD_ERROR_MAX, CHIP_CLOCK
 from robot_runtime.contract.limits import ConfigError, Range
-from robot_runtime.contract.parsing import parse
+from robot_runtime.contract.parsing import TOP, parse
+from robot_runtime.contract.problems import DocumentEntry, EntryProblem
 from robot_runtime.experiments.comm_test.faults import Faults
 from robot_runtime.experiments.comm_test.framings import FRAMINGS, NUMBER_MAX, FramingName
 from robot_runtime.experiments.comm_test.results import Direction, GridCell
@@ -83,19 +84,20 @@ def read_document(text: str) -> list[CommTest]:
         raise ConfigError(f"the document is not JSON: {problem}") from problem
     if not isinstance(entries, list) or not entries:
         raise ConfigError("the document must be a list of one or more tests")
-    problems: list[str] = []
+    problems: list[str | EntryProblem] = []
     tests = []
-    for number, entry in enumerate(entries, 1):
+    for index, entry in enumerate(entries):
+        where = DocumentEntry(f"test {index + 1}", (index,))
         if not isinstance(entry, dict):
-            problems.append(f"test {number}: it must be an object in braces")
+            problems.append(where.sentence("it must be an object in braces"))
             continue
         try:
-            tests.append(test := parse(CommTest, entry, f"test {number}"))
+            tests.append(test := parse(CommTest, entry, where))
             found = [*_field_problems(test), *_number_problems(test)]
         except ConfigError as problem:
             problems += problem.problems
             found = [*_field_problems(_with_stand_ins(entry))]
-        problems += [f"test {number}: {one}" for one in found]
+        problems += [one.within(where) for one in found]
     cells = sum(len(test.baud_rate) * len(test.arduinodelay) * len(test.delay) for test in tests)
     if not problems and cells > CELLS_MAX:
         problems.append(f"the document has {cells} cells; at most {CELLS_MAX} can be run at once")
@@ -124,14 +126,14 @@ def _with_stand_ins(entry: dict[str, Any]) -> CommTest:
     return parse(CommTest, sound)
 
 
-def _field_problems(test: CommTest) -> Iterator[str]:
+def _field_problems(test: CommTest) -> Iterator[EntryProblem]:
     """Yields what the types and limits of single fields leave open."""
     if not test.name.strip() or len(test.name) > NAME_CHARACTERS_MAX:
-        yield f"name must be a text of 1 to {NAME_CHARACTERS_MAX} characters"
+        yield TOP.field("name").problem(f"must be a text of 1 to {NAME_CHARACTERS_MAX} characters")
     path = test.ino_path.lstrip("/")
     if path != SKETCH and not THESIS_SKETCH.fullmatch(path):
-        yield (
-            f"ino_path is {test.ino_path!r}; it must be {SKETCH}, or the thesis's "
+        yield TOP.field("ino_path").problem(
+            f"is {test.ino_path!r}; it must be {SKETCH}, or the thesis's "
             "/micro_cat_test/arduino/test_N/test_N.ino, which stands for the same"
         )
     yield from _list_problems("delay", test.delay)
@@ -140,40 +142,43 @@ def _field_problems(test: CommTest) -> Iterator[str]:
     yield from _baud_problems(test)
 
 
-def _number_problems(test: CommTest) -> Iterator[str]:
+def _number_problems(test: CommTest) -> Iterator[EntryProblem]:
     count = test.to_val - test.from_val
     if test.to_val > (highest := FRAMINGS[test.framing].number_max + 1):
-        yield f"to_val is {test.to_val}; with the framing {test.framing} it must be at most {highest}"
+        words = f"is {test.to_val}; with the framing {test.framing} it must be at most {highest}"
+        yield TOP.field("to_val").problem(words)
     elif not 1 <= count <= NUMBERS_MAX:
-        yield (
-            f"to_val is {test.to_val}; it must be above from_val, {test.from_val}, by 1 to {NUMBERS_MAX}, "
+        yield TOP.field("to_val").problem(
+            f"is {test.to_val}; it must be above from_val, {test.from_val}, by 1 to {NUMBERS_MAX}, "
             "as it is the first number that is not sent"
         )
     elif test.expected != count:
-        yield (
-            f"expected is {test.expected}; it must be {count}, the count of numbers from from_val, "
+        yield TOP.field("expected").problem(
+            f"is {test.expected}; it must be {count}, the count of numbers from from_val, "
             f"{test.from_val}, up to, and without, to_val, {test.to_val}"
         )
 
 
-def _list_problems(name: str, values: tuple[float, ...]) -> Iterator[str]:
+def _list_problems(name: str, values: tuple[float, ...]) -> Iterator[EntryProblem]:
+    where = TOP.field(name)
     if not values:
-        yield f"{name} must be a list of one or more numbers"
+        yield where.problem("must be a list of one or more numbers")
     seen: set[float] = set()
     for index, value in enumerate(values):
         if value in seen:
-            yield f"{name}[{index}] is {value:g}, which the list already has"
+            yield where.item(index).problem(f"is {value:g}, which the list already has")
         seen.add(value)
 
 
-def _baud_problems(test: CommTest) -> Iterator[str]:
+def _baud_problems(test: CommTest) -> Iterator[EntryProblem]:
     lowest, highest = FRAMINGS[test.framing].bauds
     for index, baud in enumerate(test.baud_rate):
         made = chip_baud(baud)
+        where = TOP.field("baud_rate").item(index)
         if not lowest <= baud <= highest:
             limits = f"between {lowest} and {highest}"
-            yield f"baud_rate[{index}] is {baud}; with the framing {test.framing} it must lie {limits}"
+            yield where.problem(f"is {baud}; with the framing {test.framing} it must lie {limits}")
         elif abs(made / baud - 1) > BAUD_ERROR_MAX:
             does = f"makes {made:.0f} of it, {made / baud - 1:+.1%}" if made else "cannot make it"
             limit = f"it must be within {BAUD_ERROR_MAX:.1%}"
-            yield f"baud_rate[{index}] is {baud}; the chip at 16 MHz {does}; {limit}"
+            yield where.problem(f"is {baud}; the chip at 16 MHz {does}; {limit}")

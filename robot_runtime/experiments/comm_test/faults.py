@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from robot_runtime.contract.limits import Range
+from robot_runtime.contract.limits import ConfigError, Range
+from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.experiments.line_faults.faults import DIRECTIONS, KINDS
 
 TimedKind = Literal["stall", "cut", "mend"]
@@ -36,12 +37,14 @@ class Faults:
 
     def __post_init__(self) -> None:
         problems = [
-            f"{name}[1] is {one[1]:g}; it must be above 0 and below the period, {one[0]:g} s"
+            DocumentEntry(name, (name,))
+            .item(1)
+            .problem(f"is {one[1]:g}; it must be above 0 and below the period, {one[0]:g} s")
             for name, one in (("stall", self.stall), ("cut", self.cut))
             if one is not None and not 0 < one[1] < one[0]
         ]
         if problems:
-            raise ValueError("; ".join(problems))
+            raise ConfigError(*problems)
 
     def begin(self, order: Order) -> None:
         """Starts the faults that have rates; `timed` gives the others."""

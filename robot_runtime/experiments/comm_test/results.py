@@ -133,9 +133,9 @@ class CellResult:
 
     @property
     def explanation(self) -> str:
-        """The explanation of the rate, for a person."""
+        """The explanation of the rate, for a person: a reason on each line, which begins with its cause."""
         findings = [f"{cause}: {words}" for cause, words in self._findings()]
-        return "; ".join([*(findings or ["every number arrived"]), *self._remarks()])
+        return "\n".join([*(findings or ["every number arrived"]), *self._remarks()])
 
     @property
     def values(self) -> dict[str, Any]:

@@ -65,7 +65,7 @@ def main() -> int:
         try:
             scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"))
         except ConfigError as problem:
-            messages.event("refused", problems=list(problem.problems))
+            messages.event("refused", problems=problem.texts)
             return REFUSED
         run = ScenarioRun(scenario, made[options.board], messages)
         for number in (signal.SIGTERM, signal.SIGINT):

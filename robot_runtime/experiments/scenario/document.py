@@ -10,7 +10,8 @@ from typing import Annotated, Any, Literal, get_type_hints
 
 from robot_runtime.config import ControlConfig
 from robot_runtime.contract.limits import VISION_RATE, ConfigError, Range
-from robot_runtime.contract.parsing import parse, place, read_value
+from robot_runtime.contract.parsing import TOP, parse, read_value
+from robot_runtime.contract.problems import DocumentEntry, EntryProblem
 from robot_runtime.experiments.scenario.events import (
     Colour,
     TimedEvent,
@@ -133,22 +134,21 @@ class Scenario:
         if problems:
             raise ConfigError(*problems)
 
-    def _words(self) -> list[str]:
+    def _words(self) -> list[EntryProblem]:
         problems = []
         if not NAME.fullmatch(self.name):
-            problems.append(
-                f"name is {self.name!r}; it is 1 to 60 small letters, digits, - and _, as it names a file"
-            )
+            words = f"is {self.name!r}; it is 1 to 60 small letters, digits, - and _, as it names a file"
+            problems.append(TOP.field("name").problem(words))
         if not 1 <= len(self.title.strip()) <= TITLE_MAX:
-            problems.append(f"title must be a text of 1 to {TITLE_MAX} characters")
+            problems.append(TOP.field("title").problem(f"must be a text of 1 to {TITLE_MAX} characters"))
         if len(self.description) > DESCRIPTION_MAX:
-            problems.append(f"description has more than {DESCRIPTION_MAX} characters")
+            problems.append(TOP.field("description").problem(f"has more than {DESCRIPTION_MAX} characters"))
         return problems
 
-    def _water(self) -> list[str]:
+    def _water(self) -> list[str | EntryProblem]:
         world = World(self.robot)
         world.set_basin(self.scene.basin)
-        problems = []
+        problems: list[str | EntryProblem] = []
         waves = [("water: waves", self.water.waves)]
         waves += [
             (f"event at {one.at:g} s", one.change)
@@ -163,11 +163,11 @@ class Scenario:
         try:
             check_start(self.start, self.scene.basin, self.robot.size)
         except ValueError as problem:
-            problems.append(f"start: {problem}")
+            problems.append(TOP.field("start").sentence(str(problem)))
         try:
             check_controller("depth", self.control.controller, self.control.gains)
         except ValueError as problem:
-            problems.append(f"control: {problem}")
+            problems.append(TOP.field("control").sentence(str(problem)))
         return problems
 
     def _events(self) -> list[str]:
@@ -178,6 +178,7 @@ class Scenario:
         ]
 
 
+ROBOT = TOP.field("robot")
 _STAND_IN: dict[str, Any] = {
     "name": "scenario",
     "title": "Scenario",
@@ -195,7 +196,7 @@ def read_scenario(text: str) -> Scenario:
         table = tomllib.loads(text)
     except (ValueError, RecursionError) as problem:
         raise ConfigError(f"the scenario is not TOML: {problem}") from problem
-    problems: list[str] = []
+    problems: list[str | EntryProblem] = []
     values = _read_entries(table, problems)
     try:
         scenario = Scenario(**(_STAND_IN | values))
@@ -206,37 +207,38 @@ def read_scenario(text: str) -> Scenario:
     return scenario
 
 
-def _read_entries(table: dict[str, Any], problems: list[str]) -> dict[str, Any]:
+def _read_entries(table: dict[str, Any], problems: list[str | EntryProblem]) -> dict[str, Any]:
     """Returns the valid entries of the table; adds the problems of the others."""
     hints = get_type_hints(Scenario, include_extras=True)
     values: dict[str, Any] = {}
     for name, value in table.items():
         try:
             if name not in hints:
-                problems.append(f"{name!r} is not known here; known are {', '.join(hints)}")
+                where = TOP.field(name, repr(name))
+                problems.append(where.problem(f"is not known here; known are {', '.join(hints)}"))
             elif name == "events":
                 values[name] = tuple(sorted(_read_events(value, problems), key=lambda one: one.at))
             elif name == "robot":
                 values[name] = _read_robot(value)
             else:
-                values[name] = read_value(hints[name], value, name)
+                values[name] = read_value(hints[name], value, TOP.field(name))
         except ConfigError as problem:
             problems += problem.problems
-    problems += [f"{name} is missing" for name in _STAND_IN if name not in table]
+    problems += [TOP.field(name).problem("is missing") for name in _STAND_IN if name not in table]
     return values
 
 
-def _read_events(tables: Any, problems: list[str]) -> list[TimedEvent]:
+def _read_events(tables: Any, problems: list[str | EntryProblem]) -> list[TimedEvent]:
     if not isinstance(tables, list):
-        problems.append("events must be tables, each headed [[events]]")
+        problems.append(TOP.field("events").problem("must be tables, each headed [[events]]"))
         return []
     if len(tables) > EVENTS_MAX:
         problems.append(f"{len(tables)} events; there can be at most {EVENTS_MAX}")
         return []
     events = []
-    for number, table in enumerate(tables, 1):
+    for index, table in enumerate(tables):
         try:
-            events.append(read_event(table, f"event {number}"))
+            events.append(read_event(table, DocumentEntry(f"event {index + 1}", ("events", index))))
         except ConfigError as problem:
             problems += problem.problems
     return events
@@ -246,8 +248,12 @@ def _read_robot(table: Any) -> SimulationParameters:
     """The simulated robot with what the scenario changes about it. Raises ConfigError."""
     plain = SimulationParameters()
     if not isinstance(table, dict):
-        raise ConfigError("robot must be a table")
-    problems = [f"robot: {name} belongs to {there}" for name, there in _ELSEWHERE.items() if name in table]
+        raise ConfigError(ROBOT.problem("must be a table"))
+    problems = [
+        ROBOT.field(name).problem(f"belongs to {there}")
+        for name, there in _ELSEWHERE.items()
+        if name in table
+    ]
     given = {name: value for name, value in table.items() if name not in _ELSEWHERE}
     for name, value in given.items():
         default = getattr(plain, name, None)
@@ -255,34 +261,35 @@ def _read_robot(table: Any) -> SimulationParameters:
             # What a sensor's table leaves out stays as it is.
             given[name] = asdict(default) | value  # type: ignore[arg-type]
     try:
-        changed = parse(SimulationParameters, given, "robot")
+        changed = parse(SimulationParameters, given, ROBOT)
     except ConfigError as problem:
         raise ConfigError(*problems, *problem.problems) from problem
     for one in fields(SimulationParameters):
         if one.name in given:
-            problems += _check_number(one.name, getattr(changed, one.name), getattr(plain, one.name))
+            where = ROBOT.field(one.name)
+            problems += _check_number(where, getattr(changed, one.name), getattr(plain, one.name))
     if problems:
         raise ConfigError(*problems)
     return changed
 
 
-def _check_number(name: str, value: Any, default: Any) -> list[str]:
+def _check_number(where: DocumentEntry, value: Any, default: Any) -> list[EntryProblem]:
     """Returns the problems of an overridden number, or of each in a tuple, that the physics cannot handle."""
     if isinstance(value, tuple):
         return [
             problem
             for index, (one, own) in enumerate(zip(value, default, strict=True))
-            for problem in _check_number(f"{name}[{index}]", one, own)
+            for problem in _check_number(where.item(index), one, own)
         ]
     if isinstance(value, SensorQuality):
-        return _check_number(f"{name}.latency", value.latency, 0.0) if value.latency else []
+        return _check_number(where.key("latency"), value.latency, 0.0) if value.latency else []
     if not isinstance(value, float):
         return []
     low, high = (
-        _LIMITS.get(name.partition("[")[0])
-        or _LIMITS.get(name.rpartition(".")[2])
+        _LIMITS.get(str(where.path[1]))
+        or _LIMITS.get(str(where.path[-1]))
         or sorted((default / FACTOR, default * FACTOR))
     )
     if low <= value <= high:
         return []
-    return [f"{place('robot', name)} is {value:g}; it must lie between {low:g} and {high:g}"]
+    return [where.problem(f"is {value:g}; it must lie between {low:g} and {high:g}")]

@@ -15,7 +15,8 @@ from robot_runtime.contract.commands import (
     VisionCommand,
 )
 from robot_runtime.contract.limits import ConfigError, Range
-from robot_runtime.contract.parsing import parse, place
+from robot_runtime.contract.parsing import parse
+from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.simulation.water.faults import SimulatedFault, check_sensor
 from robot_runtime.simulation.water.requests import BeaconPositions, SensorFaultRequest
@@ -183,19 +184,19 @@ def event_names() -> list[str]:
     return [*commands, *WATER_CHANGES, *EVENTS]
 
 
-def read_event(table: Any, where: str) -> TimedEvent:
+def read_event(table: Any, where: DocumentEntry) -> TimedEvent:
     """An event from its table. Raises ConfigError with all problems."""
     if not isinstance(table, Mapping):
-        raise ConfigError(f"{where} must be a table")
+        raise ConfigError(where.problem("must be a table"))
     do = table.get("do")
     if do not in (names := event_names()):
         what = "is missing" if do is None else f"is {do!r}"
-        raise ConfigError(f"{place(where, 'do')} {what}; it must be one of {', '.join(names)}")
+        raise ConfigError(where.field("do").problem(f"{what}; it must be one of {', '.join(names)}"))
     rest = {name: value for name, value in table.items() if name != "do"}
     if do in EVENTS:
         return parse(EVENTS[do], rest, where)
     if do == "waves" and "amplitude" not in table:
-        raise ConfigError(f"{place(where, 'amplitude')} is missing")
+        raise ConfigError(where.field("amplitude").problem("is missing"))
     cls: Any = WATER_CHANGES.get(do) or COMMANDS[do]
     timed: Any = parse(make_dataclass(do, [], bases=(cls, _Timed), frozen=True, kw_only=True), rest, where)
     content = cls(**{one.name: getattr(timed, one.name) for one in fields(cls)})
@@ -210,7 +211,7 @@ class _Timed:
     at: Annotated[float, AT]
 
 
-def _check(content: RobotCommand | WaterChange, where: str) -> None:
+def _check(content: RobotCommand | WaterChange, where: DocumentEntry) -> None:
     """Raises ConfigError where a scenario's robot or simulator could not do it."""
     try:
         match content:
@@ -229,7 +230,7 @@ def _check(content: RobotCommand | WaterChange, where: str) -> None:
                     known = ", ".join(map(repr, get_args(Colour)))
                     raise ValueError(f"colour is {colour!r}; it must be one of {known}")
     except ValueError as problem:
-        raise ConfigError(place(where, str(problem))) from problem
+        raise ConfigError(where.sentence(str(problem))) from problem
 
 
 def check_controller(loop: str, name: str, gains: Mapping[str, Mapping[str, float]]) -> None:

@@ -132,4 +132,4 @@ def _read(file: Path) -> "tuple[str, list[CommTest]]":
     except (OSError, UnicodeDecodeError) as problem:
         raise SetupError(f"{file} cannot be read: {problem}") from problem
     except ConfigError as problem:
-        raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.problems])) from problem
+        raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.texts])) from problem

@@ -149,4 +149,5 @@ def _summary(run: CommTestRun, done: int, mean: float | None, low: float | None)
 
 def _cell(cell: CommTestCell) -> Cell:
     values = cell.model_dump(include=set(Cell.model_fields) - {"causes"})
-    return Cell(**values, causes=[cause for cause in cell.causes.split(", ") if cause])
+    causes = [cause for cause in cell.causes.split(", ") if cause]
+    return Cell(**values, causes=causes, reasons=cell.explanation.splitlines())

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.experiments.comm_test.results import Direction
 from server.features.comm_tests.reference import TableName
 
@@ -61,7 +62,7 @@ class CheckedTest(BaseModel):
 class Check(BaseModel):
     """A document's problems, field by field, or its tests."""
 
-    problems: list[str]
+    problems: list[EntryProblem]
     tests: list[CheckedTest]
 
 
@@ -105,7 +106,7 @@ class Cell(BaseModel):
     repeated: int
     seconds: float
     causes: list[str]
-    explanation: str
+    reasons: list[str] = Field(description="of the rate, each begins with its cause")
 
 
 class CommTestRunDetails(RunSummary):

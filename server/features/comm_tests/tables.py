@@ -44,7 +44,8 @@ def show_run(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
     }
     lines = [f"{name:<14}{text}" for name, text in facts.items()]
     reasons = [
-        f"{cell.baud} baud, Arduino {cell.arduino_delay:g} s, Pi {cell.pi_delay:g} s: {cell.explanation}"
+        f"{cell.baud} baud, Arduino {cell.arduino_delay:g} s, Pi {cell.pi_delay:g} s: "
+        + "; ".join(cell.explanation.splitlines())
         for cell in cells
         if cell.causes
     ]

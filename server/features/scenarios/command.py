@@ -80,7 +80,7 @@ def _read(file: str, own: Path) -> "tuple[str, Scenario]":
         known = ", ".join(there)
         raise SetupError(f"{file} cannot be read: {problem}. Known scenarios: {known}") from problem
     except ConfigError as problem:
-        raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.problems])) from problem
+        raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.texts])) from problem
 
 
 def _describe(scenario: "Scenario") -> str:

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario
 
@@ -55,7 +56,7 @@ class ScenarioSummary(BaseModel):
 class ScenarioCheck(BaseModel):
     """A scenario's problems, field by field, or its summary."""
 
-    problems: list[str]
+    problems: list[EntryProblem]
     summary: ScenarioSummary | None
 
 

@@ -9,6 +9,7 @@ from fastapi.responses import PlainTextResponse
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import parse, read_value
+from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.vision_settings import VisionSettings
 from server.features.vision.schemas import PickedColour, PickPlace, VisionSetup, VisionText
 from server.http.dependencies import Provided
@@ -66,5 +67,5 @@ def read_document(text: str) -> dict[str, Any]:
     if "vision" not in document:
         raise ConfigError("There is no table [vision] in it.")
     # A whole robot.toml also names the camera, which cannot be changed while the robot runs.
-    config: VisionConfig = read_value(VisionConfig, document["vision"], "vision")
+    config: VisionConfig = read_value(VisionConfig, document["vision"], DocumentEntry("vision", ("vision",)))
     return config.settings.table()

@@ -168,6 +168,24 @@ def interrupt() -> None:
     raise KeyboardInterrupt
 
 
+def test_reasons_of_older_cells_stand_on_lines_of_their_own(settings: Settings) -> None:
+    upgrade_to(settings, "0008")
+    older = "checksum: 3 packets; 5 of 9 numbers are lost; injected faults: 4 drops; framing error: 1"
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        fill_tables(database)
+        change = "UPDATE comm_test_cell SET causes = 'checksum, framing error', explanation = ?"
+        database.execute(change, (older,))
+        database.commit()
+    schema.prepare(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        (newer,) = database.execute("SELECT explanation FROM comm_test_cell").fetchone()
+    assert newer.splitlines() == [
+        "checksum: 3 packets; 5 of 9 numbers are lost",
+        "injected faults: 4 drops",
+        "framing error: 1",
+    ]
+
+
 def test_what_a_session_holds_is_read_from_an_index_alone(store: Store) -> None:
     with store.read() as database:
         query = "EXPLAIN QUERY PLAN SELECT topic, sum(count), min(first_time), max(last_time) FROM chunk "

@@ -57,7 +57,8 @@ def test_a_test_of_more_than_a_day_is_refused(settings: Settings) -> None:
             refused = await served.api.post("/comm-tests/runs", json={"text": text, "place": "emulated"})
             assert (refused.status_code, "28 hours" in refused.json()["detail"]) == (422, True)
             checked = (await served.api.post("/comm-tests/check", json={"text": text})).json()
-            assert "at most 24" in checked["problems"][0]
+            (problem,) = checked["problems"]
+            assert (problem["path"], "at most 24" in problem["text"]) == ([], True)
             alone = (await served.api.post("/comm-tests/check", json={"text": json.dumps([ENDLESS])})).json()
             assert alone["problems"] == []
 

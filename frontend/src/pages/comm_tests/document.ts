@@ -1,10 +1,17 @@
 /** The test document as text and as tests: what the form shows and changes is the text, and nothing beside it. */
+import type { EntryProblem } from '../../api';
 import { commTests as texts } from '../../texts/comm_tests';
 
 /** One test with its fields as they stand, also those that the server will refuse. */
 export type Fields = Readonly<Record<string, unknown>>;
 
 export type Reading = { readonly tests: readonly Fields[] } | { readonly problem: string };
+
+/** A problem of a field, or of one `entry` (from 0) of its list; `words` are the server's, without the field's name. */
+export interface FieldProblem {
+  readonly entry: number | null;
+  readonly words: string;
+}
 
 /** How a document is looked at: all views are of the one text. */
 export type View = 'summary' | 'form' | 'json';
@@ -130,20 +137,30 @@ export function faultWords(test: Fields): string {
     .join(', ');
 }
 
-const PROBLEM = /^test (\d+): (?:(?!it )(?:(faults): )?'?(\w+)'?(?:\[(\d+)\])? (?=is |must ))?(.*)$/s;
-
-/**
- * Problems of the test at `index`, without its number, by the field that they name: delay, faults.drop; '' where
- * they name none.
- */
-export function problemsByField(problems: readonly string[], index: number): ReadonlyMap<string, readonly string[]> {
-  const found = new Map<string, string[]>();
-  for (const problem of problems) {
-    const [, test, faults = '', name = '', entry, words = ''] = PROBLEM.exec(problem) ?? [];
-    const field = faults === '' ? name : `${faults}.${name}`;
-    const subject = entry === undefined ? 'It' : `Entry ${Number(entry) + 1}`;
-    const placed = field === '' ? words : `${subject} ${words}`;
-    if (Number(test) === index + 1) found.set(field, [...(found.get(field) ?? []), placed]);
+/** The problems of the test at `index`, by the field that they are about: delay, faults.drop; '' where it is the test itself. */
+export function problemsByField(problems: readonly EntryProblem[], index: number): ReadonlyMap<string, readonly FieldProblem[]> {
+  const found = new Map<string, FieldProblem[]>();
+  for (const { path, words } of problems) {
+    const [test, ...within] = path;
+    if (test !== index) continue;
+    const field = within.filter((one) => typeof one === 'string').join('.');
+    const last = within.at(-1);
+    found.set(field, [...(found.get(field) ?? []), { entry: typeof last === 'number' ? last : null, words }]);
   }
   return found;
+}
+
+/** The problems of the whole document, which belong to no test. */
+export function problemsOfAll(problems: readonly EntryProblem[]): string[] {
+  return problems.filter(({ path }) => path.length === 0).map(({ text }) => text);
+}
+
+/** How many problems the test at `index` has. */
+export function countProblems(problems: readonly EntryProblem[], index: number): number {
+  return problems.filter(({ path }) => path[0] === index).length;
+}
+
+/** Problems as sentences about a field. */
+export function sentences(problems: readonly FieldProblem[]): string[] {
+  return problems.map(({ entry, words }) => texts.editor.problem(entry, words));
 }

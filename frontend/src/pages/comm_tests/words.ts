@@ -44,14 +44,3 @@ export function countCauses(cells: readonly { readonly causes: readonly string[]
   for (const cause of cells.flatMap(({ causes }) => causes)) counts.set(cause, (counts.get(cause) ?? 0) + 1);
   return [...counts].sort(([, one], [, other]) => other - one);
 }
-
-/** An explanation, finding by finding; each begins with its cause. */
-export function reasonsOf({ explanation, causes }: { readonly explanation: string; readonly causes: readonly string[] }): string[] {
-  const reasons: string[] = [];
-  for (const part of explanation.split('; ')) {
-    const begins = reasons.length === 0 || causes.some((cause) => part.startsWith(`${cause}: `));
-    if (begins) reasons.push(part);
-    else reasons.push(`${reasons.pop() ?? ''}; ${part}`);
-  }
-  return reasons;
-}

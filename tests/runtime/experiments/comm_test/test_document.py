@@ -24,7 +24,7 @@ def changed(**changes: Any) -> str:
 def problems(text: str) -> list[str]:
     with pytest.raises(ConfigError) as refused:
         read_document(text)
-    return list(refused.value.problems)
+    return refused.value.texts
 
 
 def test_the_thesis_s_own_example_is_75_cells() -> None:
@@ -135,6 +135,30 @@ def test_faults_are_read_and_what_was_stored_can_be_read_again() -> None:
 def test_a_mistake_is_told_where_it_is(changes: dict[str, Any], words: str) -> None:
     (problem,) = problems(changed(**changes))
     assert problem.startswith(f"test 1: {words}")
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "words"),
+    [
+        ({"speed": 1}, (0, "speed"), "is not known here"),
+        ({"name": " "}, (0, "name"), "must be a text"),
+        ({"delay": [0, -0.5]}, (0, "delay", 1), "is -0.5; it must"),
+        ({"baud_rate": [9600, 9600]}, (0, "baud_rate", 1), "is 9600, which"),
+        ({"expected": 99}, (0, "expected"), "is 99; it must"),
+        ({"faults": 3}, (0, "faults"), "must be a table"),
+        ({"faults": {"burst": [0.1, 0]}}, (0, "faults", "burst", 1), "is 0; it must"),
+        ({"faults": {"cut": [2, 0]}}, (0, "faults", "cut", 1), "is 0; it must"),
+        ({"delay": [number / 1000 for number in range(501)]}, (), "the document has"),
+    ],
+)
+def test_a_mistake_carries_the_path_to_it(
+    changes: dict[str, Any], path: tuple[str | int, ...], words: str
+) -> None:
+    with pytest.raises(ConfigError) as refused:
+        read_document(changed(**changes))
+    (problem,) = refused.value.problems
+    assert (problem.path, problem.words.startswith(words)) == (path, True)
+    assert problem.text.endswith(problem.words)
 
 
 def test_all_mistakes_are_told_at_once() -> None:

@@ -91,10 +91,10 @@ def event(do: str, rest: str = "", at: float = 1) -> str:
     return f"[[events]]\nat = {at}\ndo = '{do}'\n{rest}\n"
 
 
-def problems(text: str) -> tuple[str, ...]:
+def problems(text: str) -> list[str]:
     with pytest.raises(ConfigError) as refused:
         read_scenario(text)
-    return refused.value.problems
+    return refused.value.texts
 
 
 def shipped() -> dict[str, str]:

@@ -255,10 +255,11 @@ def test_a_document_is_checked_field_by_field(settings: Settings) -> None:
             for changes, words in REFUSED:
                 found = await check(text(QUICK | changes))
                 assert found["tests"] == []
-                assert any(words in problem for problem in found["problems"]), (changes, found)
+                assert any(words in problem["text"] for problem in found["problems"]), (changes, found)
                 body = {"text": text(QUICK | changes), "place": "emulated"}
                 answer = await served.api.post("/comm-tests/runs", json=body)
                 assert (answer.status_code, words in answer.json()["detail"]) == (422, True)
+                assert answer.json()["problems"] == found["problems"]
             for content in ("", "nonsense", "{}", "[]", "[3]", "[" * 50_000):
                 assert (await check(content))["problems"]
             (good,) = (await check(text(QUICK)))["tests"]
@@ -280,6 +281,10 @@ def test_what_is_no_request_is_refused(settings: Settings) -> None:
                 {"text": " " * 61_000, "place": "emulated"},
             ):
                 assert (await api.post("/comm-tests/runs", json=body)).status_code == 422
+            number = await api.post("/comm-tests/check", json={"text": 3})
+            (problem,) = number.json()["problems"]
+            assert problem["path"] == ["body", "text"]
+            assert number.json()["detail"] == f"The request is not valid. {problem['text']}"
             large = await api.post("/comm-tests/check", json={"text": " " * 70_000})
             assert large.status_code == 413
             for path in ("runs/99", "runs/99/csv", "runs/99/json"):

@@ -141,9 +141,10 @@ def test_the_shipped_ones_are_there_and_sound(stack: Stack) -> None:
 def test_what_is_wrong_is_told(stack: Stack) -> None:
     wrong = SHORT.replace("[scene]", "[sea]").replace("duration = 3", "duration = -3")
     problems = stack.api.post("/scenarios/check", json={"text": wrong}).json()["problems"]
-    assert {one.split(" ")[0] for one in problems} == {"duration", "'sea'", "scene"}
+    assert {one["text"].split(" ")[0] for one in problems} == {"duration", "'sea'", "scene"}
+    assert sorted(one["path"] for one in problems) == [["duration"], ["scene"], ["sea"]]
     answer = stack.api.post("/scenarios/runs", json={"text": wrong, "place": "live"})
-    assert (answer.status_code, answer.json()["detail"]) == (422, "\n".join(problems))
+    assert (answer.status_code, answer.json()["detail"]) == (422, "\n".join(one["text"] for one in problems))
     assert state(stack)["active"] is None
 
 

@@ -1,0 +1,46 @@
+"""The form of a communication test: each problem that the server finds is where it belongs."""
+
+import json
+import re
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+FIGURE_10 = Path("firmware/examples/comm_test/figure10.json")
+
+
+def test_a_problem_of_a_field_is_at_the_field(page: Page) -> None:
+    open_form(page)
+    page.get_by_label(re.compile("^Pi delays")).fill("0, -1")
+    expect(page.get_by_label(re.compile("^Pi delays"))).to_have_attribute("aria-invalid", "true")
+    expect(page.get_by_text("Entry 2 is -1; it must lie between 0 and 10")).to_be_visible()
+    expect(page.get_by_text("This test cannot run: one problem, shown above.")).to_be_visible()
+
+
+def test_a_problem_of_the_whole_document_is_above_its_announcement(page: Page) -> None:
+    open_form(page)
+    delays = ", ".join(f"{number / 1000:g}" for number in range(101))
+    page.get_by_label(re.compile("^Pi delays")).fill(delays)
+    announced = page.get_by_text("This test cannot run: one problem, shown above.")
+    expect(announced).to_be_visible()
+    problem = page.get_by_text("at most 500 can be run at once")
+    expect(problem).to_be_visible()
+    above, below = problem.bounding_box(), announced.bounding_box()
+    assert above is not None
+    assert below is not None
+    assert above["y"] + above["height"] <= below["y"]
+
+
+def test_the_choice_of_tests_counts_the_problems_of_each(page: Page) -> None:
+    open_form(page)
+    (test,) = json.loads(FIGURE_10.read_text(encoding="utf-8"))
+    page.get_by_role("button", name="JSON", exact=True).click()
+    page.get_by_label("The document as JSON").fill(json.dumps([test, test | {"delay": [-1], "expected": 0}]))
+    page.get_by_role("button", name="Edit", exact=True).click()
+    options = page.get_by_label("Test of the document").locator("option")
+    expect(options).to_have_text([re.compile(r"^Test 1 of 2: [^(]*$"), re.compile(r"\(2 problems\)$")])
+
+
+def open_form(page: Page) -> None:
+    page.get_by_role("link", name="Comm tests").click()
+    page.get_by_role("button", name="Edit", exact=True).click()
