@@ -22,7 +22,7 @@ from typing import NoReturn
 from robot_runtime.transport.lifetime import end_with_parent
 from server.platform.pidfile import PidFile
 from server.platform.settings import DataFolder
-from server.processes.backoff import Backoff, describe_pause
+from server.processes.backoff import Backoff, describe_pause, is_killed
 from server.processes.process import describe_status
 
 Serve = Callable[[str], int]
@@ -61,7 +61,7 @@ class ServerRunner:
             if stopping or status == 0 or (status > 0 and not ended):
                 return max(status, 0)
             ended = f"The server {describe_status(status)}."
-            pause = backoff.after(time.monotonic() - started, killed=status < 0)
+            pause = backoff.after(time.monotonic() - started, killed=is_killed(status))
             _say(f"{ended} It is started again {describe_pause(pause)}.")
             if signal.sigtimedwait(_STOPS, pause) is not None:
                 return max(status, 0)

@@ -24,7 +24,7 @@ from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
 from server.platform.pidfile import end_parts, pid_file
 from server.platform.settings import DataFolder, Settings
-from server.processes.backoff import Backoff, describe_pause
+from server.processes.backoff import Backoff, describe_pause, is_killed
 from server.processes.logs import ProcessLog
 from server.processes.process import AdoptedProcess, Process, ProcessGroup, describe_status
 
@@ -135,7 +135,7 @@ class ManagedProcess:
             await asyncio.sleep(NEED_POLL_SECONDS)
 
     async def _run_once(self) -> tuple[str, bool]:
-        """Run the process to its end. Returns a description of the end, and True where a signal ended it."""
+        """Run the process to its end. Returns a description of the end, and True where it was killed."""
         try:
             process = self._process = self._process or self._start()
         except OSError as problem:
@@ -154,7 +154,7 @@ class ManagedProcess:
             return words, True
         last = self._log.last(LINES_SHOWN, self._logged_before)
         words = describe_status(status) + (f". Its last words: {last}" if last else "")
-        return words, status is None or status < 0
+        return words, is_killed(status)
 
     def _start(self) -> Process:
         self._logged_before = self._log.size()
