@@ -284,7 +284,7 @@ def _state(start: float, since: float) -> State:
         pilot_dropped=0,
         refusals=[],
         connected=True,
-        connection="The Arduino answers.",
+        connection="The board answers.",
         port="board.tty",
         baud=250_000,
         paces=[

@@ -244,7 +244,7 @@ class State(Document):
     alarms: list[Alarm]
     refusals: list[str] = field(metadata={"meaning": "reasons against arming; empty if it is possible"})
     connected: bool
-    connection: str = field(metadata={"meaning": "the serial connection in words"})
+    connection: str = field(metadata={"meaning": "state of the serial link, as a sentence"})
     port: str
     baud: int
     paces: list[Pace]

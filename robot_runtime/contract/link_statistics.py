@@ -7,7 +7,7 @@ from robot_runtime.contract.packets.layout import Record, Wire, record
 
 @record()
 class LinkStatistics(Record):
-    """The serial line, counted since the port was opened."""
+    """Counters of the serial link since the port was opened."""
 
     bytes_received: Annotated[int, Wire("I", unit="B", meaning="received")]
     bytes_sent: Annotated[int, Wire("I", unit="B", meaning="sent")]

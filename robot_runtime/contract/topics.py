@@ -67,7 +67,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic(5, "status", _ROWS, packets.Status, "the board's state and health"),
     Topic(6, "navigation", _ROWS, packets.Navigation, "navigation commands sent to the board", charted=60.0),
     Topic(7, "control", _ROWS, documents.Control, "ticks of the control node", charted=CHART_SECONDS),
-    Topic(8, "link", _ROWS, LinkStatistics, "the serial line"),
+    Topic(8, "link", _ROWS, LinkStatistics, "the serial link"),
     Topic(9, "truth", _ROWS, documents.Truth, "the simulated body", sender="simulator"),
     Topic(10, "turning", _ROWS, documents.Turning, "the same ticks, for heading, pitch and roll"),
     Topic(16, "state", _DOCUMENTS, documents.State, "the robot as a whole", newest_only=True),

@@ -13,7 +13,7 @@ _RETRY = 0.25
 
 
 class SerialLink(LinkDriver):
-    """Keeps a serial connection to the board alive; its callbacks run on its own thread."""
+    """Keeps the serial link to the board alive; its callbacks run on its own thread."""
 
     def __init__(
         self,

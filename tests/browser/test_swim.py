@@ -152,7 +152,7 @@ def test_a_lost_board_is_named_and_comes_back(page: Page, stack: Stack) -> None:
     try:
         lost = page.get_by_label("Connection lost")
         expect(lost).to_be_visible()
-        expect(lost).to_contain_text("Arduino")
+        expect(lost).to_contain_text("The board does not answer")
     finally:
         board.resume()
     expect(lost).to_be_hidden()

@@ -1,4 +1,4 @@
-// The board's end of the serial line: frames in, frames out. Never waits.
+// The board's end of the serial link: frames in, frames out. Never waits.
 //
 // Sending. Telemetry is sent once. Queued messages, such as lines of text, are reliable: they arrive exactly
 // once and in order. They stay in their queue, the only store, until they are acknowledged. Up to seven

@@ -1846,13 +1846,13 @@ export interface components {
             by: "start" | "armed" | "set_point" | "marker";
             /**
              * Marker
-             * @description its text; the first of this text counts
+             * @description its text; the first match counts
              * @default
              */
             marker: string;
             /**
              * Number
-             * @description which of the set point's steps
+             * @description number of the set-point step
              * @default 1
              */
             number: number;

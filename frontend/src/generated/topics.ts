@@ -157,7 +157,7 @@ export const ROW_TOPICS = {
     id: 8,
     name: 'link',
     rowBytes: 74,
-    meaning: 'the serial line',
+    meaning: 'the serial link',
     fields: [
       { name: 'bytes_received', code: 'I', offset: 8, count: 1, scale: 1, unit: 'B', meaning: 'received' },
       { name: 'bytes_sent', code: 'I', offset: 12, count: 1, scale: 1, unit: 'B', meaning: 'sent' },

@@ -7,7 +7,7 @@ const texts = connectionTexts.hops;
 export const HOPS = [
   { name: 'browser-server', from: texts.page, to: texts.server },
   { name: 'server-runtime', from: texts.server, to: texts.runtime },
-  { name: 'runtime-Arduino', from: texts.runtime, to: texts.arduino },
+  { name: 'runtime-board', from: texts.runtime, to: texts.board },
 ] as const;
 
 export interface Broken {
@@ -22,7 +22,7 @@ export interface Heard {
   /** why the server ended the connection, where it said so */
   readonly farewell: string;
   readonly parts: readonly Part[];
-  /** whether the runtime's state is current, and what it says of the serial line */
+  /** whether the runtime's state is current, and what it says of the serial link */
   readonly stateFresh: boolean;
   readonly state: { readonly connected: boolean; readonly connection: string } | null;
 }
@@ -51,7 +51,7 @@ export function findBroken({ connection, farewell, parts, stateFresh, state }: H
   if (state?.connected === false) {
     return {
       hop: 2,
-      title: texts.arduinoSilent,
+      title: texts.boardSilent,
       what: `${sentence(state.connection)}${texts.runtimeReconnects}`,
     };
   }

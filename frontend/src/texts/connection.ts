@@ -4,7 +4,7 @@ export const connection = {
     page: 'This page',
     server: 'Server',
     runtime: 'Runtime',
-    arduino: 'Arduino',
+    board: 'Board',
     serverSilent: 'The server does not answer',
     serverEnded: 'The server ended the connection',
     pageReconnects:
@@ -13,7 +13,7 @@ export const connection = {
     runtimeSilent: 'The runtime does not answer the server',
     noData: 'No data from it for a while',
     serverRestarts: 'The server restarts it by itself. System has the details.',
-    arduinoSilent: 'The Arduino does not answer the runtime',
+    boardSilent: 'The board does not answer the runtime',
     runtimeReconnects: 'The runtime reconnects by itself. Without commands the fins rest and the robot floats up.',
   },
   barred: {

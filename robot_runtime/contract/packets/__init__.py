@@ -1,4 +1,4 @@
-"""Every packet of the serial line, defined once; other languages get theirs from here."""
+"""Every packet of the serial link, defined once; the sources of other languages are generated from here."""
 
 from robot_runtime.contract.packets.chip_parameters import CHIP_PARAMETERS as CHIP_PARAMETERS
 from robot_runtime.contract.packets.chip_parameters import ChipParameter as ChipParameter

@@ -14,8 +14,8 @@ class Align(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     by: Literal["start", "armed", "set_point", "marker"] = "start"
-    number: Annotated[int, Field(ge=1, le=1000, description="which of the set point's steps")] = 1
-    marker: Annotated[str, Field(max_length=500, description="its text; the first of this text counts")] = ""
+    number: Annotated[int, Field(ge=1, le=1000, description="number of the set-point step")] = 1
+    marker: Annotated[str, Field(max_length=500, description="its text; the first match counts")] = ""
 
 
 class NoMomentError(Exception):
@@ -23,7 +23,7 @@ class NoMomentError(Exception):
 
 
 def find_moment(
-    align: Align, history: ControlHistory, steps: list[tuple[float, float]], markers: list[Moment]
+    align: Align, history: ControlHistory, steps: list[tuple[float, float]], bookmarks: list[Moment]
 ) -> float:
     """The moment, s since the session's start. Raises NoMomentError if the session lacks it."""
     if align.by == "armed":
@@ -38,9 +38,9 @@ def find_moment(
         return steps[align.number - 1][0]
     if align.by == "marker":
         sought = align.marker.strip().casefold()
-        for marker in markers:
-            if marker.text.strip().casefold() == sought:
-                return marker.time
+        for bookmark in bookmarks:
+            if bookmark.text.strip().casefold() == sought:
+                return bookmark.time
         raise NoMomentError(f"This session has no bookmark “{align.marker}”.")
     return 0.0
 

@@ -22,7 +22,7 @@ from server.features.comparison.figures import (
     count,
     measure,
 )
-from server.features.comparison.history import read_history, read_markers, set_point_steps
+from server.features.comparison.history import read_bookmarks, read_history, set_point_steps
 from server.features.comparison.moments import ControlHistory, Span
 from server.features.comparison.result_cache import ResultCache
 from server.features.comparison.samples import Samples
@@ -119,12 +119,12 @@ class Comparer:
         history = self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))
         set_point = found.get(SET_POINT)
         steps = set_point_steps(set_point, history.armed) if set_point is not None else []
-        markers = read_markers(self._store, recording)
+        bookmarks = read_bookmarks(self._store, recording)
         try:
-            offset, problem = find_moment(query.align, history, steps, markers), ""
+            offset, problem = find_moment(query.align, history, steps, bookmarks), ""
         except NoMomentError as missing:
             offset, problem = None, str(missing)
-        return _AlignedSession(recording, history, steps, markers, offset, problem)
+        return _AlignedSession(recording, history, steps, bookmarks, offset, problem)
 
     def _compare_one(self, one: _AlignedSession, query: ComparisonQuery) -> Compared:
         row = one.row

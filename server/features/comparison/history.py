@@ -53,7 +53,7 @@ def set_point_steps(set_point: Series, armed: tuple[Span, ...]) -> list[tuple[fl
     ]
 
 
-def read_markers(store: Reader, recording: Recording) -> list[Moment]:
+def read_bookmarks(store: Reader, recording: Recording) -> list[Moment]:
     """The session's bookmarks in order of time. Raises StoreError."""
     row = recording.row
     query = select(BookmarkRow).where(BookmarkRow.session_id == row.id).order_by(col(BookmarkRow.time))

@@ -50,7 +50,7 @@ def write_report(comparison: Comparison, view: TimeRange | None = None) -> str:
         _figure_table(comparison),
         "<h2>Differences</h2>" if len(comparison.sessions) > 1 else "<h2>Settings</h2>",
         _difference_table(comparison),
-        _marker_table(comparison),
+        _bookmark_table(comparison),
     ]
     return PAGE.format(title=escape(f"µ-CAT: {names}"), body="\n".join(parts))
 
@@ -101,8 +101,10 @@ def _charts(comparison: Comparison, view: TimeRange | None) -> str:
     figure.update_layout({f"yaxis{axis_of_signs}": shown})
     for row, (place, session) in enumerate(laid):
         figure.add_trace(_signs(session, row, _colour(place), axis_of_signs))
-        for marker in session.markers:
-            figure.add_vline(marker.time - (session.offset or 0), line_dash="dot", line_color=_colour(place))
+        for bookmark in session.markers:
+            figure.add_vline(
+                bookmark.time - (session.offset or 0), line_dash="dot", line_color=_colour(place)
+            )
     figure.update_layout(
         height=inside + EDGE + 20,
         margin={"l": 64, "r": 12, "t": 8, "b": EDGE},
@@ -249,11 +251,11 @@ def _difference_table(comparison: Comparison) -> str:
     return _table(("", *(escape(one.name) for one in comparison.sessions)), rows)
 
 
-def _marker_table(comparison: Comparison) -> str:
+def _bookmark_table(comparison: Comparison) -> str:
     rows = [
-        (f"{marker.time - (session.offset or 0):.2f} s", escape(session.name), escape(marker.text))
+        (f"{bookmark.time - (session.offset or 0):.2f} s", escape(session.name), escape(bookmark.text))
         for session in comparison.sessions
-        for marker in session.markers
+        for bookmark in session.markers
     ]
     return "<h2>Bookmarks</h2>" + _table(("Time", "Session", "Bookmark"), rows) if rows else ""
 

@@ -108,7 +108,7 @@ class ArchivedSession(_Strict):
     software: Words = ""
 
 
-class ArchivedMarker(_Strict):
+class ArchivedBookmark(_Strict):
     """The columns of a bookmark (see `BookmarkRow`)."""
 
     time: Time
@@ -130,7 +130,7 @@ class ArchivedDocument(_Strict):
 
     session: ArchivedSession
     tags: Annotated[list[Annotated[str, Field(min_length=1, max_length=1000)]], Field(max_length=10_000)]
-    markers: Annotated[list[ArchivedMarker], Field(max_length=100_000)]
+    markers: Annotated[list[ArchivedBookmark], Field(max_length=100_000)]
     gaps: Annotated[list[ArchivedGap], Field(max_length=1_000_000)]
 
 

@@ -17,13 +17,13 @@ def describe_session(store: Reader, recording: Recording) -> dict[str, Any]:
     row = recording.row
     with store.read() as database:
         gaps = database.exec(select(Gap).where(Gap.session_id == row.id).order_by(col(Gap.id))).all()
-        markers = database.exec(
+        bookmarks = database.exec(
             select(BookmarkRow).where(BookmarkRow.session_id == row.id).order_by(col(BookmarkRow.time))
         )
         tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == row.id))
         marks = [
-            {"time": marker.time - row.started_steady, "text": marker.text, "made": _iso(marker.made)}
-            for marker in markers
+            {"time": bookmark.time - row.started_steady, "text": bookmark.text, "made": _iso(bookmark.made)}
+            for bookmark in bookmarks
         ]
         words = sorted(tags)
     plain = row.model_dump(exclude={"started", "ended", "deleted", "kept", "robot_state", "topics"})

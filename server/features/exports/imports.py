@@ -132,7 +132,7 @@ class Imports:
         session = {"session_id": number}
         small: list[tuple[type[SQLModel], list[dict[str, Any]]]] = [
             (SessionTag, [session | {"tag": tag} for tag in dict.fromkeys(content.tags)]),
-            (BookmarkRow, [session | marker.model_dump() for marker in content.markers]),
+            (BookmarkRow, [session | bookmark.model_dump() for bookmark in content.markers]),
             (Gap, [session | gap.model_dump() for gap in content.gaps]),
         ]
         for table, rows in small:

@@ -137,7 +137,7 @@ def _samples(store: Reader, source: ExportSelection) -> list[Iterator[_Sample]]:
     found = [
         readers[source.topics[name]["kind"]](source, name, place) for place, name in enumerate(source.names)
     ]
-    return [*found, _markers(store, source)]
+    return [*found, _bookmarks(store, source)]
 
 
 def _rows(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
@@ -167,17 +167,17 @@ def _pictures(source: ExportSelection, name: str, place: int) -> Iterator[_Sampl
         yield (time, place, dump(image), None)
 
 
-def _markers(store: Reader, source: ExportSelection) -> Iterator[_Sample]:
+def _bookmarks(store: Reader, source: ExportSelection) -> Iterator[_Sample]:
     query = select(BookmarkRow).where(BookmarkRow.session_id == source.row.id).order_by(col(BookmarkRow.time))
     with store.read() as database:
-        markers = database.exec(query).all()
-    for marker in markers:
-        if source.start <= marker.time <= source.end:
+        bookmarks = database.exec(query).all()
+    for bookmark in bookmarks:
+        if source.start <= bookmark.time <= source.end:
             yield (
-                source.utc_ns(marker.time),
+                source.utc_ns(bookmark.time),
                 len(source.names),
                 b"",
-                {"topic": "marker", "text": marker.text},
+                {"topic": "marker", "text": bookmark.text},
             )
 
 

@@ -79,7 +79,7 @@ class Bookmarks:
         return self._clock.now() if active is not None and active.id == session else None
 
 
-def describe_bookmarks(markers: Iterable[BookmarkRow], start: float) -> list[Bookmark]:
+def describe_bookmarks(bookmarks: Iterable[BookmarkRow], start: float) -> list[Bookmark]:
     """The bookmarks by time, of a session that began at `start` (s, steady clock)."""
     return [
         Bookmark(
@@ -88,7 +88,7 @@ def describe_bookmarks(markers: Iterable[BookmarkRow], start: float) -> list[Boo
             text=one.text,
             made=datetime.fromtimestamp(one.made, UTC),
         )
-        for one in sorted(markers, key=lambda one: (one.time, one.id or 0))
+        for one in sorted(bookmarks, key=lambda one: (one.time, one.id or 0))
     ]
 
 

@@ -74,8 +74,8 @@ class Listing:
         row = find_row(self._reader, session)
         with self._reader.read() as database:
             tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == session)).all()
-            markers = select(func.count()).select_from(BookmarkRow).where(BookmarkRow.session_id == session)
-            return from_row(row, tags, database.exec(markers).one())
+            bookmarks = select(func.count()).select_from(BookmarkRow).where(BookmarkRow.session_id == session)
+            return from_row(row, tags, database.exec(bookmarks).one())
 
     def detail(self, session: int) -> SessionDetail:
         """One session with everything that is known of it except its samples."""

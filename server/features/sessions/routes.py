@@ -151,31 +151,31 @@ def get_thumbnail(
     "POST /sessions/{session}/markers", Need.OPERATOR, NO_BOOKMARK, ConflictError, status_code=201
 )
 async def add_mark(
-    markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, body: NewBookmark
+    bookmarks: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, body: NewBookmark
 ) -> Bookmark:
     """Bookmark a moment; without a time it is now.
 
     Refused beyond the session's end, and without a time after the session has ended.
     """
-    mark = await markers.add(session, body.time, body.text)
+    mark = await bookmarks.add(session, body.time, body.text)
     catalogue.notify(session)
     return mark
 
 
 @router.operation("PATCH /sessions/{session}/markers/{mark}", Need.OPERATOR, NO_BOOKMARK, ConflictError)
 async def change_mark(
-    markers: Provided[Bookmarks], session: Identifier, mark: Identifier, body: BookmarkChanges
+    bookmarks: Provided[Bookmarks], session: Identifier, mark: Identifier, body: BookmarkChanges
 ) -> Bookmark:
     """Change the time or the text of a bookmark."""
-    return await markers.change(session, mark, body.time, body.text)
+    return await bookmarks.change(session, mark, body.time, body.text)
 
 
 @router.operation("DELETE /sessions/{session}/markers/{mark}", Need.OPERATOR, NO_BOOKMARK, ConflictError)
 async def remove_mark(
-    markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, mark: Identifier
+    bookmarks: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, mark: Identifier
 ) -> None:
     """Remove a bookmark for good."""
-    await markers.remove(session, mark)
+    await bookmarks.remove(session, mark)
     catalogue.notify(session)
 
 

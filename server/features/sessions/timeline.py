@@ -55,7 +55,7 @@ def read_timeline(recording: Recording) -> Timeline:
     """The timeline of a session. Raises StoreError, RecordingError."""
     row = recording.row
     with recording.read() as database:
-        markers = database.exec(select(BookmarkRow).where(BookmarkRow.session_id == row.id)).all()
+        bookmarks = database.exec(select(BookmarkRow).where(BookmarkRow.session_id == row.id)).all()
         spans = database.exec(
             select(Chunk.first_time, Chunk.last_time)
             .where(Chunk.session_id == row.id, Chunk.topic == "state")
@@ -69,7 +69,7 @@ def read_timeline(recording: Recording) -> Timeline:
         started_steady=row.started_steady,
         duration=session.duration,
         events=read_events(recording, EVENTS_MAX),
-        markers=describe_bookmarks(markers, row.started_steady),
+        markers=describe_bookmarks(bookmarks, row.started_steady),
         holes=_find_silences(spans, row.started_steady, row.duration),
     )
 
