@@ -23,7 +23,7 @@ def test_the_program_learns_the_reset_cause(make_rig: Make) -> None:
 
 # It hangs in a loop, sleeps with interrupts off, or jumps into erased memory.
 @pytest.mark.parametrize("command", [b"H", b"Z", b"J"])
-def test_the_watchdog_wakes_a_chip_that_is_lost(make_rig: Make, command: bytes) -> None:
+def test_the_watchdog_resets_a_hung_chip(make_rig: Make, command: bytes) -> None:
     rig = make_rig("monitor")
     monitor = Monitor(rig)
     monitor.boot()
@@ -38,7 +38,7 @@ def test_the_watchdog_wakes_a_chip_that_is_lost(make_rig: Make, command: bytes) 
     assert rig.board.stats()["resets"] == 2
 
 
-def test_a_lost_chip_without_watchdog_stays_lost(make_rig: Make) -> None:
+def test_a_hung_chip_without_watchdog_stays_hung(make_rig: Make) -> None:
     rig = make_rig("monitor")
     Monitor(rig).boot()
     rig.port.write(b"J")
@@ -71,7 +71,7 @@ def test_writing_the_eeprom_takes_its_time(make_rig: Make) -> None:
 
 
 @pytest.mark.usefixtures("built")
-def test_the_eeprom_is_kept_even_where_the_board_is_killed(tmp_path: Path) -> None:
+def test_the_eeprom_survives_a_kill_of_the_board(tmp_path: Path) -> None:
     options = ("--eeprom", str(tmp_path / "eeprom"))
     rig = Rig(SKETCHES / "monitor.elf", tmp_path, *options)
     with rig:
@@ -101,7 +101,7 @@ def test_another_program_can_be_loaded(make_rig: Make) -> None:
     assert Monitor(rig).boot() == RESET_PIN
 
 
-def test_what_is_no_program_is_refused_and_the_old_one_goes_on(make_rig: Make) -> None:
+def test_an_invalid_program_is_refused_and_the_old_one_runs_on(make_rig: Make) -> None:
     rig = make_rig("echo")
     rig.board.run(0.01)
     with pytest.raises(BoardError, match="not an ELF file for an AVR"):

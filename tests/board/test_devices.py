@@ -77,7 +77,7 @@ def test_the_imu_sleeps_until_it_is_woken(monitor: Monitor) -> None:
 
 
 @pytest.mark.parametrize("scale", [0, 1, 2, 3])
-def test_the_imu_obeys_its_ranges(rig: Rig, monitor: Monitor, scale: int) -> None:
+def test_the_imu_applies_its_configured_ranges(rig: Rig, monitor: Monitor, scale: int) -> None:
     rig.board.sense(STILL_WATER._replace(force=(1.0, -2.0, -GRAVITY), rate=(0.5, -1.0, 2.0)))
     monitor.transfer(IMU, bytes([0x6B, 0]))
     monitor.transfer(IMU, bytes([0x1B, scale << 3, scale << 3]))
@@ -141,7 +141,7 @@ def test_the_prom_carries_its_checksum(monitor: Monitor) -> None:
 
 @pytest.mark.parametrize("pressure", [101325.0, 113098.0, 250000.0])
 @pytest.mark.parametrize("temperature", [4.0, 20.0, 31.5])
-def test_the_compensation_gives_back_what_is_felt(
+def test_the_compensation_returns_the_true_pressure(
     rig: Rig, monitor: Monitor, pressure: float, temperature: float
 ) -> None:
     rig.board.sense(STILL_WATER._replace(pressure=pressure, temperature=temperature))
@@ -183,7 +183,7 @@ def test_an_encoder_shows_the_fins_angle_with_parity(rig: Rig, monitor: Monitor)
         assert 24 * 16 / CLOCK < duration < 24 * 16 / CLOCK + 6e-6
 
 
-def test_an_encoder_shows_too_much_by_what_the_water_says(rig: Rig, monitor: Monitor) -> None:
+def test_an_encoder_has_the_offset_that_the_water_sets(rig: Rig, monitor: Monitor) -> None:
     def ticks() -> list[int]:
         rig.board.run(0.002)
         return [monitor.encoder(fin)[1] >> 6 for fin in range(4)]
@@ -309,7 +309,7 @@ def test_absent_devices_refuse_their_addresses(rig: Rig, monitor: Monitor) -> No
         assert monitor.transfer(address)[0] == ACKNOWLEDGED_ADDRESS
 
 
-def test_stuck_sensors_show_what_they_showed(rig: Rig, monitor: Monitor) -> None:
+def test_stuck_sensors_repeat_their_last_reading(rig: Rig, monitor: Monitor) -> None:
     monitor.transfer(IMU, b"\x6b\0")
     before = imu_counts(monitor), convert(rig, monitor, 0x4A, 0.02)
     rig.board.fault("imu", "stuck")

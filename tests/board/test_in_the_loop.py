@@ -57,7 +57,7 @@ def feel(robot: Robot, depth: float, seconds: float, command: Navigation | None 
     return heard
 
 
-def test_what_the_host_tells_comes_back_as_if_measured(robot: Robot) -> None:
+def test_simulated_readings_come_back_as_telemetry(robot: Robot) -> None:
     robot.greet()
     feel(robot, 0.0, 1.0)
     feel(robot, 0.75, 0.2)

@@ -78,7 +78,7 @@ def test_inserted_characters_come_in_between(rig: Rig) -> None:
     assert is_part(sent, heard)
 
 
-def test_both_together_hold_the_program_up_and_lose_nothing(rig: Rig) -> None:
+def test_doubling_and_inserting_together_delay_and_lose_nothing(rig: Rig) -> None:
     rig.board.disturb_line("from_board", "insert", 1.0)
     rig.board.disturb_line("from_board", "double", 1.0)
     sent = data(80)
@@ -88,7 +88,7 @@ def test_both_together_hold_the_program_up_and_lose_nothing(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_a_wrong_bit_is_seen_where_it_is_counted_and_nowhere_else(rig: Rig, direction: LineDirection) -> None:
+def test_wrong_bits_are_exactly_the_counted_ones(rig: Rig, direction: LineDirection) -> None:
     rig.board.disturb_line(direction, "bit_errors", 0.03)
     seen = wrong_stop_bits = 0
     # A few wrong bits must not make one of the sketch's commands of a byte.
@@ -189,7 +189,7 @@ def test_the_same_seed_gives_the_same_faults(make_rig: Make) -> None:
     assert heard[0] != heard[2]
 
 
-def test_clean_ends_it_all_and_the_counts_stay(rig: Rig) -> None:
+def test_clean_ends_all_faults_and_keeps_the_counts(rig: Rig) -> None:
     rig.board.disturb_line("to_board", "bit_errors", 0.01)
     rig.board.disturb_line("to_board", "drop", 0.5)
     rig.board.burst_line("to_board", 0.01, 20)
@@ -225,7 +225,7 @@ def test_clean_ends_it_all_and_the_counts_stay(rig: Rig) -> None:
         "seed",
     ],
 )
-def test_what_makes_no_sense_is_refused(rig: Rig, command: str) -> None:
+def test_invalid_faults_are_refused(rig: Rig, command: str) -> None:
     with pytest.raises(BoardError, match=r"^(line|seed) takes "):
         rig.board.command(command)
     assert say(rig, data(20)) == data(20)

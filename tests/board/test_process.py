@@ -49,14 +49,14 @@ def test_time_in_which_it_was_held_up_is_skipped_and_counted(tmp_path: Path) -> 
         assert after["time"] - before["time"] < 0.4
 
 
-def test_it_can_go_faster_than_time(tmp_path: Path) -> None:
+def test_it_can_run_faster_than_real_time(tmp_path: Path) -> None:
     with start(tmp_path, "--speed", "0") as process, process.connect() as board:
         first, begin = board.stats()["time"], time.monotonic()
         wait_for(lambda: board.stats()["time"] - first >= 2, "two seconds of the board's time")
         assert time.monotonic() - begin < 2
 
 
-def test_a_host_hears_it_in_real_time(tmp_path: Path) -> None:
+def test_a_host_receives_telemetry_in_real_time(tmp_path: Path) -> None:
     with start(tmp_path) as process, process.connect() as board:
         wait_for(lambda: board.stats()["time"] > 0.01, "the sketch to start")
         port = os.open(process.tty, os.O_RDWR | os.O_NOCTTY)
@@ -77,7 +77,7 @@ def test_run_is_for_paused_boards(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_ends_it_and_it_tidies_up(tmp_path: Path, number: signal.Signals) -> None:
+def test_a_signal_ends_it_and_its_files_are_removed(tmp_path: Path, number: signal.Signals) -> None:
     process = start(tmp_path)
     assert process.tty.is_symlink()
     assert process.socket.is_socket()
@@ -97,7 +97,7 @@ def test_quit_ends_it(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_a_killed_board_left_is_no_hindrance(tmp_path: Path) -> None:
+def test_it_starts_despite_the_files_of_a_killed_board(tmp_path: Path) -> None:
     process = start(tmp_path)
     process.process.kill()
     process.stop()
@@ -131,7 +131,7 @@ def test_it_ends_with_its_parent(tmp_path: Path) -> None:
     assert not (tmp_path / "tty").is_symlink()
 
 
-def test_it_outlives_its_server_no_longer_than_it_is_told(tmp_path: Path) -> None:
+def test_it_outlives_its_server_for_the_given_time_at_most(tmp_path: Path) -> None:
     lock = tmp_path / "server.lock"
     with lock.open("w") as server:
         fcntl.flock(server, fcntl.LOCK_EX)

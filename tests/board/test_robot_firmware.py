@@ -76,7 +76,7 @@ def test_it_finds_every_device(robot: Robot) -> None:
     assert robot.board.stats()["framing_errors_host"] == 0
 
 
-def test_its_drivers_read_what_the_sensors_feel(robot: Robot) -> None:
+def test_its_drivers_return_the_true_readings(robot: Robot) -> None:
     robot.listen(1.0)  # at the surface, whose pressure it takes as zero depth
     reading = Reading(
         pressure=101325.0 + 1.5 * 9810,

@@ -62,7 +62,7 @@ def test_another_speed_gives_garbage_and_framing_errors(make_rig: Make, baud: in
     assert rig.board.stats()["framing_errors_board"] > 0
 
 
-def test_a_deaf_program_keeps_three_bytes_and_learns_that_it_lost_some(make_rig: Make) -> None:
+def test_a_program_that_does_not_read_keeps_three_bytes_and_detects_the_overrun(make_rig: Make) -> None:
     rig = make_rig("deaf")
     rig.board.run(START)
     data = random_bytes(100)
@@ -75,7 +75,7 @@ def test_a_deaf_program_keeps_three_bytes_and_learns_that_it_lost_some(make_rig:
     assert stats["bytes_to_board"] == 100
 
 
-def test_two_bytes_wait_while_interrupts_are_shut_out(make_rig: Make) -> None:
+def test_two_bytes_wait_while_interrupts_are_disabled(make_rig: Make) -> None:
     rig = make_rig("echo")
     rig.board.run(START)
     rig.exchange(bytes([4]), 0.002)

@@ -49,7 +49,7 @@ def join(built: None, tmp_path: Path) -> Iterator[Join]:  # noqa: ARG001 - the b
 
 
 @pytest.mark.parametrize("baud", SPEEDS)
-def test_it_does_at_each_speed_what_the_line_carries(join: Join, baud: int) -> None:
+def test_telemetry_at_each_speed_is_what_the_line_carries(join: Join, baud: int) -> None:
     host = join(baud, baud)
     frame = airtime(FRAME_BYTES_MAX, baud)
     host.until(lambda: host.session.stage is SessionStage.ESTABLISHED, 0.5 + 4 * frame)
@@ -88,7 +88,7 @@ def test_it_does_at_each_speed_what_the_line_carries(join: Join, baud: int) -> N
 
 
 @pytest.mark.parametrize(("board_baud", "host_baud"), [(250_000, 9600), (9600, 250_000), (1200, 500_000)])
-def test_a_wrong_speed_is_told_as_such(join: Join, board_baud: int, host_baud: int) -> None:
+def test_a_wrong_speed_is_reported(join: Join, board_baud: int, host_baud: int) -> None:
     host = join(board_baud, host_baud)
     host.until(lambda: host.session.garbled, 5.0)
     assert host.session.stage is SessionStage.GREETING

@@ -52,7 +52,7 @@ def robot(built: None, tmp_path: Path, water: Simulator) -> Iterator[Robot]:  # 
         yield made
 
 
-def test_it_dives_and_knows_how_deep(robot: Robot, water: Simulator) -> None:
+def test_it_dives_and_measures_its_depth(robot: Robot, water: Simulator) -> None:
     robot.arm()
     robot.converse(4.0, DOWN)
     shown = [packet.depth for packet in all_of(robot.converse(0.5, DOWN), Depth)]
@@ -102,7 +102,7 @@ def test_a_gyroscope_that_jumps_and_a_beacon_that_goes(robot: Robot, water: Simu
 
 
 @pytest.mark.usefixtures("built")
-def test_a_bus_error_that_is_asked_for_reaches_the_firmware(
+def test_a_requested_bus_error_reaches_the_firmware(
     tmp_path: Path, water: Simulator, messages: ZenohTransport
 ) -> None:
     build(ROOT / "firmware", "robot")

@@ -36,7 +36,7 @@ def test_the_water_is_asked_at_every_period(make_rig: Make) -> None:
     assert rig.board.stats()["sense_late"] == 0
 
 
-def test_the_answer_is_felt_before_time_goes_on(make_rig: Make) -> None:
+def test_the_answer_applies_before_time_advances(make_rig: Make) -> None:
     rig = make_rig("monitor")
     monitor = Monitor(rig)
     monitor.boot()
@@ -58,7 +58,7 @@ def test_the_answer_is_felt_before_time_goes_on(make_rig: Make) -> None:
     assert counts == round(10 * 0.01 * 131.072 * 57.29577951308232)
 
 
-def test_a_paused_board_waits_as_long_as_the_water_thinks(make_rig: Make) -> None:
+def test_a_paused_board_waits_for_the_water(make_rig: Make) -> None:
     rig = make_rig("echo")
     path = rig.process.socket
     with socket.socket(socket.AF_UNIX) as water:
@@ -114,7 +114,7 @@ def test_a_board_whose_water_goes_runs_on_with_the_last_values(make_rig: Make) -
 
 
 @pytest.mark.usefixtures("built")
-def test_a_living_board_waits_50_ms_and_then_goes_on(tmp_path: Path) -> None:
+def test_a_board_in_real_time_waits_50_ms_and_then_continues(tmp_path: Path) -> None:
     with (
         EmulatorProcess(PROGRAM, SKETCHES / "echo.elf", tmp_path / "tty", tmp_path / "board") as process,
         socket.socket(socket.AF_UNIX) as water,
@@ -163,7 +163,7 @@ def test_bad_commands_are_refused_with_a_reason(make_rig: Make, line: str, reaso
     assert rig.board.run(0.001) == pytest.approx(0.001, abs=1e-6)
 
 
-def test_commands_may_come_in_pieces_and_in_heaps(make_rig: Make) -> None:
+def test_commands_may_come_in_pieces_or_several_at_once(make_rig: Make) -> None:
     rig = make_rig("echo")
     with socket.socket(socket.AF_UNIX) as client:
         client.connect(str(rig.process.socket))

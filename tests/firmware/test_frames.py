@@ -122,12 +122,12 @@ def test_malformed_cobs_is_refused_where_the_package_refuses_it(firmware: ctypes
 
 
 @given(some=frames, number=st.integers(0, 4095))
-def test_frame_of_the_host_is_understood(decode: Decode, some: list[Packet], number: int) -> None:
+def test_a_frame_of_the_host_is_decoded(decode: Decode, some: list[Packet], number: int) -> None:
     assert decode(framing.build(some, number, 0)) == ([expected(some)], 0)
 
 
 @given(some=frames, key=keys, theirs=keys)
-def test_frames_of_other_sessions_are_none(
+def test_frames_of_other_sessions_are_dropped(
     firmware: ctypes.CDLL, some: list[Packet], key: int, theirs: int
 ) -> None:
     decoder = firmware.decoder_create()
@@ -141,7 +141,7 @@ def test_frames_of_other_sessions_are_none(
 
 
 @given(some=st.lists(frames, min_size=1, max_size=4), key=keys)
-def test_frame_of_the_board_is_understood(firmware: ctypes.CDLL, some: list[list[Packet]], key: int) -> None:
+def test_a_frame_of_the_board_is_decoded(firmware: ctypes.CDLL, some: list[list[Packet]], key: int) -> None:
     packer = firmware.packer_create()
     data, room = b"", ctypes.create_string_buffer(FRAME_BYTES_MAX)
     for number, frame in enumerate(some):
@@ -181,7 +181,7 @@ def test_frames_survive_zeros_between_them(decode: Decode, some: list[list[Packe
 
 
 @given(noise=st.binary(max_size=200), some=frames)
-def test_frame_after_noise_is_understood(decode: Decode, noise: bytes, some: list[Packet]) -> None:
+def test_a_frame_after_noise_is_decoded(decode: Decode, noise: bytes, some: list[Packet]) -> None:
     found, _ = decode(noise + b"\0" + framing.build(some, 0, 0))
     assert found[-1:] == [expected(some)]
 
@@ -198,7 +198,9 @@ def test_truncated_frame_is_dropped_and_counted(
 
 
 @given(some=frames, flips=st.sets(st.integers(0, 8 * 63 - 1), min_size=1, max_size=8))
-def test_flipped_bits_are_never_believed(decode: Decode, some: list[Packet], flips: set[int]) -> None:
+def test_frames_with_flipped_bits_are_never_accepted(
+    decode: Decode, some: list[Packet], flips: set[int]
+) -> None:
     whole = bytearray(framing.build(some, 0, 0))
     damaged = whole.copy()
     for flip in flips:
@@ -250,7 +252,7 @@ def test_wrong_length_or_type_refuses_the_whole_frame(decode: Decode, messages: 
     assert decode(raw_frame(b"\x00" + messages)) == ([], 1), why
 
 
-def test_decoder_tells_the_frames_number(firmware: ctypes.CDLL) -> None:
+def test_the_decoder_returns_the_frame_s_number(firmware: ctypes.CDLL) -> None:
     decoder = firmware.decoder_create()
     for number in (0, 5, 15):
         fed = [firmware.decoder_feed(decoder, byte) for byte in framing.build([Start(epoch=1)], number, 0)]
@@ -285,7 +287,7 @@ queueable: st.SearchStrategy[Packet] = st.one_of(
 
 
 @given(some=st.lists(queueable, max_size=60), takes=st.lists(st.integers(0, 4), max_size=60))
-def test_what_is_queued_comes_in_order(firmware: ctypes.CDLL, some: list[Packet], takes: list[int]) -> None:
+def test_queued_lines_come_in_order(firmware: ctypes.CDLL, some: list[Packet], takes: list[int]) -> None:
     queue = firmware.queue_create()
     came: list[bytes] = []
     accepted: list[bytes] = []
@@ -299,7 +301,7 @@ def test_what_is_queued_comes_in_order(firmware: ctypes.CDLL, some: list[Packet]
     assert came == accepted
 
 
-def test_queue_holds_a_starts_lines_and_then_refuses(firmware: ctypes.CDLL, queue: int) -> None:
+def test_the_queue_holds_the_lines_of_a_start_and_then_refuses(firmware: ctypes.CDLL, queue: int) -> None:
     line = Debug(time=1, level=0, text="a" * 40)
     kept = sum(pushed(firmware, queue, line) for _ in range(100))
     assert 4 <= kept < 100

@@ -83,14 +83,14 @@ def test_published_angular_signs(firmware: ctypes.CDLL) -> None:
 
 
 @given(command=commands)
-def test_no_fin_gets_more_than_the_most(firmware: ctypes.CDLL, command: tuple[int, ...]) -> None:
+def test_no_fin_exceeds_full_command(firmware: ctypes.CDLL, command: tuple[int, ...]) -> None:
     amplitudes = [amplitude for _, amplitude in mix(firmware, command)]
     assert max(amplitudes) <= AMPLITUDE_MAX * (1 + 1e-6)
     assert min(amplitudes) >= 0
 
 
 @given(command=commands)
-def test_too_much_is_scaled_and_keeps_its_shape(firmware: ctypes.CDLL, command: tuple[int, ...]) -> None:
+def test_excessive_commands_are_scaled_in_proportion(firmware: ctypes.CDLL, command: tuple[int, ...]) -> None:
     """Each fin pushes the sum of what the axes ask; all are scaled alike where one would push too much."""
     x, y, z, roll, pitch, yaw = (count / 127 for count in command)
     wanted: list[tuple[float, float]] = []
@@ -107,7 +107,7 @@ def test_too_much_is_scaled_and_keeps_its_shape(firmware: ctypes.CDLL, command: 
 
 
 @given(directions=angles)
-def test_command_of_nought_turns_no_fin(firmware: ctypes.CDLL, directions: tuple[float, ...]) -> None:
+def test_a_zero_command_turns_no_fin(firmware: ctypes.CDLL, directions: tuple[float, ...]) -> None:
     assert mix(firmware, (0,) * 6, directions) == [(direction, 0) for direction in directions]
 
 

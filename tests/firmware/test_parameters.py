@@ -42,7 +42,7 @@ def wanted_swing(packets: list[Packet]) -> float:
 
 
 @pytest.mark.parametrize("name", NUMBERS)
-def test_both_ends_of_the_range_are_taken_and_nothing_beyond(robot: Robot, name: str) -> None:
+def test_values_are_accepted_within_their_range_only(robot: Robot, name: str) -> None:
     limits = CHIP_PARAMETERS[NUMBERS[name]]
     robot.greet()
     assert tune(robot, name, limits.minimum) == pytest.approx(limits.minimum)
@@ -68,7 +68,7 @@ def test_no_value_out_of_range_is_ever_in_force(number: int, value: float) -> No
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_cannot_even_be_said(value: float) -> None:
+def test_nan_cannot_be_encoded(value: float) -> None:
     with pytest.raises(LayoutError):
         Parameter(number=0, value=value).to_bytes()
 

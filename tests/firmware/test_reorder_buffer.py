@@ -47,7 +47,7 @@ def host(robot: Robot) -> Host:
     return Host(robot)
 
 
-def test_what_came_before_its_turn_is_told_and_taken_when_its_turn_comes(host: Host) -> None:
+def test_an_early_frame_is_acknowledged_and_delivered_in_its_turn(host: Host) -> None:
     for number in (1, 2, 4):
         host.send(number, NumberMsg(number=number))
     assert host.told() == (0, 0b1011)
@@ -57,7 +57,7 @@ def test_what_came_before_its_turn_is_told_and_taken_when_its_turn_comes(host: H
     assert host.told() == (5, 0)
 
 
-def test_what_there_is_no_room_for_is_not_told(host: Host) -> None:
+def test_a_frame_without_room_is_not_acknowledged(host: Host) -> None:
     for number in (1, 2, 3, 4):
         host.send(number, *[NumberMsg(number=number)] * NUMBERS_IN_A_FRAME)
     host.send(5, NumberMsg(number=5))

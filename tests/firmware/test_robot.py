@@ -187,7 +187,7 @@ def test_silent_bridge_is_reported_while_powered(robot: Robot) -> None:
     assert robot.status().faults == 0
 
 
-def test_fault_that_a_bridge_reports_is_told_and_cleared(robot: Robot) -> None:
+def test_a_fault_of_a_bridge_is_reported_and_cleared(robot: Robot) -> None:
     robot.arm()
     robot.bridges[2].fault = 0b11
     robot.beat(500)
@@ -292,7 +292,7 @@ def lit_share(robot: Robot) -> tuple[float, int]:
     )
 
 
-def test_led_tells_disarmed_armed_and_fault(robot: Robot) -> None:
+def test_the_led_shows_disarmed_armed_and_fault(robot: Robot) -> None:
     robot.run(500)
     assert lit_share(robot) == (0.1, 1)
     robot.arm()

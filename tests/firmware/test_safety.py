@@ -282,7 +282,7 @@ def test_another_run_of_the_host_disarms(robot: Robot) -> None:
     assert robot.texts[-1] == "disarmed: another host"
 
 
-def test_after_a_watchdog_reset_it_is_disarmed_and_says_so(robot: Robot) -> None:
+def test_after_a_watchdog_reset_it_is_disarmed_and_reports_the_cause(robot: Robot) -> None:
     robot.arm()
     robot.swim(500, FORWARD)
     robot.reset(ResetCause.WATCHDOG)
@@ -314,7 +314,7 @@ steps = st.one_of(
 
 
 @given(story=st.lists(steps, max_size=25))
-def test_whatever_comes_power_means_armed_and_heard(story: list[tuple[str, int]]) -> None:
+def test_under_any_input_motor_power_implies_armed_and_a_live_host(story: list[tuple[str, int]]) -> None:
     """Motor power is never on unless the host was heard within the last second and since the last STOP."""
     with Robot(load()) as robot:
         robot.greet()

@@ -33,11 +33,11 @@ def test_encoder_word_with_a_flipped_bit_is_refused(firmware: ctypes.CDLL, count
         encoder_word(500, increase=1, decrease=1),
     ],
 )
-def test_encoder_that_is_missing_or_complains_is_refused(firmware: ctypes.CDLL, word: int) -> None:
+def test_readings_of_a_missing_or_faulty_encoder_are_refused(firmware: ctypes.CDLL, word: int) -> None:
     assert firmware.firmware_encoder_counts(word) == -1
 
 
-def test_encoder_may_see_its_magnet_move(firmware: ctypes.CDLL) -> None:
+def test_an_encoder_may_report_a_moving_magnet(firmware: ctypes.CDLL) -> None:
     assert firmware.firmware_encoder_counts(encoder_word(500, increase=1)) == 500
     assert firmware.firmware_encoder_counts(encoder_word(500, decrease=1)) == 500
 

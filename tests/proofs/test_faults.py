@@ -17,7 +17,7 @@ def _built() -> None:
 
 
 @pytest.mark.parametrize("row", [row for row in ROWS if row.name not in SLOW], ids=lambda row: row.name)
-def test_a_fault_is_told_and_the_fins_stop_in_time(row: Row) -> None:
+def test_a_fault_is_reported_and_the_fins_stop_in_time(row: Row) -> None:
     assert faults.measure(row, 2, seed=3).problems == []
 
 

@@ -18,7 +18,7 @@ HOST, BOARD = 5, 6
 KEY = session_key(HOST, BOARD)
 
 
-def test_the_firmware_stands_whatever_it_hears(tmp_path: Path) -> None:
+def test_the_firmware_survives_any_input(tmp_path: Path) -> None:
     fuzz.prepare(tmp_path / "corpus")
     assert fuzz.run(tmp_path / "corpus", f"-runs={EXECUTIONS}", "-seed=1") == EXECUTIONS
 
@@ -57,9 +57,7 @@ def again(frame: Frame) -> bytes:
 
 @settings(max_examples=1000)
 @given(contents(), st.sampled_from([OPEN, KEY]))
-def test_both_decoders_believe_the_same_of_any_content(
-    firmware: ctypes.CDLL, content: bytes, key: int
-) -> None:
+def test_both_decoders_agree_on_any_content(firmware: ctypes.CDLL, content: bytes, key: int) -> None:
     data = framed(content, key)
     decoder = Decoder()
     decoder.key = KEY
@@ -78,7 +76,7 @@ def test_both_decoders_believe_the_same_of_any_content(
 
 @settings(max_examples=300)
 @given(st.lists(st.tuples(contents(), st.sampled_from([OPEN, KEY])), max_size=20))
-def test_the_hosts_session_stands_whatever_it_hears(said: list[tuple[bytes, int]]) -> None:
+def test_the_host_s_session_survives_any_input(said: list[tuple[bytes, int]]) -> None:
     session = LinkSession(HOST, 250_000)
     hello = encode(Hello(definitions=DEFINITIONS_HASH, epoch=BOARD, credit=64))
     session.receive(framed(b"\0" + hello + b"\0", OPEN), 0.0)

@@ -26,21 +26,21 @@ def named(name: str) -> Guard:
 
 
 @pytest.mark.parametrize("guard", read_guards(), ids=lambda guard: guard.name)
-def test_every_guard_is_where_the_list_says(guard: Guard) -> None:
+def test_every_guard_is_at_its_listed_place(guard: Guard) -> None:
     assert guard.problem(ROOT) == ""
     assert guard.without != guard.guard
 
 
-def test_all_that_the_tables_of_the_code_hold_is_on_the_list() -> None:
+def test_every_entry_of_the_code_s_tables_is_on_the_list() -> None:
     assert {subject for guard in read_guards() for subject in guard.subjects} == list_guarded()
 
 
-def test_names_are_given_once() -> None:
+def test_names_of_guards_are_unique() -> None:
     names = [guard.name for guard in read_guards()]
     assert len(set(names)) == len(names)
 
 
-def test_a_guard_is_missed_and_what_guards_nothing_is_not() -> None:
+def test_the_removal_of_a_guard_is_detected_and_of_unguarded_code_is_not() -> None:
     guard = named(ONE)
     with copy_tree() as tree:
         assert tree.run(guard.tests).failed == ()
@@ -61,7 +61,7 @@ def tree() -> Iterator[Tree]:
 # By number, since the names of tests must not change with the date.
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("number", range(MOST))
-def test_a_guard_of_today_s_tenth_is_missed(
+def test_the_removal_of_today_s_tenth_of_guards_is_detected(
     tree: Tree, number: int, record_property: Callable[[str, object], None]
 ) -> None:
     guards = read_guards()[DAY % PARTS :: PARTS]

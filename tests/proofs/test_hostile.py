@@ -32,7 +32,7 @@ def test_nothing_gets_in(field: Field, name: str) -> None:
     field.survey()
 
 
-def test_the_canary_would_show_what_gets_in(tmp_path: Path) -> None:
+def test_the_canary_detects_an_executed_command(tmp_path: Path) -> None:
     canary, secret = tmp_path / "canary", tmp_path / "secret.txt"
     secret.write_text("secret")
     words = Words(canary, secret, 1)
@@ -44,7 +44,7 @@ def test_the_canary_would_show_what_gets_in(tmp_path: Path) -> None:
     pytest.fail("no word of a hundred made the canary, in a shell that obeyed them")
 
 
-def test_nobody_calls_a_shell() -> None:
+def test_no_code_calls_a_shell() -> None:
     for folder in ("robot_runtime", "server", "migrations"):
         for path in (ROOT / folder).rglob("*.py"):
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

@@ -36,7 +36,7 @@ def wait_for(row: tuple[str, ...], data: Path, question: str) -> None:
 
 
 @pytest.mark.timeout(300)
-def test_a_part_that_is_killed_alone_is_a_new_one_and_the_session_goes_on() -> None:
+def test_a_killed_process_is_replaced_and_the_session_continues() -> None:
     with tempfile.TemporaryDirectory(prefix="mucat-") as name:
         data = Path(name) / "data"
         with Stack(data) as stack:

@@ -31,7 +31,7 @@ def recorded(library: Path) -> Iterator[Recorded]:
 
 
 @pytest.mark.timeout(300)
-def test_what_was_acknowledged_survives_a_power_cut(recorded: Recorded) -> None:
+def test_committed_changes_survive_a_power_cut(recorded: Recorded) -> None:
     data, before, steps = recorded
     report = replay(data, before, steps, states=300, seed=1)
     assert (report.cuts.total(), report.bad, report.words) == (300, 0, [])
@@ -41,7 +41,7 @@ def test_what_was_acknowledged_survives_a_power_cut(recorded: Recorded) -> None:
 
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("name", WEAKER)
-def test_weaker_settings_are_seen_to_lose_something(name: str, library: Path, folder: Path) -> None:
+def test_weaker_settings_lose_data(name: str, library: Path, folder: Path) -> None:
     report = replay(*record(folder, library, *WEAKER[name]), states=180, seed=1)
     assert report.lossy.total() > 0
 

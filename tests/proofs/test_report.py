@@ -28,7 +28,7 @@ def outcomes(folder: Path) -> dict[str, Outcome]:
     return {name: Outcome(**one) for name, one in stored.items()}
 
 
-def test_a_proof_that_fails_stands_in_the_report_and_the_next_ones_run(folder: Path) -> None:
+def test_a_failed_proof_is_reported_and_the_next_ones_run(folder: Path) -> None:
     assert report.main() == 1
     text = (folder / "build/proofs/report.md").read_text()
     assert "| [good](#good) | It works. | held | 0 |" in text
@@ -38,7 +38,7 @@ def test_a_proof_that_fails_stands_in_the_report_and_the_next_ones_run(folder: P
     assert outcomes(folder)["good"].said == "all is well"
 
 
-def test_what_has_a_result_on_this_commit_is_not_run_again(folder: Path) -> None:
+def test_a_proof_with_a_result_on_this_commit_is_not_run_again(folder: Path) -> None:
     report.main()
     report.main()
     assert len((folder / "ran").read_text().splitlines()) == 1
@@ -51,7 +51,7 @@ def test_a_named_proof_is_run_again(folder: Path, monkeypatch: pytest.MonkeyPatc
     assert len((folder / "ran").read_text().splitlines()) == 2
 
 
-def test_results_of_another_commit_are_none(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_results_of_another_commit_do_not_count(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     report.main()
     monkeypatch.setattr(report, "commit", lambda: "decade")
     monkeypatch.setattr(sys, "argv", ["report", "good"])
@@ -62,7 +62,7 @@ def test_results_of_another_commit_are_none(folder: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.usefixtures("folder")
-def test_an_unknown_proof_is_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unknown_proof_is_refused_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["report", "luck"])
     with pytest.raises(SystemExit, match="no proof luck; there are good, bad, later"):
         report.main()

@@ -12,7 +12,7 @@ from robot_runtime.control.controllers import CONTROLLERS
 SHIPPED = Path(__file__).resolve().parents[2] / "robot.toml"
 
 
-def test_the_shipped_file_says_the_defaults() -> None:
+def test_the_shipped_file_holds_the_defaults() -> None:
     shipped, plain = load(SHIPPED), Config()
     assert (shipped.robot, shipped.link, shipped.zenoh, shipped.server) == (
         plain.robot,
@@ -45,7 +45,7 @@ def test_the_shipped_file_says_the_defaults() -> None:
         ("[robot", "cannot be read"),
     ],
 )
-def test_what_is_wrong_is_named(tmp_path: Path, text: str, why: str) -> None:
+def test_errors_are_named(tmp_path: Path, text: str, why: str) -> None:
     path = tmp_path / "robot.toml"
     path.write_text(text)
     with pytest.raises(ConfigError, match=why):

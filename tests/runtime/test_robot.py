@@ -313,7 +313,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
     rig.close()
 
 
-def test_what_was_set_up_to_be_seen_outlasts_the_runtime(tmp_path: Path) -> None:
+def test_vision_settings_survive_a_restart_of_the_runtime(tmp_path: Path) -> None:
     usual = VisionSettings()
     changed = replace(
         usual, colour="buoy", colours={"buoy": usual.colours["green"]}, actions={"marker 7": 1.5}
@@ -336,7 +336,7 @@ def test_what_was_set_up_to_be_seen_outlasts_the_runtime(tmp_path: Path) -> None
     second.close()
 
 
-def test_the_last_frames_are_told_when_asked(rig: Rig) -> None:
+def test_the_last_frames_are_returned_on_request(rig: Rig) -> None:
     rig.ready()
     answer = rig.messages.query("query/frames", {})
     assert answer["fault"] is None
@@ -379,7 +379,7 @@ def test_a_port_that_vanishes_disarms_and_its_return_does_not_arm(rig: Rig) -> N
     assert rig.board.count(Start.type) == 0
 
 
-def test_a_silent_board_is_noticed_within_a_second(rig: Rig) -> None:
+def test_a_silent_board_is_a_fault_within_a_second(rig: Rig) -> None:
     rig.ready()
     rig.arm()
     rig.board.silent = True
@@ -462,7 +462,7 @@ def test_a_bad_configuration_is_one_clear_line(tmp_path: Path) -> None:
     assert "rate is 1000; it must lie between 1 and 50" in done.stderr
 
 
-def test_parameters_are_changed_together_listed_and_said_to_the_board(rig: Rig) -> None:
+def test_parameters_are_changed_together_listed_and_sent_to_the_board(rig: Rig) -> None:
     rig.ready()
     rig.ask("controller", name="pid", gains={"kp": 7.0})
     answer = rig.messages.query(
@@ -481,7 +481,7 @@ def test_parameters_are_changed_together_listed_and_said_to_the_board(rig: Rig) 
     assert answer["left_out"].keys() == {"nothing", "vision.rate"}
 
 
-def test_a_board_that_forgot_is_told_again_before_it_is_armed(rig: Rig) -> None:
+def test_a_restarted_board_gets_its_parameters_again_before_arming(rig: Rig) -> None:
     rig.ready()
     rig.ask("parameters", values={"fins.amplitude": 0.8})
     rig.board.close()

@@ -23,7 +23,7 @@ print(json.dumps(sorted(sys.modules)))
 """
 
 
-def test_a_robot_without_simulator_loads_what_swims_alone(tmp_path: Path) -> None:
+def test_the_robot_loads_neither_simulation_nor_experiments(tmp_path: Path) -> None:
     config = tmp_path / "robot.toml"
     config.write_text(
         f'[robot]\nmode = "robot"\n[link]\nport = "{tmp_path}/serial"\n[vision]\ncamera = "card"\n'

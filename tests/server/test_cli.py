@@ -105,7 +105,7 @@ def test_it_ends_in_order_and_leaves_nothing_behind(
         assert not any(child.is_running() for child in children)
 
 
-def test_a_killed_server_leaves_the_runtime_to_the_next_one(settings: Settings, port: int) -> None:
+def test_the_runtime_of_a_killed_server_is_adopted_by_the_next(settings: Settings, port: int) -> None:
     with running(settings, port) as process:
         end = time.monotonic() + 10
         while "runtime" not in running_parts(settings.data.run):
@@ -120,9 +120,7 @@ def test_a_killed_server_leaves_the_runtime_to_the_next_one(settings: Settings, 
     assert not alive(runtime)
 
 
-def test_what_a_killed_runner_has_left_running_is_adopted_by_the_next_start(
-    settings: Settings, port: int
-) -> None:
+def test_processes_of_a_killed_runner_are_adopted_by_the_next_start(settings: Settings, port: int) -> None:
     with running(settings, port) as process:
         end = time.monotonic() + 10
         while "runtime" not in running_parts(settings.data.run):
@@ -137,7 +135,7 @@ def test_what_a_killed_runner_has_left_running_is_adopted_by_the_next_start(
     assert not alive(runtime)
 
 
-def test_one_server_to_a_folder_and_one_to_a_port(settings: Settings, port: int) -> None:
+def test_one_server_per_folder_and_one_per_port(settings: Settings, port: int) -> None:
     with running(settings, port):
         config = ("--config", str(settings.config))
         same_folder = mucat("run", "--port", str(port + 1), "--data", str(settings.data.path), *config)
@@ -147,7 +145,7 @@ def test_one_server_to_a_folder_and_one_to_a_port(settings: Settings, port: int)
         assert_refused(same_port, f"Port {port} of 127.0.0.1 cannot be had")
 
 
-def test_what_cannot_work_is_refused_in_one_line(settings: Settings, tmp_path: Path) -> None:
+def test_an_impossible_start_is_refused_in_one_line(settings: Settings, tmp_path: Path) -> None:
     data = ("--data", str(settings.data.path))
     assert_refused(mucat("run", *data, "--config", str(tmp_path / "no.toml")), "no.toml cannot be read")
     bad = tmp_path / "bad.toml"
@@ -192,7 +190,7 @@ def test_command_line_before_environment_before_file(settings: Settings, tmp_pat
     assert everywhere.allowed_hosts[-2:] == (f"{name}.local", name)
 
 
-def test_run_is_emptied_and_the_rest_is_kept(settings: Settings) -> None:
+def test_the_run_folder_is_emptied_and_the_rest_stays(settings: Settings) -> None:
     folder = settings.data
     (folder.run / "board.sock").touch()
     (folder.path / "kept").touch()
@@ -204,7 +202,7 @@ def test_run_is_emptied_and_the_rest_is_kept(settings: Settings) -> None:
         make_folders(DataFolder(folder.path / "kept"))
 
 
-def test_run_is_left_alone_while_a_part_of_a_killed_server_lives(settings: Settings) -> None:
+def test_the_run_folder_stays_while_a_process_of_a_killed_server_lives(settings: Settings) -> None:
     folder = settings.data
     (folder.run / "board.sock").touch()
     with subprocess.Popen(["sleep", "600"]) as part:
@@ -216,7 +214,7 @@ def test_run_is_left_alone_while_a_part_of_a_killed_server_lives(settings: Setti
     assert not list(folder.run.iterdir())
 
 
-def test_no_heavy_library_is_in_the_server_s_process() -> None:
+def test_the_server_loads_no_heavy_library() -> None:
     program = (
         "import sys, server.app; print(*sorted({'numpy', 'cv2', 'plotly', 'alembic'} & set(sys.modules)))"
     )
@@ -250,7 +248,7 @@ def test_a_command_line_is_read_before_anything_slow_is_loaded(line: str, comple
     assert ("csv-grid" if completed else "mucat") in output
 
 
-def test_every_command_of_the_table_says_what_it_does() -> None:
+def test_every_command_has_a_help_text() -> None:
     context = click.Context(cli.mucat)
     commands = {name: cli.mucat.get_command(context, name) for name in cli.COMMANDS}
     assert {name: command and command.name for name, command in commands.items()} == {
@@ -267,7 +265,7 @@ def test_every_command_of_the_table_says_what_it_does() -> None:
     assert [path for name, one in commands.items() if one for path in undescribed(one, name)] == []
 
 
-def test_wrong_usage_is_told_with_status_2(capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_usage_ends_with_status_2(capsys: pytest.CaptureFixture[str]) -> None:
     for line in ("fly", "export", "export x", "export 1 --format pdf", "record", "run --colour"):
         assert cli.main(line.split()) == 2, line
         told = capsys.readouterr()
@@ -280,7 +278,7 @@ def test_it_prints_the_completion_of_a_shell(shell: str, capsys: pytest.CaptureF
     assert f"_MUCAT_COMPLETE={shell}_complete" in capsys.readouterr().out
 
 
-def test_what_the_server_loads_starts_no_thread() -> None:
+def test_importing_the_server_starts_no_thread() -> None:
     """The runner forks itself after it has loaded all that, which only a process without threads may."""
     program = "import os, server.app, server.http.serving; print(*os.listdir('/proc/self/task'), os.getpid())"
     assert len(set(printed(program).split())) == 1

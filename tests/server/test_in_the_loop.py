@@ -38,7 +38,7 @@ def swum(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], zipf
     return json.loads(ended.stdout), zipfile.ZipFile(folder / "session.zip")
 
 
-def test_without_a_simulator_the_robot_says_so_and_does_not_arm(
+def test_without_a_simulator_the_robot_reports_it_and_does_not_arm(
     swum: tuple[dict[str, Any], zipfile.ZipFile],
 ) -> None:
     told, _ = swum
@@ -64,7 +64,7 @@ def test_it_dives_to_its_set_point_through_delay_jitter_and_loss(
     assert len(set(shown)) > 50
 
 
-def test_a_simulator_that_is_lost_is_noticed_and_the_robot_stops(
+def test_a_lost_simulator_is_a_fault_and_stops_the_robot(
     swum: tuple[dict[str, Any], zipfile.ZipFile],
 ) -> None:
     told, archive = swum

@@ -377,7 +377,7 @@ WHENCE = [(host, origin, FAR) for host in WHERE for origin in WHERE] + [("right"
 """Host, Origin and address. No address is trusted, so that each answer is the same from both."""
 
 
-def test_every_exception_has_its_reason_and_its_words_and_every_probe_a_route() -> None:
+def test_every_exception_has_a_reason_and_a_text_and_every_probe_a_route() -> None:
     assert PROBES.keys() <= ROUTES.keys()
     for route, probe in PROBES.items():
         excepted = probe.status >= 400
@@ -385,7 +385,7 @@ def test_every_exception_has_its_reason_and_its_words_and_every_probe_a_route() 
 
 
 @pytest.mark.parametrize("who", ROLES)
-def test_every_route_lets_in_whom_the_table_says(settings: Settings, who: Who) -> None:
+def test_every_route_admits_exactly_the_roles_of_the_table(settings: Settings, who: Who) -> None:
     async def scenario() -> None:
         async with open_house(settings) as house:
             surprises = await ask_everything(house, who)
@@ -419,7 +419,7 @@ async def ask_everything(house: House, who: Who) -> list[tuple[object, ...]]:
     return surprises
 
 
-def test_every_message_is_obeyed_for_whom_the_table_says(settings: Settings) -> None:
+def test_every_message_is_accepted_from_exactly_the_roles_of_the_table(settings: Settings) -> None:
     async def scenario() -> None:
         async with open_house(settings) as house:
             for who in ROLES:

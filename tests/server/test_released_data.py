@@ -56,14 +56,14 @@ def ask(settings: Settings, method: str, path: str, **options: Any) -> Any:
 
 
 @pytest.mark.parametrize("session", SESSIONS)
-def test_exported_tables_are_the_very_same(released: Settings, session: str, tmp_path: Path) -> None:
+def test_exported_tables_are_identical(released: Settings, session: str, tmp_path: Path) -> None:
     files = read_csv(released, session, tmp_path)
     assert {name: hashlib.sha256(data).hexdigest() for name, data in files.items()} == EXPECTED["csv"][
         session
     ]
 
 
-def test_sessions_are_compared_with_the_same_figures(released: Settings) -> None:
+def test_comparisons_give_the_same_figures(released: Settings) -> None:
     wanted = {"sessions": [1, 3], "signals": ["depth.depth", "control.set_point"], "align": {"by": "armed"}}
     answer = ask(released, "POST", "/compare", json={**wanted, "points": 200})
     sessions = answer["sessions"]
@@ -73,7 +73,7 @@ def test_sessions_are_compared_with_the_same_figures(released: Settings) -> None
 
 
 @pytest.mark.parametrize("session", SESSIONS)
-def test_the_timeline_tells_the_same(released: Settings, session: str) -> None:
+def test_the_timeline_is_the_same(released: Settings, session: str) -> None:
     assert ask(released, "GET", f"/sessions/{session}/timeline") == EXPECTED["timeline"][session]
 
 
@@ -102,7 +102,7 @@ def test_a_replay_carries_every_sample(released: Settings, session: str, tmp_pat
     assert {name: replayed[name] for name in recorded} == recorded
 
 
-def test_what_else_was_stored_is_there(released: Settings) -> None:
+def test_everything_else_in_the_folder_is_still_there(released: Settings) -> None:
     async def run() -> list[Any]:
         async with serve(released) as served:
             paths = ("/comm-tests/runs", "/tuning/runs", "/profiles", "/parameters/changes")

@@ -28,7 +28,7 @@ async def exported(served: Served, session: int) -> httpx.Response:
     return (await served.api.get(f"/exports/{job['id']}/file")).raise_for_status()
 
 
-def test_health_names_every_part_and_its_words(settings: Settings) -> None:
+def test_health_lists_every_part_with_its_text(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async def states() -> dict[str, str]:
             answer = await served.api.get("/health")
@@ -131,7 +131,7 @@ INVALID = [
 ]
 
 
-def test_what_is_not_valid_never_reaches_the_runtime(settings: Settings) -> None:
+def test_invalid_commands_never_reach_the_runtime(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         for path, body in INVALID:
             headers = {"content-type": "application/json"}
@@ -143,7 +143,7 @@ def test_what_is_not_valid_never_reaches_the_runtime(settings: Settings) -> None
     play(settings, scenario)
 
 
-def test_the_last_frames_are_asked_of_the_runtime(settings: Settings) -> None:
+def test_the_last_frames_come_from_the_runtime(settings: Settings) -> None:
     frame = {
         "time": 9.5,
         "sent": True,
@@ -186,7 +186,7 @@ def test_a_refusal_is_passed_on_word_for_word(settings: Settings) -> None:
         ("POST", "/robot/commands/acknowledge", None, ("acknowledge", {})),
     ],
 )
-def test_what_changes_who_steers_goes_to_the_runtime(
+def test_changes_of_steering_reach_the_runtime(
     settings: Settings,
     method: str,
     path: str,
@@ -201,7 +201,7 @@ def test_what_changes_who_steers_goes_to_the_runtime(
     play(settings, scenario)
 
 
-def test_nobody_but_a_scenario_lets_the_robot_go_on_without_the_server(settings: Settings) -> None:
+def test_only_a_scenario_may_let_the_robot_go_on_without_the_server(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         answer = await served.api.post("/robot/commands/arm", json={"alone": 60})
         assert answer.status_code == 409
@@ -224,7 +224,7 @@ def test_with_a_full_disk_nothing_is_armed(settings: Settings, monkeypatch: pyte
 
 
 @pytest.mark.parametrize("body", [{}, {"mode": "failsafe"}, {"mode": "manual", "alone": 60}])
-def test_no_other_mode_can_be_asked_for(settings: Settings, body: dict[str, Any]) -> None:
+def test_other_modes_are_refused(settings: Settings, body: dict[str, Any]) -> None:
     async def scenario(served: Served) -> None:
         assert (await served.api.post("/robot/commands/mode", json=body)).status_code == 422
         assert served.runtime.asked == []
@@ -232,7 +232,7 @@ def test_no_other_mode_can_be_asked_for(settings: Settings, body: dict[str, Any]
     play(settings, scenario)
 
 
-def test_a_runtime_that_is_not_there_is_told_at_once(settings: Settings) -> None:
+def test_a_missing_runtime_is_reported_at_once(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.__exit__()
         async with asyncio.timeout(1.5):
@@ -245,7 +245,7 @@ def test_a_runtime_that_is_not_there_is_told_at_once(settings: Settings) -> None
     play(settings, scenario)
 
 
-def test_a_runtime_that_does_not_answer_is_told_in_the_end_and_stop_does_not_wait_for_it(
+def test_a_silent_runtime_is_reported_after_the_timeout_and_stop_does_not_wait(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", 1.0)
@@ -316,7 +316,9 @@ def test_a_session_from_start_to_download(settings: Settings) -> None:
         ({}, 201),
     ],
 )
-def test_new_sessions_are_looked_at(settings: Settings, body: dict[str, object], status: int) -> None:
+def test_descriptions_of_new_sessions_are_validated(
+    settings: Settings, body: dict[str, object], status: int
+) -> None:
     async def scenario(served: Served) -> None:
         answer = await served.api.post("/sessions", json=body)
         assert answer.status_code == status
@@ -326,7 +328,7 @@ def test_new_sessions_are_looked_at(settings: Settings, body: dict[str, object],
     play(settings, scenario)
 
 
-def test_sessions_that_do_not_exist(settings: Settings) -> None:
+def test_an_unknown_session_is_not_found(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         for answer in (
             await served.api.get("/sessions/7"),
@@ -370,7 +372,7 @@ def test_foreign_hosts_and_pages_are_refused_everywhere(settings: Settings) -> N
     play(settings, scenario)
 
 
-def test_every_answer_binds_the_browser(settings: Settings) -> None:
+def test_every_answer_has_the_security_headers(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         root = f"http://127.0.0.1:{served.settings.port}"
         for url in ("/health", "/nothing", f"{root}/", f"{root}/operate"):
@@ -388,7 +390,7 @@ def test_every_answer_binds_the_browser(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_a_part_that_dies_shows_in_health_and_as_a_notice(settings: Settings) -> None:
+def test_a_dead_process_is_shown_in_health_and_by_a_notice(settings: Settings) -> None:
     broken = ProcessCommand(
         "board", "emulated board", (sys.executable, "-c", "raise SystemExit('no firmware')")
     )
@@ -406,7 +408,7 @@ def test_a_part_that_dies_shows_in_health_and_as_a_notice(settings: Settings) ->
     play(settings, scenario, broken)
 
 
-def test_damaged_blocks_are_thrown_away(settings: Settings) -> None:
+def test_damaged_blocks_are_dropped(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         good = depth_block(0, 2).data
         for bad in (good[:11], good[:-1], good + b"x", b"\xff" + good[1:], good[:1] + b"\x01" + good[2:]):
@@ -420,7 +422,7 @@ def test_damaged_blocks_are_thrown_away(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_the_interface_is_described_in_the_same_words_every_time(
+def test_the_description_of_the_interface_is_reproducible(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("sys.argv", ["server.openapi"])

@@ -58,7 +58,7 @@ def test_a_wrong_length_is_refused(packet: Packet, change: int) -> None:
         type(packet).from_bytes(wrong)
 
 
-def test_the_thesis_type_numbers_stand() -> None:
+def test_the_type_numbers_of_the_thesis_are_unchanged() -> None:
     assert {cls.__name__: number for number, cls in PACKETS.items() if number < 0x0A} == {
         "Stop": 0,
         "Start": 1,
@@ -83,7 +83,7 @@ def test_numbers_out_of_range_are_clamped() -> None:
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_is_refused(value: float) -> None:
+def test_nan_is_refused(value: float) -> None:
     with pytest.raises(LayoutError, match="Navigation cannot be written"):
         Navigation(x=value, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0).to_bytes()
 

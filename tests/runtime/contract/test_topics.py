@@ -35,7 +35,7 @@ def test_rows_arrive_as_one_numbered_block() -> None:
     assert read_rows(first) == [(10.0, depth(0)), (11.0, depth(1)), (12.0, depth(2))]
 
 
-def test_all_topics_share_a_message_and_a_single_one_is_to_be_had() -> None:
+def test_all_topics_share_a_message_and_one_can_be_taken_alone() -> None:
     sent: list[tuple[str, bytes]] = []
     outbox = Outbox(lambda name, data: sent.append((name, data)), lambda name: name == "debug")
     outbox.add_row("depth", 1.0, depth(0.1).to_bytes())
@@ -57,7 +57,7 @@ def test_documents_arrive_as_json_in_order() -> None:
     assert [line["text"] for line in json.loads(block.payload)] == ["one", "zwei ü"]
 
 
-def test_a_picture_goes_out_at_once_with_its_time() -> None:
+def test_a_picture_is_sent_at_once_with_its_time() -> None:
     sent: list[tuple[str, bytes]] = []
     sent_by(sent).send_picture("picture", 3.5, b"jpeg")
     (block,) = read_blocks(sent[0][1])
@@ -86,7 +86,7 @@ def test_damaged_blocks_are_refused(data: bytes, why: str) -> None:
         read_blocks(data)
 
 
-def test_what_json_lacks_is_refused() -> None:
+def test_values_that_json_lacks_are_refused() -> None:
     outbox = sent_by([])
     outbox.add_document("debug", DebugLine(time=float("nan"), level=1, text=""))
     with pytest.raises(ValueError, match="Out of range"):

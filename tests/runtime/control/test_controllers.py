@@ -40,13 +40,13 @@ def test_bang_bang_is_all_or_nothing(set_point: float, depth: float) -> None:
     assert command == (0.0 if set_point == depth else math.copysign(1.0, set_point - depth))
 
 
-def test_bang_bang_swings_about_the_set_point_for_ever() -> None:
+def test_bang_bang_oscillates_about_the_set_point() -> None:
     depths = dive(BangBang(), 0.5, 60)[200:]
     assert crossings(depths, 0.5) > 10
     assert max(depths) - min(depths) < 0.3
 
 
-def test_the_dead_zone_rests_inside_and_acts_outside() -> None:
+def test_the_dead_zone_gives_no_command_inside_and_full_command_outside() -> None:
     controller = BangBangDeadZone()
     controller.tune({"dead_zone": 0.1})
     assert [controller.step(1.0, depth, SECONDS) for depth in (0.85, 0.95, 1.0, 1.05, 1.15)] == [
@@ -77,7 +77,7 @@ def test_a_step_of_the_set_point_gives_no_kick_of_the_derivative() -> None:
     assert [controller.step(set_point, 0.3, SECONDS) for set_point in (0.3, 9.0, 0.3)] == [0, 0, 0]
 
 
-def test_start_forgets_the_past() -> None:
+def test_start_resets_the_controller() -> None:
     used, fresh = Pid(), Pid()
     dive(used, 0.5, 5)
     used.start()

@@ -78,7 +78,7 @@ class Lab:
 OVER = ("complete", "stopped", "failed")
 
 
-def test_a_step_waits_until_it_has_settled_and_puts_everything_back() -> None:
+def test_a_step_begins_once_settled_and_restores_everything() -> None:
     with Flight() as flight:
         lab = Lab(flight)
         flight.arm()
@@ -96,7 +96,7 @@ def test_a_step_waits_until_it_has_settled_and_puts_everything_back() -> None:
         assert flight.robot.control.depth.override is None
 
 
-def test_a_start_that_never_settles_is_left_after_the_time_for_it() -> None:
+def test_a_start_that_never_settles_is_given_up_after_its_time_limit() -> None:
     wanted = StepExperimentCommand(
         number=1,
         loop="depth",
@@ -170,7 +170,7 @@ def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
         (lambda flight: flight.cut(on=True), "stopped", "stopped for a fault"),
     ],
 )
-def test_whatever_ends_the_steering_ends_the_experiment(end: Any, phase: str, text: str) -> None:
+def test_any_end_of_steering_ends_the_experiment(end: Any, phase: str, text: str) -> None:
     with Flight() as flight:
         lab = Lab(flight)
         flight.arm()
@@ -222,7 +222,7 @@ WRONG = [
 ]
 
 
-def test_what_cannot_be_is_refused() -> None:
+def test_an_invalid_experiment_is_refused() -> None:
     with Flight() as flight:
         with pytest.raises(RefusedError, match="The robot is disarmed"):
             begin(flight, STEP)
@@ -233,7 +233,7 @@ def test_what_cannot_be_is_refused() -> None:
         flight.robot.experiments.require_none()
 
 
-def test_nothing_else_changes_meanwhile() -> None:
+def test_other_changes_are_refused_during_an_experiment() -> None:
     with Flight() as flight:
         flight.arm()
         begin(flight, STEP)

@@ -52,7 +52,7 @@ def rig() -> Rig:
     ("name", "limit", "missing"),
     [("depth_stale", 0.4, "depth"), ("imu_stale", 0.15, "imu")],
 )
-def test_a_silent_sensor_is_missed_after_its_limit(rig: Rig, name: str, limit: float, missing: str) -> None:
+def test_a_silent_sensor_is_a_fault_after_its_limit(rig: Rig, name: str, limit: float, missing: str) -> None:
     sense = all_but(rig, missing)
     rig.clock.forward(limit - MS)
     sense()
@@ -64,7 +64,7 @@ def test_a_silent_sensor_is_missed_after_its_limit(rig: Rig, name: str, limit: f
     assert wrong(rig) == set()
 
 
-def test_a_silent_board_is_no_silent_imu(rig: Rig) -> None:
+def test_a_silent_board_is_not_reported_as_a_silent_imu(rig: Rig) -> None:
     rig.clock.forward(0.39)
     assert wrong(rig) == set()
     rig.clock.forward(0.45)
@@ -94,7 +94,7 @@ def test_on_a_slow_line_a_few_equal_readings_are_not_frozen() -> None:
 
 
 @pytest.mark.parametrize("depth", [-1.01, 20.01, 32.767])
-def test_a_depth_that_cannot_be_is_soon_a_fault_and_one_jump_is_not(rig: Rig, depth: float) -> None:
+def test_an_impossible_depth_is_a_fault_and_a_single_jump_is_not(rig: Rig, depth: float) -> None:
     live(rig, 0.38, lambda: rig.sense(depth))
     assert wrong(rig) == set()
     live(rig, 0.04, lambda: rig.sense(depth))
@@ -105,14 +105,14 @@ def test_a_depth_that_cannot_be_is_soon_a_fault_and_one_jump_is_not(rig: Rig, de
 
 
 @pytest.mark.parametrize(("tilt", "faults"), [(74.0, set()), (76.0, {"capsized"}), (180.0, {"capsized"})])
-def test_a_tilt_counts_once_it_lasts(rig: Rig, tilt: float, faults: set[str]) -> None:
+def test_a_tilt_is_a_fault_once_it_lasts(rig: Rig, tilt: float, faults: set[str]) -> None:
     live(rig, 1.88, lambda: rig.sense(tilt=radians(tilt)))
     assert wrong(rig) == set()
     live(rig, 0.04, lambda: rig.sense(tilt=radians(tilt)))
     assert wrong(rig) == faults
 
 
-def test_a_camera_counts_from_its_first_picture_on(rig: Rig) -> None:
+def test_a_camera_is_watched_from_its_first_picture_on(rig: Rig) -> None:
     detector = rig.supervisor.detector
     live(rig, 2.0, rig.sense)
     assert wrong(rig) == set()
@@ -124,7 +124,7 @@ def test_a_camera_counts_from_its_first_picture_on(rig: Rig) -> None:
     assert not BY_NAME["vision_stale"].stops("automatic")
 
 
-def test_what_the_board_says_of_itself_is_a_fault(rig: Rig) -> None:
+def test_faults_that_the_board_reports_are_faults(rig: Rig) -> None:
     rig.board.flags = StatusFlag.BATTERY_LOW
     rig.board.faults = SensorFault.FIN_FRONT_LEFT | SensorFault.FIN_BACK_RIGHT
     rig.report()
@@ -137,7 +137,7 @@ def test_what_the_board_says_of_itself_is_a_fault(rig: Rig) -> None:
     }
 
 
-def test_the_server_s_silence_counts_while_armed_alone(rig: Rig) -> None:
+def test_a_silent_server_is_a_fault_only_while_armed(rig: Rig) -> None:
     live(rig, 4.1, rig.sense)
     assert wrong(rig) == {"server_silent"}
     assert wrong(rig, "disarmed") == set()
@@ -160,13 +160,13 @@ def test_a_simulator_that_falls_silent_is_a_fault_also_while_disarmed() -> None:
     assert wrong(rig) == set()
 
 
-def test_every_fault_says_what_why_and_what_to_do() -> None:
+def test_every_fault_has_a_text_a_cause_and_a_remedy() -> None:
     assert len(BY_NAME) == len(FAULTS)
     for fault in FAULTS:
         assert all(words.endswith(".") for words in (fault.what, fault.cause, fault.remedy)), fault.name
 
 
-def test_by_hand_only_what_the_controller_steers_by_goes_on() -> None:
+def test_in_manual_only_depth_faults_do_not_stop_the_robot() -> None:
     goes_on = {fault.name for fault in FAULTS if fault.stops("automatic") and not fault.stops("manual")}
     assert goes_on == {"depth_stale", "depth_frozen", "depth_range"}
 
@@ -179,7 +179,7 @@ def alarms(rig: Rig) -> Alarms:
     return Alarms(rig.clock, BY_NAME, rig.events.append, clear_after=CLEAR_AFTER)
 
 
-def test_what_flickers_is_one_alarm_with_one_beginning_and_one_end(rig: Rig, alarms: Alarms) -> None:
+def test_a_flickering_fault_is_one_alarm(rig: Rig, alarms: Alarms) -> None:
     began = rig.clock.now()
     for step in range(20):
         alarms.update({"fin_failing": "(front left)"} if step % 4 == 0 else {})
@@ -193,7 +193,7 @@ def test_what_flickers_is_one_alarm_with_one_beginning_and_one_end(rig: Rig, ala
     assert not alarms.listed()[0].active
 
 
-def test_an_alarm_goes_once_it_is_over_and_acknowledged_in_either_order(rig: Rig, alarms: Alarms) -> None:
+def test_an_alarm_disappears_when_over_and_acknowledged_in_either_order(rig: Rig, alarms: Alarms) -> None:
     alarms.update({"capsized": ""})
     alarms.acknowledge()
     assert [alarm.acknowledged for alarm in alarms.listed()] == [True]
@@ -206,7 +206,7 @@ def test_an_alarm_goes_once_it_is_over_and_acknowledged_in_either_order(rig: Rig
     assert alarms.listed() == []
 
 
-def test_one_that_comes_again_wants_to_be_acknowledged_again(rig: Rig, alarms: Alarms) -> None:
+def test_a_returning_fault_must_be_acknowledged_again(rig: Rig, alarms: Alarms) -> None:
     alarms.begin("capsized", active=False)
     rig.clock.forward(5.0)
     alarms.update({"capsized": ""})

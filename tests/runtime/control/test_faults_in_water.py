@@ -39,12 +39,12 @@ ROWS: list[tuple[str, Break]] = [
 
 
 @pytest.mark.parametrize(("name", "break_"), ROWS, ids=[name for name, _ in ROWS])
-def test_it_is_noticed_in_time_and_stops_the_robot(flight: Flight, name: str, break_: Break) -> None:
+def test_a_fault_is_detected_in_time_and_stops_the_robot(flight: Flight, name: str, break_: Break) -> None:
     check_all_stop(flight, name, break_)
 
 
 @pytest.mark.parametrize(("name", "break_"), ROWS[1:5:2], ids=[name for name, _ in ROWS[1:5:2]])
-def test_so_it_is_on_the_emulated_chip(name: str, break_: Break) -> None:
+def test_faults_stop_the_robot_on_the_emulated_board_too(name: str, break_: Break) -> None:
     with Flight("emulated") as flight:
         check_all_stop(flight, name, break_)
 
@@ -75,7 +75,7 @@ def test_no_alarm_without_a_fault(flight: Flight) -> None:
     assert flight.supervisor.mode == "automatic"
 
 
-def test_a_robot_that_turns_over_is_stopped(flight: Flight) -> None:
+def test_a_capsized_robot_is_stopped(flight: Flight) -> None:
     flight.arm()
     flight.run(2.0)
     flight.water("trim", buoyancy=1.003, forward=0.0, right=0.0, above=-0.03)
@@ -133,7 +133,7 @@ def test_a_board_that_restarts_stops_the_robot(flight: Flight) -> None:
     assert not flight.supervisor.board_armed
 
 
-def test_a_link_that_is_back_is_reported_with_its_counters_at_once(flight: Flight) -> None:
+def test_a_restored_link_is_reported_with_its_counters_at_once(flight: Flight) -> None:
     reported: list[float] = []
     flight.robot.bus.on_row("link", lambda _, time, __: reported.append(time))
     # Without a reason there is one report a second, which may come soon by chance.
@@ -167,7 +167,7 @@ def test_a_robot_held_down_after_a_stop_is_an_alarm_and_one_that_rises_is_not(fl
 # Steering by hand
 
 
-def test_the_pilot_s_sticks_move_the_fins_and_their_silence_ends_it(flight: Flight) -> None:
+def test_pilot_input_moves_the_fins_and_its_silence_ends_the_mode(flight: Flight) -> None:
     flight.sticks = [1.0, 0.0, 0.0, 0.0, 0.0, 0.5]
     flight.arm("manual")
     flight.run(2.0)
@@ -189,7 +189,7 @@ def test_the_pilot_s_sticks_move_the_fins_and_their_silence_ends_it(flight: Flig
     assert flight.sent[-1][1].x == 1.0
 
 
-def test_the_pilot_s_input_goes_out_when_it_comes(flight: Flight) -> None:
+def test_pilot_input_is_sent_at_once(flight: Flight) -> None:
     flight.sticks = [0.0] * 6
     flight.arm("manual")
     # The next tick of the control loop is in 70 ms.
@@ -198,7 +198,7 @@ def test_the_pilot_s_input_goes_out_when_it_comes(flight: Flight) -> None:
     assert (flight.sent[-1][0], flight.sent[-1][1].z) == (flight.now, 1.0)
 
 
-def test_a_pilot_s_input_that_cannot_be_sent_stops_the_robot(
+def test_pilot_input_that_cannot_be_sent_stops_the_robot(
     flight: Flight, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(_: object) -> None:
@@ -213,7 +213,7 @@ def test_a_pilot_s_input_that_cannot_be_sent_stops_the_robot(
     assert flight.supervisor.mode == "failsafe"
 
 
-def test_a_check_for_faults_that_fails_stops_the_robot(
+def test_an_exception_in_the_fault_detector_stops_the_robot(
     flight: Flight, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(*_: object) -> None:
@@ -226,7 +226,7 @@ def test_a_check_for_faults_that_fails_stops_the_robot(
     assert [alarm.fault for alarm in flight.supervisor.alarms] == ["control_failed"]
 
 
-def test_by_hand_a_lost_depth_is_an_alarm_alone_and_bars_the_controller(flight: Flight) -> None:
+def test_in_manual_a_lost_depth_is_only_an_alarm_and_blocks_automatic(flight: Flight) -> None:
     flight.sticks = [0.0] * 6
     flight.arm("manual")
     flight.break_("pressure", "bus")
@@ -244,7 +244,7 @@ def test_by_hand_a_lost_depth_is_an_alarm_alone_and_bars_the_controller(flight: 
     assert flight.sent[-1][1].z == 0.0
 
 
-def test_a_mission_that_may_goes_on_without_the_server_for_so_long(flight: Flight) -> None:
+def test_a_mission_continues_without_the_server_for_its_permitted_time(flight: Flight) -> None:
     flight.supervisor._heartbeat = 4.0
     flight.arm(alone=10.0)
     flight.server = False

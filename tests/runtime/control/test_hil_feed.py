@@ -24,14 +24,14 @@ class Rig:
         self.loop = HilFeed(self.clock, self.sent.append, self.events.append)
 
 
-def test_a_word_goes_on_to_the_board_as_it_is() -> None:
+def test_a_message_is_passed_to_the_board_unchanged() -> None:
     rig = Rig()
     rig.loop.forward(WORD.to_bytes())
     assert [packet.to_bytes() for packet in rig.sent] == [WORD.to_bytes()]
     assert rig.loop.refusals() == []
 
 
-def test_its_coming_is_told_once_and_its_going_is_known() -> None:
+def test_the_simulator_s_arrival_is_reported_once_and_its_loss_detected() -> None:
     rig = Rig()
     rig.loop.tick()
     assert rig.events == []
@@ -47,7 +47,7 @@ def test_its_coming_is_told_once_and_its_going_is_known() -> None:
     assert rig.loop.refusals() != []
 
 
-def test_what_is_no_word_is_dropped_and_does_not_count(caplog: pytest.LogCaptureFixture) -> None:
+def test_an_invalid_message_is_dropped_and_does_not_count(caplog: pytest.LogCaptureFixture) -> None:
     rig = Rig()
     rig.loop.forward(WORD.to_bytes()[:-1])
     assert (rig.sent, rig.loop.present) == ([], False)

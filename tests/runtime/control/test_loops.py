@@ -69,7 +69,7 @@ class Rig:
         self._sticks = sticks
 
 
-def test_angles_are_steered_only_where_they_are_switched_on() -> None:
+def test_angle_loops_run_only_when_enabled() -> None:
     rig = Rig("automatic")
     command = rig.tick()
     assert command is not None
@@ -120,7 +120,7 @@ def test_pitch_and_roll_push_against_their_error() -> None:
     assert command.pitch < 0 < command.roll
 
 
-def test_the_depths_loop_is_told_the_mean_acceleration_downwards() -> None:
+def test_the_depth_loop_gets_the_mean_heave_acceleration() -> None:
     rig = Rig("automatic")
     rig.node.set_loop("depth", controller="predictive")
     rig.tick()
@@ -133,7 +133,7 @@ def test_the_depths_loop_is_told_the_mean_acceleration_downwards() -> None:
     assert rig.node.depth.heave_acceleration is None
 
 
-def test_the_way_to_a_light_has_the_yaw_to_itself() -> None:
+def test_steering_to_a_light_has_yaw_alone() -> None:
     rig = Rig("automatic")
     rig.node.set_loop("heading", on=True, set_point=-2.0)
     rig.node.steer("beacons")
@@ -143,7 +143,7 @@ def test_the_way_to_a_light_has_the_yaw_to_itself() -> None:
     assert isnan(rig.turning[-1].output[0])
 
 
-def test_everything_is_off_when_control_by_hand_begins_and_when_it_ends() -> None:
+def test_all_holds_are_off_at_the_start_and_the_end_of_manual() -> None:
     rig = Rig("automatic")
     rig.node.set_loop("heading", on=True)
     modes: tuple[Mode, ...] = ("manual", "automatic", "manual", "disarmed", "manual")
@@ -156,7 +156,7 @@ def test_everything_is_off_when_control_by_hand_begins_and_when_it_ends() -> Non
                 rig.node.set_loop(name, on=True)
 
 
-def test_by_hand_nothing_is_held_unasked() -> None:
+def test_in_manual_nothing_is_held_by_default() -> None:
     rig = Rig("manual")
     rig.hold(z=0.0, x=0.5)
     command = rig.tick()
@@ -164,7 +164,7 @@ def test_by_hand_nothing_is_held_unasked() -> None:
 
 
 @pytest.mark.parametrize("name", ["depth", "heading"])
-def test_a_hold_keeps_what_was_when_it_was_switched_on_or_the_stick_let_go(name: str) -> None:
+def test_a_hold_takes_the_value_at_its_start_or_at_the_release_of_the_stick(name: str) -> None:
     axis = {"depth": "z", "heading": "yaw"}[name]
     rig = Rig("manual")
     loop = rig.node.loops[name]
@@ -191,7 +191,7 @@ def test_a_hold_keeps_what_was_when_it_was_switched_on_or_the_stick_let_go(name:
     assert getattr(be(0.1), axis) == 0.0
 
 
-def test_a_hold_rests_with_the_fins_while_the_pilot_is_quiet() -> None:
+def test_a_hold_gives_no_command_while_the_fins_rest_for_a_silent_pilot() -> None:
     rig = Rig("manual")
     rig.tick()
     rig.node.set_loop("depth", on=True, set_point=2.0)
@@ -203,7 +203,7 @@ def test_a_hold_rests_with_the_fins_while_the_pilot_is_quiet() -> None:
     assert rig.commands[-1].z == 0.0
 
 
-def test_the_pilots_input_goes_out_at_once_with_what_is_held() -> None:
+def test_pilot_input_is_sent_at_once_with_the_commands_of_the_holds() -> None:
     rig = Rig("manual")
     rig.tick()
     rig.node.set_loop("depth", on=True, set_point=2.0)
@@ -218,7 +218,7 @@ def test_the_pilots_input_goes_out_at_once_with_what_is_held() -> None:
     assert len(rig.commands) == before
 
 
-def test_a_loan_steers_until_the_mode_changes() -> None:
+def test_an_override_steers_until_the_mode_changes() -> None:
     rig = Rig("automatic")
     rig.node.heading.override = LoopOverride(BangBang(), set_point=-1.0)
     command = rig.tick()
@@ -232,7 +232,7 @@ def test_a_loan_steers_until_the_mode_changes() -> None:
     assert command.yaw == 0.0
 
 
-def test_the_depths_set_point_is_the_default_one_but_where_it_is_held_by_hand() -> None:
+def test_the_depth_set_point_is_the_default_except_for_a_hold_in_manual() -> None:
     rig = Rig("automatic")
     rig.node.set_loop("depth", set_point=0.8)
     rig.tick()
@@ -258,7 +258,9 @@ def test_the_depths_set_point_is_the_default_one_but_where_it_is_held_by_hand() 
         ("heading", {"on": True, "set_point": 1.0, "gains": {"kq": 1.0}}, "no gain 'kq'"),
     ],
 )
-def test_what_is_wrong_is_refused_and_changes_nothing(name: str, change: dict[str, object], why: str) -> None:
+def test_invalid_settings_are_refused_and_change_nothing(
+    name: str, change: dict[str, object], why: str
+) -> None:
     rig = Rig("automatic")
     before = [(loop.on, loop.set_point, loop.controller) for loop in rig.node.loops.values()]
     with pytest.raises(RefusedError, match=why):
@@ -266,7 +268,7 @@ def test_what_is_wrong_is_refused_and_changes_nothing(name: str, change: dict[st
     assert [(loop.on, loop.set_point, loop.controller) for loop in rig.node.loops.values()] == before
 
 
-def test_nothing_is_held_that_is_not_measured() -> None:
+def test_a_value_that_is_not_measured_cannot_be_held() -> None:
     rig = Rig("manual")
     with pytest.raises(RefusedError, match="The heading is not measured yet"):
         rig.node.set_loop("heading", on=True)

@@ -64,7 +64,7 @@ def rig() -> Rig:
     return Rig()
 
 
-def test_nothing_is_sent_before_a_depth_came(rig: Rig) -> None:
+def test_no_command_before_the_first_depth(rig: Rig) -> None:
     rig.tick()
     assert rig.commands == []
     assert rig.ticks == []
@@ -99,7 +99,7 @@ def test_another_colour_changes_nothing(rig: Rig) -> None:
     assert rig.ticks[0].set_point == 0.5
 
 
-def test_what_has_a_set_point_of_its_own_goes_there(rig: Rig) -> None:
+def test_a_seen_colour_or_marker_with_an_action_sets_its_set_point(rig: Rig) -> None:
     rig.depth(0.5)
     rig.see("red", "red", 0.8)
     rig.tick()
@@ -128,7 +128,7 @@ def test_the_age_of_a_picture_is_that_at_its_first_tick(rig: Rig) -> None:
     assert rig.node.picture_age == pytest.approx(0.15)
 
 
-def test_what_was_seen_a_second_ago_no_longer_counts(rig: Rig) -> None:
+def test_a_detection_expires_within_a_second(rig: Rig) -> None:
     rig.depth(0.5)
     rig.see("yellow")
     set_points = []
@@ -158,7 +158,7 @@ def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:
         ("pid", {"kp": 1e9}, "between 0 and 50"),
     ],
 )
-def test_bad_choices_are_refused_and_the_old_one_stays(
+def test_an_invalid_controller_is_refused_and_the_old_one_stays(
     rig: Rig, name: str, gains: dict[str, float], why: str
 ) -> None:
     before = rig.node.depth.controller
@@ -175,7 +175,7 @@ def test_set_points_out_of_range_are_refused(rig: Rig, depth: float) -> None:
     assert (rig.node.set_point_default, rig.node.set_point_detected) == (0.5, 1.0)
 
 
-def test_it_steers_only_where_it_is_told_to(rig: Rig) -> None:
+def test_it_steers_to_a_light_only_when_enabled(rig: Rig) -> None:
     rig.depth(0.5)
     rig.lights(right=True, left=False)
     rig.tick()
@@ -189,7 +189,7 @@ def test_it_steers_only_where_it_is_told_to(rig: Rig) -> None:
     assert rig.node.steering == "beacons"
 
 
-def test_a_light_that_was_seen_too_long_ago_is_looked_for(rig: Rig) -> None:
+def test_a_light_not_seen_for_too_long_is_searched(rig: Rig) -> None:
     rig.node.steer("beacons")
     rig.lights(right=True, left=True)
     rig.clock.forward(BEACON_STALE)

@@ -31,7 +31,7 @@ def words(**more: Any) -> bytes:
     return json.dumps({"lease": 3, "sequence": 7, "taken": 100.0, "axes": LEFT} | more).encode()
 
 
-def test_the_newest_input_counts_until_it_is_old(pilot: Pilot, clock: SimulatedClock) -> None:
+def test_the_newest_input_counts_until_it_expires(pilot: Pilot, clock: SimulatedClock) -> None:
     assert pilot.command() == NEUTRAL
     pilot.take(words())
     assert (pilot.command().y, pilot.command().yaw) == (-1.0, 0.25)
@@ -64,7 +64,9 @@ def test_the_newest_input_counts_until_it_is_old(pilot: Pilot, clock: SimulatedC
         ("invalid", {"lease": "3"}),
     ],
 )
-def test_what_must_not_count_is_dropped_and_counted(pilot: Pilot, reason: str, more: dict[str, Any]) -> None:
+def test_invalid_stale_or_foreign_input_is_dropped_and_counted(
+    pilot: Pilot, reason: str, more: dict[str, Any]
+) -> None:
     pilot.take(words(sequence=6, axes=[0.5, 0, 0, 0, 0, 0]))
     pilot.take(words(**more))
     assert pilot.command().x == 0.5
@@ -76,14 +78,14 @@ INPUTS = st.fixed_dictionaries(dict.fromkeys(("lease", "sequence", "taken", "axe
 
 
 @given(st.binary() | (SCALARS | INPUTS).map(json.dumps).map(str.encode))
-def test_no_bytes_do_harm(data: bytes) -> None:
+def test_any_bytes_are_handled(data: bytes) -> None:
     pilot = Pilot(SimulatedClock())
     pilot.take(data)
     assert pilot.dropped == {"invalid": 1}
     assert pilot.command() == NEUTRAL
 
 
-def test_another_holder_begins_with_the_sticks_in_the_middle(pilot: Pilot) -> None:
+def test_a_new_holder_begins_with_centred_sticks(pilot: Pilot) -> None:
     pilot.take(words())
     pilot.change_lease(3)
     assert pilot.command().y == -1.0
@@ -97,7 +99,7 @@ def test_another_holder_begins_with_the_sticks_in_the_middle(pilot: Pilot) -> No
         pilot.change_lease(3)
 
 
-def test_a_start_by_hand_forgets_what_was_held_before(pilot: Pilot) -> None:
+def test_the_start_of_manual_drops_earlier_input(pilot: Pilot) -> None:
     pilot.take(words())
     pilot.begin()
     assert pilot.command() == NEUTRAL

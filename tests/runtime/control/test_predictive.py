@@ -30,14 +30,14 @@ def test_full_command_brings_the_terminal_speed_of_the_models_quadratic() -> Non
     assert there.speed == pytest.approx(wanted, rel=1e-3)
 
 
-def test_turning_the_fins_round_pushes_to_the_new_side_and_takes_its_time() -> None:
+def test_fins_take_time_to_turn_to_the_other_side() -> None:
     there = heave().advance(Motion(0.0, 0.0, DOWN), -0.01, TURNING_ROUND, 0.01)
     assert there.direction == pytest.approx(-DOWN)
     assert -0.12 < there.speed < -0.05
     assert pi / TURNING_ROUND == pytest.approx(80 / 1024 * 2 * pi / 0.1)
 
 
-def test_fins_that_are_told_nothing_stop_in_their_turn_and_resist_the_hull() -> None:
+def test_fins_without_a_command_stop_turning_and_drag() -> None:
     model = heave()
     turning = model.advance(Motion(0.0, 0.1, DOWN), -0.01, TURNING_ROUND / 2, 0.01)
     assert abs(turning.direction) < DOWN / 2
@@ -48,7 +48,7 @@ def test_fins_that_are_told_nothing_stop_in_their_turn_and_resist_the_hull() -> 
 
 
 @pytest.mark.parametrize("push", [0.01, 0.1, 0.25])
-def test_the_command_for_a_push_brings_it(push: float) -> None:
+def test_the_command_for_a_force_gives_that_force(push: float) -> None:
     model = heave(strength=1.2)
     command = model.command(push)
     model.advance(Motion(0.0, 0.0, DOWN, 1.6 * command), command, 0.01, 0.01)
@@ -63,7 +63,7 @@ def test_a_coasting_hull_goes_less_far_against_its_drift() -> None:
 
 @pytest.mark.parametrize("part", ["strength", "hull", "drift"])
 @pytest.mark.parametrize("factor", [0.75, 1.25])
-def test_what_craft_it_is_shows_in_its_motion(part: str, factor: float) -> None:
+def test_the_craft_is_identified_from_its_motion(part: str, factor: float) -> None:
     """It dives, coasts and swims back up without noise; the model's other numbers are right."""
     usual = {"strength": 1.0, "hull": 1.0, "drift": -0.01}
     water = heave(**usual | {part: usual[part] * factor})
@@ -81,7 +81,7 @@ def test_what_craft_it_is_shows_in_its_motion(part: str, factor: float) -> None:
 
 
 @pytest.mark.parametrize("bias", [0.0, 0.3, -0.3])
-def test_every_stroke_is_felt_whatever_the_accelerometer_shows_too_much(bias: float) -> None:
+def test_strokes_are_measured_despite_an_accelerometer_offset(bias: float) -> None:
     """A hull that sways by 1 m within 20 s, in strokes of 0.25 m/s²; 2 mm of noise on the depth."""
     stroke, sway = 2 * pi / 0.23, 2 * pi / 20
     chance = Random(1)
@@ -103,7 +103,7 @@ def test_every_stroke_is_felt_whatever_the_accelerometer_shows_too_much(bias: fl
     assert 0.25 / stroke > 0.009
 
 
-def test_what_it_feels_counts_from_the_second_time_on_after_a_gap() -> None:
+def test_after_a_gap_acceleration_is_used_from_the_second_sample_on() -> None:
     blind, feeling = Predictive(), Predictive()
     for tick in range(61):
         feeling.heave_acceleration = 3.0 if tick % 2 else None
@@ -134,7 +134,7 @@ def test_it_rests_at_the_set_point_in_the_water_of_its_model(drift: float, withi
     assert turns == 0
 
 
-def test_after_a_pause_it_begins_anew() -> None:
+def test_after_a_pause_the_controller_starts_anew() -> None:
     used, fresh = Predictive(), Predictive()
     for _ in range(50):
         used.step(1.0, 0.2, SECONDS)
@@ -143,7 +143,7 @@ def test_after_a_pause_it_begins_anew() -> None:
 
 
 @pytest.mark.parametrize("craft", ["nominal", "thrust +30 %", "mass +30 %"])
-def test_in_the_simulated_water_it_rests_where_the_thesiss_controller_swings(craft: str) -> None:
+def test_in_simulated_water_it_rests_where_the_thesis_controller_oscillates(craft: str) -> None:
     """The nominal craft, and two of the worst of docs/develop/proofs/control.md's table."""
     robot = variants()[craft]
     found = perform(BEST, robot, sine=False)

@@ -3,7 +3,7 @@
 from robot_runtime.control.steering import SEARCH_SECONDS, BeaconSteering
 
 
-def test_a_light_ahead_is_swum_to_straight_on() -> None:
+def test_a_light_ahead_gives_straight_motion() -> None:
     surge, yaw = BeaconSteering().step(right=True, left=True, seconds=0.1)
     assert surge > 0
     assert yaw == 0
@@ -15,7 +15,7 @@ def test_it_turns_to_the_side_that_sees_the_light() -> None:
     assert steering.step(right=False, left=True, seconds=0.1)[1] < 0
 
 
-def test_a_lost_light_is_looked_for_on_the_side_where_it_was_and_then_no_longer() -> None:
+def test_a_lost_light_is_searched_on_its_last_side_for_a_limited_time() -> None:
     steering = BeaconSteering()
     steering.step(right=False, left=True, seconds=0.1)
     looking = [steering.step(right=False, left=False, seconds=1.0) for _ in range(int(SEARCH_SECONDS) + 1)]

@@ -28,7 +28,7 @@ def test_arms_when_everything_is_well(rig: Rig) -> None:
     assert [event.kind for event in rig.events] == ["armed"]
 
 
-def test_every_reason_against_arming_is_told(rig: Rig) -> None:
+def test_every_reason_against_arming_is_reported(rig: Rig) -> None:
     rig.board.faults = SensorFault.IMU | SensorFault.FIN_BACK_LEFT
     rig.board.flags = StatusFlag.BATTERY_LOW
     rig.report()
@@ -41,7 +41,7 @@ def test_every_reason_against_arming_is_told(rig: Rig) -> None:
     assert rig.board.sent == []
 
 
-def test_no_arming_without_a_connection_or_a_word_from_the_board(rig: Rig) -> None:
+def test_no_arming_without_a_connection_or_a_status_of_the_board(rig: Rig) -> None:
     rig.board.connected, rig.board.text = False, "the port does not exist"
     assert "the port does not exist" in rig.supervisor.refusals()[0]
     rig.board.connected = True
@@ -49,7 +49,7 @@ def test_no_arming_without_a_connection_or_a_word_from_the_board(rig: Rig) -> No
     assert "sends no status" in rig.supervisor.refusals()[0]
 
 
-def test_a_board_that_does_not_arm_is_stopped_and_the_reason_told(rig: Rig) -> None:
+def test_a_board_that_does_not_arm_is_stopped_and_the_reason_reported(rig: Rig) -> None:
     rig.board.obeys = False
     with pytest.raises(RefusedError, match="did not arm"):
         rig.supervisor.arm()
@@ -57,14 +57,14 @@ def test_a_board_that_does_not_arm_is_stopped_and_the_reason_told(rig: Rig) -> N
     assert not rig.supervisor.armed
 
 
-def test_a_look_while_the_board_arms_does_not_stop_it(rig: Rig) -> None:
+def test_a_check_while_the_board_arms_does_not_stop_it(rig: Rig) -> None:
     rig.on_start = rig.supervisor.tick
     rig.supervisor.arm()
     assert rig.supervisor.armed
     assert rig.board.sent == [Start(epoch=7)]
 
 
-def test_a_stop_while_the_board_arms_is_the_last_word(rig: Rig) -> None:
+def test_a_stop_while_the_board_arms_prevails(rig: Rig) -> None:
     rig.on_start = lambda: rig.supervisor.stop("Stopped.")
     with pytest.raises(RefusedError, match="Stopped before"):
         rig.supervisor.arm()
@@ -73,7 +73,7 @@ def test_a_stop_while_the_board_arms_is_the_last_word(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize(("baud", "limit"), [(250_000, 0.4), (1200, 1.5)])
-def test_a_slow_line_has_its_own_measure_of_a_fresh_depth(baud: int, limit: float) -> None:
+def test_the_age_limit_of_the_depth_follows_the_baud(baud: int, limit: float) -> None:
     rig = Rig(baud)
     rig.ready()
     rig.supervisor.arm()
@@ -87,7 +87,7 @@ def test_a_slow_line_has_its_own_measure_of_a_fresh_depth(baud: int, limit: floa
     assert not rig.supervisor.armed
 
 
-def test_after_a_standstill_what_the_board_said_before_it_counts_for_nothing(rig: Rig) -> None:
+def test_after_a_stall_earlier_data_of_the_board_is_ignored(rig: Rig) -> None:
     rig.supervisor.arm()
     rig.supervisor.tick()
     rig.clock.forward(3.0)
@@ -98,7 +98,7 @@ def test_after_a_standstill_what_the_board_said_before_it_counts_for_nothing(rig
     assert rig.board.sent[-1] == Stop()
 
 
-def test_a_short_standstill_is_none(rig: Rig) -> None:
+def test_a_short_stall_is_ignored(rig: Rig) -> None:
     rig.supervisor.arm()
     rig.supervisor.tick()
     rig.clock.forward(0.89)
@@ -107,7 +107,7 @@ def test_a_short_standstill_is_none(rig: Rig) -> None:
     assert rig.supervisor.armed
 
 
-def test_stop_disarms_at_once_and_again_and_again(rig: Rig) -> None:
+def test_stop_disarms_at_once_every_time(rig: Rig) -> None:
     rig.supervisor.arm()
     rig.supervisor.stop("Stopped.")
     rig.supervisor.stop("Stopped.")
@@ -116,7 +116,7 @@ def test_stop_disarms_at_once_and_again_and_again(rig: Rig) -> None:
     assert [event.kind for event in rig.events] == ["armed", "disarmed"]
 
 
-def test_what_the_board_said_before_a_stop_is_not_taken_for_the_next_arming(rig: Rig) -> None:
+def test_status_from_before_a_stop_does_not_confirm_the_next_arming(rig: Rig) -> None:
     rig.ready()
     rig.supervisor.arm()
     rig.board.obeys = False
@@ -157,7 +157,7 @@ def test_a_lost_connection_disarms_with_an_alarm(rig: Rig) -> None:
     assert "the port went away" in rig.events[-2].text
 
 
-def test_a_board_that_restarts_or_disarms_itself_is_noticed(rig: Rig) -> None:
+def test_a_board_that_restarts_or_disarms_itself_is_a_fault(rig: Rig) -> None:
     rig.supervisor.arm()
     rig.board.epoch = 8
     rig.board.flags = 0
@@ -171,7 +171,7 @@ def test_a_board_that_restarts_or_disarms_itself_is_noticed(rig: Rig) -> None:
     assert rig.supervisor.mode == "failsafe"
 
 
-def test_a_failsafe_is_acknowledged_before_anything_arms(rig: Rig) -> None:
+def test_a_failsafe_must_be_acknowledged_before_arming(rig: Rig) -> None:
     rig.supervisor.arm()
     rig.board.flags = 0
     rig.report()
@@ -184,7 +184,7 @@ def test_a_failsafe_is_acknowledged_before_anything_arms(rig: Rig) -> None:
     assert rig.supervisor.armed
 
 
-def test_a_fault_that_comes_back_after_it_was_acknowledged_is_an_alarm_again(rig: Rig) -> None:
+def test_a_fault_that_returns_after_acknowledgement_is_an_alarm_again(rig: Rig) -> None:
     def live(seconds: float, *, depth: bool) -> None:
         for _ in range(round(seconds / 0.05)):
             rig.clock.forward(0.05)
@@ -207,7 +207,7 @@ def test_a_fault_that_comes_back_after_it_was_acknowledged_is_an_alarm_again(rig
     ]
 
 
-def test_arming_goes_on_step_by_step_where_nobody_may_wait(rig: Rig) -> None:
+def test_arming_proceeds_step_by_step_without_blocking(rig: Rig) -> None:
     rig.board.obeys = False
     arming = rig.supervisor.begin_arming()
     rig.supervisor.continue_arming()
@@ -224,7 +224,7 @@ def test_arming_goes_on_step_by_step_where_nobody_may_wait(rig: Rig) -> None:
     assert len(rig.board.sent) == 3
 
 
-def test_a_board_that_never_follows_ends_the_attempt(rig: Rig) -> None:
+def test_a_board_that_never_arms_ends_the_attempt(rig: Rig) -> None:
     rig.board.obeys = False
     arming = rig.supervisor.begin_arming()
     while not arming.over:

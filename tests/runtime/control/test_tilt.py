@@ -50,7 +50,7 @@ set_point = {radians(90)}
 
 
 @pytest.mark.parametrize("down", [0.2, -0.2, 1.0])
-def test_fins_are_tilted_slowly_and_never_far_whichever_way_they_push(down: float) -> None:
+def test_fins_are_tilted_slowly_and_within_a_limit(down: float) -> None:
     controller = Tilt()
     controller.heave_command = down
     controller.step(3.0, 0.0, 0.0)
@@ -70,7 +70,7 @@ def test_the_harder_the_fins_push_the_less_they_are_tilted() -> None:
     assert ratios[0] > ratios[1] > ratios[2] > 0
 
 
-def test_it_waits_while_the_fins_rest_and_begins_upright_once_they_have_turned_round() -> None:
+def test_it_waits_while_the_fins_rest_and_starts_at_zero_after_they_have_turned() -> None:
     controller = Tilt()
     controller.heave_command = 0.2
     tilted = [controller.step(3.0, 0.0, SECONDS) for _ in range(5)][-1]
@@ -99,7 +99,7 @@ class _Truths:
         assert event != "ended" or more["problem"] is None
 
 
-def test_in_the_simulated_water_it_turns_and_stays_while_the_depth_is_held() -> None:
+def test_in_simulated_water_it_turns_to_its_heading_while_the_depth_is_held() -> None:
     truths = _Truths()
     ScenarioRun(read_scenario(SWIM), boards()["host"], truths).perform(lambda _: {})
     after = [(time, heading, depth) for time, heading, depth in truths.taken if TURN <= time < END]

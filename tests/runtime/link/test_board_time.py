@@ -26,7 +26,7 @@ def test_stamps_wrap_and_may_step_back_a_little() -> None:
     assert earlier - before == pytest.approx(256e-6, abs=1e-6)
 
 
-def test_a_board_whose_clock_paused_is_believed_again_within_two_seconds() -> None:
+def test_after_a_pause_the_board_s_clock_is_trusted_again_within_two_seconds() -> None:
     times = BoardTime()
     ages = []
     for step in range(600):
@@ -58,14 +58,14 @@ def test_among_delays_offset_and_drift_are_found(drift: float) -> None:
     assert 0 < times.error < 0.001
 
 
-def test_no_packet_is_stamped_after_it_came_but_by_rounding() -> None:
+def test_no_packet_has_a_time_after_its_arrival_except_by_rounding() -> None:
     times, chance = BoardTime(), random.Random(6)
     for step in range(5000):
         arrival = step * 0.01 + chance.expovariate(200)
         assert times.to_host(step * 10_000, arrival) <= arrival + 50e-6
 
 
-def test_a_second_in_which_all_was_late_is_left_out() -> None:
+def test_a_second_of_late_packets_only_is_ignored() -> None:
     times = BoardTime()
     for step in range(2250):
         late = 0.008 if 1900 <= step < 2100 else 0.0
@@ -74,7 +74,7 @@ def test_a_second_in_which_all_was_late_is_left_out() -> None:
     assert times.error < 1e-5
 
 
-def test_a_pause_is_forgotten_and_the_drift_found_again() -> None:
+def test_after_a_pause_the_drift_is_estimated_anew() -> None:
     times = BoardTime()
     for step in range(4000):
         taken = step * 0.01

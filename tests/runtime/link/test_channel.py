@@ -13,7 +13,7 @@ from tests.runtime.link.line import KEY, PACKETS, Line, Noise, goodput, numbered
 
 @pytest.mark.parametrize("baud", [1200, 9600, 115_200, 250_000])
 @pytest.mark.parametrize(("size", "goal"), [(6, 0.70), (18, 0.80)])
-def test_both_ways_at_once_the_line_is_well_used(baud: int, size: int, goal: float) -> None:
+def test_both_directions_together_use_the_line_well(baud: int, size: int, goal: float) -> None:
     assert goodput(baud, size) >= goal
 
 
@@ -36,7 +36,7 @@ def test_noise_costs_only_what_it_destroys(bit_errors: float, goal: float) -> No
     ],
     ids=["bits", "drops", "doubles", "inserts", "bursts", "delay", "all"],
 )
-def test_whatever_the_line_does_everything_arrives_once_and_in_order(noise: Noise, credit: int) -> None:
+def test_under_any_faults_every_message_arrives_once_and_in_order(noise: Noise, credit: int) -> None:
     line = Line(115_200, noise, credit)
     given = [numbered(18, 300), numbered(6, 500)]
     for end, messages in zip(line.ends, given, strict=True):
@@ -48,7 +48,7 @@ def test_whatever_the_line_does_everything_arrives_once_and_in_order(noise: Nois
         assert not end.channel.urgent
 
 
-def test_on_a_full_line_what_is_reliable_gets_its_turn() -> None:
+def test_reliable_frames_get_their_turn_on_a_full_line() -> None:
     line = Line(1200)
     sender, receiver = line.ends
     given = numbered(6, 40)
@@ -73,7 +73,7 @@ def test_a_quiet_good_line_repeats_nothing() -> None:
         assert (end.channel.counters.frames_repeated, end.channel.counters.frames_duplicate) == (0, 0)
 
 
-def test_a_dead_line_gives_nothing_up_and_is_asked_again_and_again() -> None:
+def test_on_a_dead_line_frames_are_retransmitted_and_never_given_up() -> None:
     channel = Channel(115_200, 4096, KEY, packets=PACKETS)
     channel.queue(numbered(6, 1)[0])
     sent = [step * 0.003 for step in range(20_000) if channel.poll(step * 0.003)]
@@ -116,7 +116,7 @@ def test_a_message_that_is_replaced_never_arrives() -> None:
     assert [payload for _, payload in line.ends[1].heard] == [new[1:], other[1:], new[1:]]
 
 
-def test_the_cap_of_the_timeout_leaves_the_other_end_the_time_for_its_own_frames() -> None:
+def test_the_maximum_timeout_leaves_time_for_the_other_end_s_frames() -> None:
     # 64 bytes of theirs were under way, and 64 bring the word, at 1200 baud.
     trip = RoundTrip(1200)
     assert trip.timeout(0.5) == pytest.approx(0.1 + 2 * 64 * 10 / 1200 + 0.5)

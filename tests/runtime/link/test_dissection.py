@@ -24,7 +24,7 @@ def kept(frame: bytes, key: int = KEY, sent: bool = False) -> RecordedFrame:
     return RecordedFrame(1.5, sent, key, frame.removesuffix(b"\0"))
 
 
-def test_a_frame_is_told_with_its_numbers_and_bytes() -> None:
+def test_a_frame_is_described_by_its_numbers_and_bytes() -> None:
     line = Debug(time=1, level=1, text="hello")
     frame = build([line, line, Acknowledge(held=3)], 5, 12, KEY)
     said = dissect(kept(frame))
@@ -34,7 +34,7 @@ def test_a_frame_is_told_with_its_numbers_and_bytes() -> None:
     assert bytes.fromhex(said.bytes) == frame
 
 
-def test_unreliable_and_open_frames_are_told_apart() -> None:
+def test_unreliable_and_open_frames_are_distinguished() -> None:
     said = dissect(kept(build([BEACON], 3000, 2, KEY), sent=True))
     assert (said.kinds, said.reliable, said.open, said.number, said.sent) == (
         ["Beacon"],
@@ -66,7 +66,7 @@ CUT = assemble(encode(Hello(definitions=1, epoch=2, credit=3))[:-1], False, 1, 0
     ],
     ids=["bit", "session", "cobs", "short", "long", "nothing", "unknown", "length"],
 )
-def test_what_is_wrong_is_named(frame: bytes, why: str) -> None:
+def test_errors_are_named(frame: bytes, why: str) -> None:
     assert why in dissect(kept(frame)).problem
 
 

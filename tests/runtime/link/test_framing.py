@@ -48,7 +48,7 @@ def test_a_frame_carries_its_packets_and_numbers(some: list[Packet], number: int
     assert [payload for _, payload in frame.messages] == [one.to_bytes() for one in some]
 
 
-def test_a_frame_of_another_session_is_none() -> None:
+def test_a_frame_of_another_session_is_dropped() -> None:
     decoder = Decoder()
     decoder.key = 0x0001_0002
     assert list(decoder.feed(build(SOME, 1, 0, 0x0001_0003))) == []
@@ -71,7 +71,7 @@ def test_pieces_of_any_size_give_the_same_frames(cuts: list[int]) -> None:
 
 
 @given(st.integers(0, 7), st.data())
-def test_any_flipped_bit_is_noticed(bit: int, data: st.DataObject) -> None:
+def test_any_flipped_bit_is_detected(bit: int, data: st.DataObject) -> None:
     good = bytearray(build(SOME, 1, 2))
     at = data.draw(st.integers(0, len(good) - 2))
     good[at] ^= 1 << bit
@@ -79,7 +79,7 @@ def test_any_flipped_bit_is_noticed(bit: int, data: st.DataObject) -> None:
 
 
 @given(st.binary(max_size=400))
-def test_after_any_garbage_the_next_frame_is_understood(garbage: bytes) -> None:
+def test_after_any_garbage_the_next_frame_is_decoded(garbage: bytes) -> None:
     decoder = Decoder()
     list(decoder.feed(garbage + b"\0"))
     assert [frame.number for frame in decoder.feed(build(SOME, 5, 0))] == [5]
@@ -129,7 +129,7 @@ def test_idle_zeros_are_no_error() -> None:
         "second cut off",
     ],
 )
-def test_right_checksums_do_not_save_wrong_contents(content: bytes) -> None:
+def test_invalid_contents_with_a_valid_checksum_are_dropped(content: bytes) -> None:
     decoder = Decoder()
     assert list(decoder.feed(raw(content))) == []
     assert decoder.invalid == 1

@@ -37,7 +37,7 @@ class Sender:
         return sent
 
 
-def test_it_sends_only_the_oldest_once_a_second_until_it_may_send_on() -> None:
+def test_while_the_receiver_is_not_ready_only_the_oldest_frame_is_sent_once_a_second() -> None:
     sender = Sender()
     first = sender.run(0.04)
     assert [number for _, number, _ in first[:3]] == [0, 1, 2]
@@ -50,7 +50,7 @@ def test_it_sends_only_the_oldest_once_a_second_until_it_may_send_on() -> None:
     assert [number for _, number, _ in after[:6]] == [1, 2, 3, 4, 5, 6]
 
 
-def test_it_is_not_ready_until_it_says_otherwise() -> None:
+def test_a_receiver_stays_not_ready_until_it_reports_readiness() -> None:
     sender = Sender()
     sender.run(0.04)
     sender.channel.receive(told(0, NOT_READY), sender.now)
@@ -72,7 +72,7 @@ def test_held_frames_are_not_sent_again() -> None:
     assert 1 not in [number for _, number, _ in sender.run(0.06)]
 
 
-def test_what_was_dropped_goes_out_as_soon_as_there_is_room() -> None:
+def test_dropped_frames_are_sent_again_as_soon_as_there_is_room() -> None:
     sender = Sender()
     first = sender.run(0.04)
     sender.channel.receive(told(0, NOT_READY), sender.now)
@@ -83,7 +83,7 @@ def test_what_was_dropped_goes_out_as_soon_as_there_is_room() -> None:
     assert [number for _, number, _ in again[:2]] == [number for _, number, _ in first[:2]] == [0, 1]
 
 
-def test_what_it_had_while_it_was_not_ready_is_sent_again_where_it_waits_for_that() -> None:
+def test_frames_held_while_not_ready_are_sent_again_when_still_missing() -> None:
     sender = Sender()
     sender.run(0.04)
     sender.channel.receive(told(0, NOT_READY | 0b1), sender.now)

@@ -63,7 +63,7 @@ def connect(board: BoardEnd, host: Host) -> None:
     host.wait(lambda: host.connection.connected)
 
 
-def test_waits_for_a_port_and_says_so(host: Host, path: Path) -> None:
+def test_a_missing_port_is_awaited_and_reported(host: Host, path: Path) -> None:
     host.wait(lambda: "does not exist" in host.connection.text)
     assert not host.connection.send(Stop())
     connect(BoardEnd(path), host)
@@ -80,7 +80,7 @@ def test_packets_pass_both_ways(host: Host, path: Path) -> None:
     assert host.connection.statistics().frames_received == 3
 
 
-def test_a_board_that_pauses_keeps_its_port(host: Host, path: Path) -> None:
+def test_the_port_stays_open_while_the_board_pauses(host: Host, path: Path) -> None:
     board = BoardEnd(path)
     connect(board, host)
     changes = host.changes
@@ -90,7 +90,7 @@ def test_a_board_that_pauses_keeps_its_port(host: Host, path: Path) -> None:
     assert host.changes == changes
 
 
-def test_a_port_that_vanishes_and_returns_is_taken_up_again(host: Host, path: Path) -> None:
+def test_a_port_that_vanishes_and_returns_is_reopened(host: Host, path: Path) -> None:
     first = BoardEnd(path)
     connect(first, host)
     first.vanish()
@@ -141,7 +141,7 @@ def test_garbage_on_the_line_is_counted_and_survived(host: Host, path: Path) -> 
     assert host.connection.statistics().frames_invalid == 3
 
 
-def test_bytes_without_a_frame_make_it_ask_for_the_speed(host: Host, path: Path) -> None:
+def test_bytes_without_a_frame_lead_to_a_hint_at_the_speed(host: Host, path: Path) -> None:
     board = BoardEnd(path)
     board.hear(Hello.type)
     os.write(board.master, bytes([0x80, 0xF8, 0xE0, 0x00]) * 100)
@@ -151,7 +151,7 @@ def test_bytes_without_a_frame_make_it_ask_for_the_speed(host: Host, path: Path)
     assert host.connection.text == "connected"
 
 
-def test_other_definitions_are_refused_in_words(host: Host, path: Path) -> None:
+def test_other_definitions_are_refused_with_the_reason(host: Host, path: Path) -> None:
     board = BoardEnd(path)
     board.hear(Hello.type)
     board.say(hello(definitions=0x1234ABCD))

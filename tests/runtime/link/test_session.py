@@ -58,7 +58,7 @@ def beacon(time: int = 0) -> Beacon:
     return Beacon(time=time, right=0, left=1)
 
 
-def test_greets_until_answered_then_beats() -> None:
+def test_hello_is_sent_until_answered_and_heartbeats_after_it() -> None:
     session = LinkSession(1, BAUD)
     greetings = b"".join(session.poll(step * 0.05) for step in range(21))
     assert said(greetings) == [Hello.type] * 5
@@ -70,7 +70,7 @@ def test_greets_until_answered_then_beats() -> None:
     assert said(beats) == [Heartbeat.type] * 4
 
 
-def test_on_a_slow_line_it_beats_and_waits_as_the_line_allows() -> None:
+def test_on_a_slow_line_heartbeats_and_timeouts_follow_the_baud() -> None:
     session = LinkSession(1, 1200)
     greet(session, 0.0)
     session.receive(build([hello()], 0, 0), 0.0)
@@ -89,7 +89,7 @@ def test_on_a_slow_line_it_beats_and_waits_as_the_line_allows() -> None:
 
 
 @pytest.mark.parametrize(("baud", "limit"), [(250_000, SILENCE), (1200, 1.6)])
-def test_silence_is_measured_by_what_the_line_carries(baud: int, limit: float) -> None:
+def test_the_limit_of_silence_follows_the_baud(baud: int, limit: float) -> None:
     session = LinkSession(1, baud)
     greet(session, 0.0)
     session.receive(build([hello()], 0, 0), 0.0)
@@ -99,7 +99,7 @@ def test_silence_is_measured_by_what_the_line_carries(baud: int, limit: float) -
     assert session.stage is SessionStage.GREETING
 
 
-def test_nothing_is_taken_before_the_greeting() -> None:
+def test_nothing_is_accepted_before_the_greeting() -> None:
     session = LinkSession(1, BAUD)
     assert session.receive(build([beacon()], 0, 0), 0.0) == []
     greet(session, 0.1)
@@ -130,7 +130,7 @@ def test_a_silent_board_counts_as_lost_and_is_greeted_anew() -> None:
     assert session.stage is SessionStage.ESTABLISHED
 
 
-def test_a_board_that_has_heard_needs_not_answer() -> None:
+def test_any_frame_of_the_session_counts_as_the_board_s_answer() -> None:
     session = LinkSession(1, BAUD)
     greet(session, 0.0)
     assert [one.type for one in session.receive(keyed(beacon()), 0.1)] == [Beacon.type]
@@ -143,7 +143,7 @@ def test_a_board_that_lost_the_session_is_greeted_anew() -> None:
     assert said(session.poll(0.1)) == [Hello.type]
 
 
-def test_frames_of_another_session_are_none() -> None:
+def test_frames_of_another_session_are_dropped() -> None:
     session = established()
     for key in (session_key(2, 4), session_key(1, 5)):
         assert session.receive(build([beacon()], 0, 0, key), 0.1) == []
@@ -193,7 +193,7 @@ def test_a_start_is_repeated_until_it_is_acknowledged() -> None:
     assert Start.type not in said(session.poll(1.5) + session.poll(1.6))
 
 
-def test_stop_goes_out_at_once_and_voids_a_start_that_is_under_way() -> None:
+def test_stop_is_sent_at_once_and_voids_a_pending_start() -> None:
     session = established(0.9)
     session.send([Start(epoch=4)], 1.0)
     (stop,) = heard(session.send([Stop()], 1.0))
@@ -203,11 +203,11 @@ def test_stop_goes_out_at_once_and_voids_a_start_that_is_under_way() -> None:
     assert starts == [Start(epoch=NO_BOOT).to_bytes()]
 
 
-def test_stop_goes_out_where_nobody_has_answered() -> None:
+def test_stop_is_sent_before_any_answer_of_the_board() -> None:
     assert said(LinkSession(1, BAUD).send([Stop(), Start(epoch=1)], 0.0)) == [Stop.type]
 
 
-def test_of_commands_that_wait_for_a_slow_line_the_newest_goes_out_unless_it_is_old() -> None:
+def test_on_a_slow_line_only_the_newest_command_is_sent_unless_expired() -> None:
     session = LinkSession(1, 1200)
     session.receive(build([hello()], 0, 0) + keyed(beacon()), 0.0)
     commands = [Navigation(x=0.0, y=0.0, z=z, roll=0.0, pitch=0.0, yaw=0.0) for z in (0.1, 0.2, 0.3)]

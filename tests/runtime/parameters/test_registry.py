@@ -59,7 +59,7 @@ class Box:
         ({"nothing": 1}, "there is no parameter 'nothing'"),
     ],
 )
-def test_what_cannot_be_is_refused_and_nothing_is_set(values: dict[str, Any], why: str) -> None:
+def test_invalid_values_are_refused_and_nothing_is_set(values: dict[str, Any], why: str) -> None:
     box = Box()
     before = dict(box.held)
     with pytest.raises(RefusedError) as refused:
@@ -69,7 +69,7 @@ def test_what_cannot_be_is_refused_and_nothing_is_set(values: dict[str, Any], wh
     assert box.held == before
 
 
-def test_each_type_is_set_as_it_is() -> None:
+def test_each_type_is_set_unchanged() -> None:
     box = Box()
     box.registry.apply({"a": 4, "count": 5, "kind": "y", "on": True})
     assert box.registry.values() == box.held
@@ -82,7 +82,7 @@ ANYTHING = st.one_of(st.floats(), st.integers(), st.text(), st.booleans(), st.no
 
 
 @given(values=st.dictionaries(st.sampled_from(["a", "b", "count", "kind", "on", "nothing"]), ANYTHING))
-def test_whatever_is_said_all_of_it_is_set_or_nothing(values: dict[str, Any]) -> None:
+def test_any_request_is_applied_completely_or_not_at_all(values: dict[str, Any]) -> None:
     box = Box()
     before = dict(box.held)
     try:
@@ -94,7 +94,7 @@ def test_whatever_is_said_all_of_it_is_set_or_nothing(values: dict[str, Any]) ->
     assert all(-5 <= box.held[name] <= 5 for name in "ab")
 
 
-def test_partly_sets_what_can_be_and_says_why_the_rest_cannot() -> None:
+def test_a_partial_change_sets_valid_values_and_gives_reasons_for_the_rest() -> None:
     box = Box()
     left_out = box.registry.apply({"a": 4, "b": 9, "gone": 1}, partly=True)
     assert (box.held["a"], box.held["b"]) == (4.0, 2.0)
@@ -104,7 +104,7 @@ def test_partly_sets_what_can_be_and_says_why_the_rest_cannot() -> None:
     }
 
 
-def test_what_waits_for_the_disarmed_robot_is_refused_while_it_is_armed() -> None:
+def test_parameters_for_a_disarmed_robot_are_refused_while_armed() -> None:
     box = Box()
     box.armed = True
     with pytest.raises(RefusedError, match="rest can only be changed while the robot is disarmed"):
@@ -114,7 +114,7 @@ def test_what_waits_for_the_disarmed_robot_is_refused_while_it_is_armed() -> Non
     assert box.held["a"] == 4.0
 
 
-def test_where_something_else_is_in_force_than_expected_nothing_is_set() -> None:
+def test_nothing_is_set_where_present_values_differ_from_the_expected() -> None:
     box = Box()
     with pytest.raises(RefusedError, match="and not 3 any more"):
         box.registry.apply({"a": 2}, expected={"a": 3})
@@ -122,21 +122,21 @@ def test_where_something_else_is_in_force_than_expected_nothing_is_set() -> None
     assert box.held["a"] == 2.0
 
 
-def test_what_changed_is_told_with_what_it_was() -> None:
+def test_changes_are_reported_with_the_previous_values() -> None:
     box = Box()
     with box.registry.changing() as changed:
         box.registry.apply({"a": 4, "b": 2.0})
     assert changed == {"a": (1.0, 4.0)}
 
 
-def test_defaults_are_what_was_there_at_the_start() -> None:
+def test_defaults_are_the_values_at_the_start() -> None:
     box = Box()
     box.registry.apply({"a": 4})
     listed = {one.name: one for one in box.registry.listed()}
     assert (listed["a"].value, listed["a"].default) == (4.0, 1.0)
 
 
-def test_a_change_waits_for_the_tick_that_runs() -> None:
+def test_a_change_waits_for_the_running_tick() -> None:
     box = Box()
     changed = threading.Event()
 

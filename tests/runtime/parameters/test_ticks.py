@@ -72,7 +72,7 @@ def test_a_tick_sees_all_of_a_change_or_none(name: str, monkeypatch: pytest.Monk
     assert came_between == [False]
 
 
-def test_older_commands_are_seen_at_once_and_told_what_they_changed() -> None:
+def test_other_commands_change_parameters_and_report_the_changes() -> None:
     robot = Swimmer()
     do = Commands(robot).do
     assert do["set_points"]({"default": 2.0}) == {"changed": {"control.set_point": [0.5, 2.0]}}
@@ -88,7 +88,7 @@ def test_older_commands_are_seen_at_once_and_told_what_they_changed() -> None:
     )
 
 
-def test_every_parameter_takes_its_own_default_and_says_what_it_is() -> None:
+def test_every_parameter_accepts_its_default_and_has_a_meaning() -> None:
     robot = Swimmer()
     robot.supervisor.mode = "disarmed"
     for one in robot.parameters.listed():

@@ -121,7 +121,7 @@ class TestAttached:
         pressures = [board.exchange()[0] for _ in range(20)]
         assert all(pressure == 101325 for pressure in pressures)
 
-    def test_swims_as_the_fins_say(self, board: Board) -> None:
+    def test_the_robot_moves_as_the_fins_push(self, board: Board) -> None:
         board.accept()
         first = board.exchange()[0]
         for _ in range(200):
@@ -135,7 +135,7 @@ class TestAttached:
         assert board.hear().startswith("sense ")
         assert board.hear().startswith("sense ")
 
-    def test_error_lines_are_told_and_not_answered(
+    def test_error_lines_are_logged_and_not_answered(
         self, board: Board, caplog: pytest.LogCaptureFixture
     ) -> None:
         board.accept()
@@ -145,14 +145,14 @@ class TestAttached:
         assert "no such thing" in caplog.text
 
     @pytest.mark.parametrize("garbage", [b"fins 1 2 3\n", b"hello\n", b"x" * 2000])
-    def test_after_garbage_it_attaches_anew(self, board: Board, garbage: bytes) -> None:
+    def test_after_garbage_it_reconnects(self, board: Board, garbage: bytes) -> None:
         board.accept()
         board.line.sendall(garbage)
         assert board.hear() == ""
         assert board.accept() == f"attach {PERIOD}"
         board.exchange()
 
-    def test_comes_back_when_the_board_does_and_goes_on_swimming(
+    def test_it_reconnects_with_the_board_and_continues_the_motion(
         self, board: Board, caplog: pytest.LogCaptureFixture
     ) -> None:
         board.accept()
@@ -166,9 +166,7 @@ class TestAttached:
             wait_for(lambda: len(caplog.records) >= 2, "word of both")
         assert [record.levelname for record in caplog.records] == ["WARNING", "INFO"]
 
-    def test_a_board_that_stays_away_is_told_of_once(
-        self, board: Board, caplog: pytest.LogCaptureFixture
-    ) -> None:
+    def test_a_missing_board_is_reported_once(self, board: Board, caplog: pytest.LogCaptureFixture) -> None:
         for _ in range(3):
             board.accept()
         board.exchange()
@@ -196,7 +194,7 @@ class TestAttached:
         assert last.position[2] > 0.06
         assert last.fins == pytest.approx((-1.57,) * 4)
 
-    def test_a_board_that_was_away_leaves_no_truth_to_catch_up_with(
+    def test_no_truth_is_repeated_after_the_board_was_away(
         self, board: Board, messages: ZenohTransport, clock: SimulatedClock
     ) -> None:
         received: list[bytes] = []
@@ -247,9 +245,7 @@ class TestAttached:
         with pytest.raises(RefusedError, match=r"is missing|is not known here|number|at most 2 m/s"):
             messages.query("simulator/current", question)
 
-    def test_bus_errors_are_told_to_the_board_once_and_to_every_new_one(
-        self, board: Board, messages: ZenohTransport
-    ) -> None:
+    def test_bus_errors_are_sent_once_to_each_board(self, board: Board, messages: ZenohTransport) -> None:
         board.accept()
         messages.query("simulator/fault", {"sensor": "gyroscope", "kind": "bus"})
         messages.query("simulator/fault", {"sensor": "encoder1", "kind": "bus"})
@@ -278,7 +274,7 @@ class TestAttached:
             ("fault", {"sensor": "battery", "kind": "drift", "speed": -0.1}),
         ],
     )
-    def test_everything_can_be_asked_for_over_zenoh(
+    def test_every_request_works_over_zenoh(
         self, messages: ZenohTransport, name: str, question: dict[str, object]
     ) -> None:
         assert messages.query(f"simulator/{name}", question) == {"accepted": True}
@@ -303,7 +299,7 @@ def accepted(messages: ZenohTransport) -> bool:
         return False
 
 
-def test_program_swims_and_ends_when_asked(folder: Path, board: Board, messages: ZenohTransport) -> None:
+def test_the_program_runs_and_ends_on_sigterm(folder: Path, board: Board, messages: ZenohTransport) -> None:
     with subprocess.Popen(command(folder, "--seed", "2")) as program:
         assert board.accept() == f"attach {PERIOD}"
         board.exchange()

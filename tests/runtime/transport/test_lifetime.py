@@ -44,7 +44,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lifetime_module, "_CHECK_SECONDS", 0.001)
 
 
-def test_a_lock_is_looked_at_without_being_kept(tmp_path: Path) -> None:
+def test_a_lock_is_tested_without_being_taken(tmp_path: Path) -> None:
     lock = tmp_path / "server.lock"
     assert not is_served(lock)
     with serving(lock):
@@ -54,7 +54,7 @@ def test_a_lock_is_looked_at_without_being_kept(tmp_path: Path) -> None:
         assert is_served(lock)
 
 
-def test_it_outlives_a_server_for_a_while(tmp_path: Path) -> None:
+def test_a_process_outlives_its_server_for_a_limited_time(tmp_path: Path) -> None:
     lock, clock, ended = tmp_path / "server.lock", Clock(), threading.Event()
     with serving(lock):
         watch_server(lock, 30.0, clock, ended.set)
@@ -71,7 +71,7 @@ def test_it_outlives_a_server_for_a_while(tmp_path: Path) -> None:
     assert ended.wait(DEADLINE)
 
 
-def test_where_the_folder_is_gone_nothing_is_waited_for(tmp_path: Path) -> None:
+def test_without_the_folder_a_process_ends_at_once(tmp_path: Path) -> None:
     lock, ended = tmp_path / "server.lock", threading.Event()
     lock.touch()
     watch_server(lock, 30.0, Clock(), ended.set)

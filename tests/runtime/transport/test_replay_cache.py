@@ -37,7 +37,7 @@ class Writer:
         return BacklogReply.from_bytes(self.cache.answer(write_question(wanted)))
 
 
-def test_blocks_are_answered_as_they_were_sent_oldest_first() -> None:
+def test_a_request_returns_the_sent_blocks_oldest_first() -> None:
     writer = Writer()
     writer.depths(0, 1)
     writer.debug("a")
@@ -52,7 +52,7 @@ def test_blocks_are_answered_as_they_were_sent_oldest_first() -> None:
     assert writer.ask().blocks == []
 
 
-def test_old_blocks_are_given_up() -> None:
+def test_old_blocks_are_dropped() -> None:
     writer = Writer()
     writer.depths(0)
     writer.clock.forward(cache_module.SECONDS)
@@ -63,7 +63,7 @@ def test_old_blocks_are_given_up() -> None:
     assert [block.first for block in writer.ask(depth=0).blocks] == [1, 2]
 
 
-def test_no_more_than_so_many_bytes_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cache_is_limited_in_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cache_module, "BYTES_MAX", 1000)
     writer = Writer()
     for number in range(100):
@@ -75,7 +75,7 @@ def test_no_more_than_so_many_bytes_are_kept(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @given(st.integers(0, NUMBERS - 1), st.integers(1, 5), st.integers(-7, 7))
-def test_numbers_go_round(first: int, count: int, ahead: int) -> None:
+def test_numbers_wrap(first: int, count: int, ahead: int) -> None:
     block = depth_block(first, count)
     assert block.following == (first + count) % NUMBERS
     assert block.after((first + ahead) % NUMBERS) is (ahead < count)
@@ -111,12 +111,12 @@ def test_bad_questions_are_refused(question: bytes, why: str) -> None:
 
 
 @given(st.binary(max_size=60))
-def test_nonsense_is_no_answer(data: bytes) -> None:
+def test_invalid_bytes_are_no_answer(data: bytes) -> None:
     with pytest.raises(LayoutError):
         BacklogReply.from_bytes(data)
 
 
-def test_a_cut_answer_is_refused() -> None:
+def test_a_truncated_answer_is_refused() -> None:
     writer = Writer()
     writer.depths(0)
     answer = writer.cache.answer(json.dumps({"depth": 0}).encode())

@@ -32,7 +32,7 @@ def heard(by: ZenohTransport, of: ZenohTransport) -> float:
     return time.monotonic() - began
 
 
-def test_a_peer_does_not_wait_for_others_that_are_not_there(tmp_path: Path) -> None:
+def test_a_peer_does_not_wait_for_missing_peers(tmp_path: Path) -> None:
     seconds = []
     for number in range(3):
         began = time.monotonic()
@@ -41,7 +41,7 @@ def test_a_peer_does_not_wait_for_others_that_are_not_there(tmp_path: Path) -> N
     assert min(seconds) < 0.25
 
 
-def test_a_peer_that_was_away_is_connected_again_soon() -> None:
+def test_a_peer_reconnects_soon() -> None:
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         endpoint = f"unixsock-stream/{folder}/zenoh"
         with ZenohTransport("turtle", connect=[endpoint]) as staying:
@@ -69,7 +69,7 @@ def test_bytes_are_answered_with_bytes(ends: tuple[ZenohTransport, ZenohTranspor
     assert ask(asking, "picture", payload) == payload[::-1]
 
 
-def test_a_refusal_is_told_in_its_words(ends: tuple[ZenohTransport, ZenohTransport]) -> None:
+def test_a_refusal_carries_its_text(ends: tuple[ZenohTransport, ZenohTransport]) -> None:
     answering, asking = ends
 
     def refuse(question: bytes) -> bytes:
@@ -80,7 +80,7 @@ def test_a_refusal_is_told_in_its_words(ends: tuple[ZenohTransport, ZenohTranspo
         ask(asking, "picture", b"3")
 
 
-def test_an_error_inside_is_no_detail_for_others(
+def test_an_internal_error_is_answered_without_details(
     ends: tuple[ZenohTransport, ZenohTransport], caplog: pytest.LogCaptureFixture
 ) -> None:
     answering, asking = ends
@@ -94,7 +94,7 @@ def test_an_error_inside_is_no_detail_for_others(
     assert "secret" in caplog.text
 
 
-def test_who_does_not_answer_in_time_is_given_up(ends: tuple[ZenohTransport, ZenohTransport]) -> None:
+def test_a_request_without_an_answer_times_out(ends: tuple[ZenohTransport, ZenohTransport]) -> None:
     answering, asking = ends
     gate = threading.Event()
     answering.serve_bytes("there", lambda _: b"")

@@ -54,7 +54,7 @@ class TestCardCamera:
         assert red / blue < 0.93
         assert ATTENUATION[2] * CARD_DISTANCE == pytest.approx(0.24)
 
-    def test_reads_the_time_and_the_card_of_now(self) -> None:
+    def test_each_picture_shows_the_present_time_and_card(self) -> None:
         clock, cards = SimulatedClock(5.0), ["red"]
         camera = CardCamera(320, 240, clock, lambda: make_card(cards[0], COLOURS))
         assert camera.read().taken == 5.0
@@ -105,7 +105,7 @@ class TestFileCamera:
         assert seen[4:] == [0, 3, 6, 9]
         camera.close()
 
-    def test_video_looked_at_faster_than_it_plays_goes_on_picture_by_picture(self, video: Path) -> None:
+    def test_a_video_read_faster_than_it_plays_advances_picture_by_picture(self, video: Path) -> None:
         camera = FileCamera(video, 160, 120, SimulatedClock())
         assert [shown(camera) for _ in range(3)] == [0, 1, 2]
         camera.close()
@@ -119,7 +119,7 @@ class TestFileCamera:
         camera.close()
 
     @pytest.mark.parametrize("name", ["card.png", "card.jpg", "card 01.bmp"])
-    def test_picture_stays(self, tmp_path: Path, name: str) -> None:
+    def test_a_still_picture_stays_the_same(self, tmp_path: Path, name: str) -> None:
         file = tmp_path / name
         assert cv2.imwrite(str(file), drawn(1.0, "yellow"))
         clock = SimulatedClock()
@@ -131,16 +131,16 @@ class TestFileCamera:
             clock.forward(10)
         camera.close()
 
-    def test_missing_file_is_told_of(self, tmp_path: Path) -> None:
+    def test_a_missing_file_is_reported(self, tmp_path: Path) -> None:
         with pytest.raises(CameraError, match=r"there is no file .*gone.mp4.*robot.toml"):
             FileCamera(tmp_path / "gone.mp4", 320, 240, SimulatedClock())
 
-    def test_no_name_is_told_of(self) -> None:
+    def test_a_missing_file_name_is_reported(self) -> None:
         with pytest.raises(CameraError, match="name a video or a picture"):
             FileCamera(Path(), 320, 240, SimulatedClock())
 
     @pytest.mark.parametrize("name", ["broken.mp4", "broken.png"])
-    def test_what_is_no_picture_is_told_of(self, tmp_path: Path, name: str) -> None:
+    def test_a_file_that_is_no_picture_is_reported(self, tmp_path: Path, name: str) -> None:
         file = tmp_path / name
         file.write_bytes(b"this is no picture" * 50)
         with pytest.raises(
@@ -195,7 +195,7 @@ def library(monkeypatch: pytest.MonkeyPatch) -> type[StandIn]:
 
 
 class TestPiCamera:
-    def test_reads_what_the_library_gives(self, library: type[StandIn]) -> None:
+    def test_pictures_come_from_the_library(self, library: type[StandIn]) -> None:
         camera = PiCamera(320, 240, SimulatedClock(4.0))
         frame = camera.read()
         camera.close()
@@ -203,24 +203,26 @@ class TestPiCamera:
         assert frame.taken == 4.0
         assert library.made[0].calls == [{"size": (320, 240), "format": "RGB888"}, "start", "main", "close"]
 
-    def test_says_how_to_get_the_library(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_a_missing_library_is_reported_with_its_installation(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         monkeypatch.setitem(sys.modules, "picamera2", None)
         with pytest.raises(CameraError, match="needs picamera2, which is not installed: run"):
             PiCamera(320, 240, SimulatedClock())
 
-    def test_says_that_no_camera_is_there(self, library: type[StandIn]) -> None:
+    def test_a_missing_camera_is_reported(self, library: type[StandIn]) -> None:
         library.failure = IndexError("list index out of range")
         with pytest.raises(CameraError, match=r"does not start \(list index out of range\); check its cable"):
             PiCamera(320, 240, SimulatedClock())
 
-    def test_says_that_the_camera_went_away(self, library: type[StandIn]) -> None:
+    def test_a_disconnected_camera_is_reported(self, library: type[StandIn]) -> None:
         camera = PiCamera(320, 240, SimulatedClock())
         library.failure = RuntimeError("timeout")
         with pytest.raises(CameraError, match=r"gives no picture \(timeout\)"):
             camera.read()
 
 
-def test_library_is_asked_for_only_by_the_pi_camera(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_the_pi_camera_loads_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "picamera2", SimpleNamespace())
     file = tmp_path / "a.png"
     cv2.imwrite(str(file), drawn(1.0, None))

@@ -25,7 +25,7 @@ def circle(low: int, span: int) -> list[int]:
 
 
 @given(st.integers(0, 179), st.integers(0, 30), st.integers(60, 255), st.integers(40, 255))
-def test_a_range_holds_its_own_pixels_wherever_on_the_circle(
+def test_a_picked_range_contains_its_pixels_at_any_hue(
     low: int, span: int, saturation: int, value: int
 ) -> None:
     pixels = np.array([(hue, saturation, value) for hue in circle(low, span)], np.uint8)
@@ -37,7 +37,7 @@ def test_a_range_holds_its_own_pixels_wherever_on_the_circle(
 
 
 @given(st.integers(0, 179), st.lists(st.integers(-8, 8), min_size=20, max_size=60), st.integers(0, 179))
-def test_the_circle_has_no_beginning(middle: int, beside: list[int], turn: int) -> None:
+def test_picking_is_invariant_to_a_shift_of_hue(middle: int, beside: list[int], turn: int) -> None:
     def picked(start: int) -> ColourRange:
         hues = [(start + one) % 180 for one in beside]
         return range_of(np.array([(hue, 200, 200) for hue in hues], np.uint8))
@@ -50,7 +50,7 @@ def test_the_circle_has_no_beginning(middle: int, beside: list[int], turn: int) 
 
 
 @pytest.mark.parametrize("card", sorted(COLOURS))
-def test_a_drawn_card_is_found_by_what_was_picked_on_it_and_water_is_not(card: str) -> None:
+def test_a_picked_range_finds_its_card_and_no_water(card: str) -> None:
     proposal = propose(drawn(3.0, card), MIDDLE)
     assert proposal.share == pytest.approx(0.26 * 0.36 * 3 / 4, rel=0.15)
     picked = {"picked": proposal.colour}
@@ -60,7 +60,7 @@ def test_a_drawn_card_is_found_by_what_was_picked_on_it_and_water_is_not(card: s
 
 
 @pytest.mark.parametrize("card", sorted(COLOURS))
-def test_what_was_picked_in_the_brightest_light_holds_in_any(card: str) -> None:
+def test_a_range_picked_in_the_brightest_light_is_valid_in_any_light(card: str) -> None:
     brightest = max(
         (drawn(0.5 * step, card) for step in range(200)), key=lambda one: one[116:125, 156:165].sum()
     )
@@ -86,7 +86,7 @@ def one_colour(blue: int, green: int, red: int) -> Picture:
         (one_colour(25, 2, 2), "it is too dark"),
     ],
 )
-def test_where_there_is_no_colour_none_is_picked(picture: Picture, why: str) -> None:
+def test_pixels_without_colour_are_not_picked(picture: Picture, why: str) -> None:
     with pytest.raises(RefusedError, match=f"no colour at this place: {why}.*nothing was changed"):
         propose(picture, MIDDLE)
 
@@ -130,7 +130,7 @@ class TestNode:
         assert find(drawn(1.0, "blue"), "picked", colours={"picked": proposal.colour}) is not None
         assert node.settings is before
 
-    def test_without_a_picture_it_says_why(self) -> None:
+    def test_without_a_picture_the_reason_is_given(self) -> None:
         clock = SimulatedClock(1.0)
         node, camera = self.vision(drawn(1.0, "blue"), clock)
         with pytest.raises(RefusedError, match=r"no picture to pick a colour in\. Camera: starting"):

@@ -63,14 +63,14 @@ def test_box_and_area_are_shares_of_the_picture() -> None:
     assert patch.area == pytest.approx(59 * 29 / 20000)
 
 
-def test_largest_patch_of_the_wanted_colour_counts() -> None:
+def test_the_largest_patch_of_the_selected_colour_counts() -> None:
     picture = patched((10, 10, 20, 20, YELLOW), (100, 10, 30, 30, YELLOW), (150, 60, 25, 25, YELLOW))
     patch = find(picture, "yellow")
     assert patch is not None
     assert patch.box.x == 0.5
 
 
-def test_wanted_colour_goes_before_a_larger_one() -> None:
+def test_the_selected_colour_has_priority_over_a_larger_patch() -> None:
     picture = patched((10, 10, 80, 80, RED), (120, 10, 20, 20, YELLOW))
     found = {wanted: find(picture, wanted) for wanted in NAMES}
     assert {wanted: patch.colour if patch else None for wanted, patch in found.items()} == {
@@ -130,7 +130,7 @@ BAR, SQUARE = (10, 40, 100, 20, YELLOW), (130, 20, 40, 40, YELLOW)
         ({"circularity_min": 0.7}, 0.65, "not round enough"),
     ],
 )
-def test_filters_let_through_what_has_the_shape(
+def test_filters_pass_patches_of_the_given_shape(
     filters: dict[str, Any], x: float, reason: str | None
 ) -> None:
     sight = look(patched(BAR, SQUARE), **filters)
@@ -167,12 +167,12 @@ def test_opening_removes_what_is_smaller_than_it() -> None:
     assert look(picture, opening=0.05).patch is None
 
 
-def test_no_more_candidates_are_told_than_can_be_looked_at() -> None:
+def test_the_number_of_reported_candidates_is_limited() -> None:
     specks = patched(*((x, y, 8, 8, YELLOW) for x in range(0, 200, 14) for y in range(0, 100, 14)))
     assert len(look(specks).target_patches.candidates) == 5
 
 
-def test_what_is_seen_has_its_own_set_point() -> None:
+def test_each_action_has_its_own_set_point() -> None:
     actions = {"green": 2.0, "red": 1.5, "marker 7": 3.0}
     both = patched((10, 10, 60, 60, RED), (120, 10, 30, 30, GREEN))
     sight = look(both, actions=actions)
@@ -185,7 +185,7 @@ def test_what_is_seen_has_its_own_set_point() -> None:
     assert (sight.target, sight.set_point, sight.colour) == (None, None, "red")
 
 
-def test_the_wanted_colour_goes_before_every_action() -> None:
+def test_the_selected_colour_has_priority_over_every_action() -> None:
     both = patched((10, 10, 60, 60, RED), (120, 10, 30, 30, YELLOW))
     sight = look(both, actions={"red": 1.5})
     assert (sight.target, sight.set_point) == ("yellow", None)
@@ -199,7 +199,7 @@ def marked(number: int, dictionary: int = cv2.aruco.DICT_4X4_50) -> Picture:
     return picture
 
 
-def test_a_marker_is_read_where_it_is() -> None:
+def test_a_marker_is_decoded_with_its_place() -> None:
     sight = look(marked(7), markers="4x4_50", actions={"marker 7": 3.0})
     (marker,) = sight.markers
     assert marker.number == 7
@@ -209,7 +209,7 @@ def test_a_marker_is_read_where_it_is() -> None:
     assert (sight.target, sight.set_point, sight.patch) == ("marker 7", 3.0, None)
 
 
-def test_markers_count_by_dictionary_and_number() -> None:
+def test_markers_are_selected_by_dictionary_and_number() -> None:
     assert look(marked(7)).markers == []
     assert look(marked(7), markers="4x4_50", marker_numbers=(1, 8)).markers == []
     assert [one.number for one in look(marked(7), markers="4x4_50", marker_numbers=(7,)).markers] == [7]
@@ -230,7 +230,7 @@ def test_the_drawn_card_carries_the_marker() -> None:
 
 
 class TestMask:
-    def test_shows_what_counts_what_does_not_and_their_outlines(self) -> None:
+    def test_the_mask_shows_accepted_and_rejected_patches_with_outlines(self) -> None:
         sight = look(patched(SQUARE, BAR, (5, 5, 2, 2, YELLOW)), aspect=(0.5, 2.0))
         mask = draw_mask(sight.target_patches)
         assert mask.shape == (100, 200, 3)
@@ -240,7 +240,7 @@ class TestMask:
         assert tuple(mask[20, 150]) == OUTLINE
         assert tuple(mask[40, 60]) == OUTLINE_REFUSED
 
-    def test_of_nothing_is_empty(self) -> None:
+    def test_the_mask_of_plain_water_is_empty(self) -> None:
         assert (draw_mask(look(patched()).target_patches) == GROUND).all()
 
 

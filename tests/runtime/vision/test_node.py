@@ -66,7 +66,7 @@ def wait_for(condition: Callable[[], bool], what: str) -> None:
         time.sleep(0.005)
 
 
-def test_tells_what_each_picture_holds(listener: Listener, clock: SimulatedClock) -> None:
+def test_each_picture_gives_a_detection(listener: Listener, clock: SimulatedClock) -> None:
     node = listener.node(clock)
     for card in (None, "yellow", "red", None):
         node.show_card(card)
@@ -95,7 +95,7 @@ def test_measures_its_own_time(listener: Listener, monkeypatch: pytest.MonkeyPat
     assert listener.detections[0].time == pytest.approx(20.03)
 
 
-def test_wanted_colour_goes_first(listener: Listener, clock: SimulatedClock) -> None:
+def test_the_selected_colour_comes_first(listener: Listener, clock: SimulatedClock) -> None:
     picture = drawn(1.0, "red")
     picture[:60, :60] = (0, 220, 240)
     node = listener.node(clock, ShakyCamera(picture, clock).open)
@@ -105,7 +105,7 @@ def test_wanted_colour_goes_first(listener: Listener, clock: SimulatedClock) -> 
     assert [detection.colour for detection in listener.detections] == ["yellow", "red", "red"]
 
 
-def test_pictures_are_made_only_while_somebody_watches(listener: Listener, clock: SimulatedClock) -> None:
+def test_pictures_are_encoded_only_for_subscribers(listener: Listener, clock: SimulatedClock) -> None:
     node = listener.node(clock)
     node.process_picture()
     assert listener.pictures == []
@@ -123,7 +123,7 @@ def test_pictures_are_made_only_while_somebody_watches(listener: Listener, clock
     assert difference.mean() < 5
 
 
-def test_mask_and_balanced_picture_are_made_for_whoever_watches_them(
+def test_mask_and_balanced_picture_are_encoded_for_subscribers(
     listener: Listener, clock: SimulatedClock
 ) -> None:
     node = listener.node(clock)
@@ -200,7 +200,7 @@ def test_another_failure_is_reported_anew(listener: Listener, clock: SimulatedCl
     assert len(listener.events) == 2
 
 
-def test_a_camera_may_fail_in_any_way(
+def test_any_exception_of_a_camera_is_reported(
     listener: Listener, clock: SimulatedClock, caplog: pytest.LogCaptureFixture
 ) -> None:
     camera = ShakyCamera(drawn(1.0, None), clock)
@@ -247,7 +247,7 @@ def test_cards_are_refused_where_they_cannot_be_shown(listener: Listener, clock:
 
 
 class TestThread:
-    def test_looks_at_its_rate(self, listener: Listener) -> None:
+    def test_pictures_are_taken_at_the_rate(self, listener: Listener) -> None:
         node = listener.node(SteadyClock(), config=VisionConfig(rate=20.0, width=64, height=48))
         node.start()
         wait_for(lambda: len(listener.detections) >= 11, "eleven pictures")
@@ -256,7 +256,7 @@ class TestThread:
         # However late single pictures are, none comes early and the rhythm is not outrun.
         assert (taken[10] - taken[0]) / 10 > 0.045
 
-    def test_a_higher_rate_holds_at_once(self, listener: Listener) -> None:
+    def test_a_higher_rate_applies_at_once(self, listener: Listener) -> None:
         node = listener.node(SteadyClock(), config=VisionConfig(rate=2.0, width=64, height=48))
         node.start()
         wait_for(lambda: len(listener.detections) >= 1, "first picture")
@@ -298,7 +298,7 @@ class TestThread:
         assert listener.detections == []
 
 
-def test_a_small_picture_comes_every_two_seconds_whoever_watches(
+def test_a_thumbnail_is_sent_every_two_seconds_without_subscribers(
     listener: Listener, clock: SimulatedClock
 ) -> None:
     node = listener.node(clock)

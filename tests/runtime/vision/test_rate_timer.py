@@ -23,7 +23,7 @@ def count(
 
 
 @pytest.mark.parametrize("rate", [2.0, 4.0, 30.0])
-def test_rate_is_kept(rate: float) -> None:
+def test_the_rate_is_exact(rate: float) -> None:
     clock = SimulatedClock(9.0)
     assert count(RateTimer(clock, rate), clock, 60) == pytest.approx(60 * rate, abs=1)
 
@@ -33,7 +33,7 @@ def test_time_that_a_picture_takes_does_not_slow_the_rhythm() -> None:
     assert count(RateTimer(clock, 4.0), clock, 60, costs=0.2) == pytest.approx(240, abs=1)
 
 
-def test_pictures_that_take_longer_than_the_period_are_not_made_up_for() -> None:
+def test_pictures_missed_by_a_long_computation_are_not_made_up_for() -> None:
     clock = SimulatedClock()
     pace = RateTimer(clock, 10.0)
     pace.begin()
@@ -46,7 +46,7 @@ def test_first_is_due_at_once() -> None:
     assert RateTimer(SimulatedClock(3.0), 2.0).remaining() <= 0
 
 
-def test_new_rate_holds_at_once() -> None:
+def test_a_new_rate_applies_at_once() -> None:
     clock = SimulatedClock()
     pace = RateTimer(clock, 2.0)
     pace.begin()

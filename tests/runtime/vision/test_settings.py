@@ -105,7 +105,7 @@ def test_a_missing_range_is_refused() -> None:
         ({"actions": {"marker 03": 1}}, "no colour and no marker"),
     ],
 )
-def test_settings_that_cannot_be_are_refused(table: dict[str, object], text: str) -> None:
+def test_invalid_settings_are_refused(table: dict[str, object], text: str) -> None:
     with pytest.raises(ConfigError, match=text):
         parse(VisionSettings, table)
 
@@ -120,7 +120,7 @@ def test_the_range_that_the_thesis_prints_holds_nothing() -> None:
     assert cv2.countNonZero(cv2.inRange(everything, (120, 0, 70), (255, 255, 10))) == 0
 
 
-def test_what_was_kept_is_read_again(tmp_path: Path) -> None:
+def test_saved_settings_are_read_again(tmp_path: Path) -> None:
     kept = VisionSettingsFile(tmp_path / "vision.json")
     assert kept.read() is None
     settings = VisionSettings(
@@ -138,7 +138,7 @@ def test_what_was_kept_is_read_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"rate": 99}', '{"unknown": 1}', "\xff"])
-def test_what_was_kept_and_is_damaged_is_told_of(tmp_path: Path, text: str) -> None:
+def test_damaged_saved_settings_are_reported(tmp_path: Path, text: str) -> None:
     (tmp_path / "vision.json").write_bytes(text.encode("latin-1"))
     with pytest.raises(ConfigError, match=r"vision\.json"):
         VisionSettingsFile(tmp_path / "vision.json").read()

@@ -62,7 +62,7 @@ def test_all_is_well(rig: AlarmRig) -> None:
     assert (rig.alarms.listed(), rig.told) == ([], [])
 
 
-def test_whoever_falls_silent_is_an_alarm_until_it_speaks_again(rig: AlarmRig) -> None:
+def test_a_silent_process_is_an_alarm_until_it_sends_again(rig: AlarmRig) -> None:
     last_heard = rig.clock.now()
     while "runtime_silent" not in rig.active():
         rig.spend(PERIOD)
@@ -83,7 +83,7 @@ def test_whoever_falls_silent_is_an_alarm_until_it_speaks_again(rig: AlarmRig) -
     assert rig.alarms.listed() == []
 
 
-def test_what_is_acknowledged_while_it_is_wrong_goes_when_it_is_over(rig: AlarmRig) -> None:
+def test_an_acknowledged_alarm_disappears_with_its_fault(rig: AlarmRig) -> None:
     rig.spend(3.0)
     rig.alarms.acknowledge()
     alarm = rig.find("runtime_silent")
@@ -97,7 +97,7 @@ def test_what_is_acknowledged_while_it_is_wrong_goes_when_it_is_over(rig: AlarmR
     assert not alarm.acknowledged
 
 
-def test_what_has_just_been_started_may_be_silent_for_longer(rig: AlarmRig) -> None:
+def test_a_process_that_has_just_started_may_be_silent_for_longer(rig: AlarmRig) -> None:
     rig.run_all()
     rig.spend(STARTING_SECONDS - PERIOD)
     assert rig.active() == set()
@@ -105,7 +105,7 @@ def test_what_has_just_been_started_may_be_silent_for_longer(rig: AlarmRig) -> N
     assert "runtime_silent" in rig.active()
 
 
-def test_a_server_that_was_held_up_does_not_blame_the_others(rig: AlarmRig) -> None:
+def test_after_a_stall_of_the_server_other_processes_are_not_blamed(rig: AlarmRig) -> None:
     rig.clock.forward(30.0)
     rig.watchdog.check_once()
     assert rig.active() == set()
@@ -113,7 +113,7 @@ def test_a_server_that_was_held_up_does_not_blame_the_others(rig: AlarmRig) -> N
     assert rig.told == []
 
 
-def test_a_runtime_that_stays_silent_is_ended_once_and_no_other_part(
+def test_only_a_silent_runtime_is_killed_and_only_once(
     rig: AlarmRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ended: list[str] = []
@@ -132,7 +132,7 @@ def test_a_runtime_that_stays_silent_is_ended_once_and_no_other_part(
     assert len(ended) == 1
 
 
-def test_a_server_that_is_held_up_again_and_again_ends_nobody(
+def test_repeated_stalls_of_the_server_kill_no_process(
     rig: AlarmRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ended: list[ManagedProcess] = []
@@ -146,7 +146,7 @@ def test_a_server_that_is_held_up_again_and_again_ends_nobody(
 
 
 @pytest.mark.parametrize("name", DOWN)
-def test_a_part_that_has_ended_is_an_alarm_until_it_runs_again(rig: AlarmRig, name: str) -> None:
+def test_an_ended_process_is_an_alarm_until_it_runs_again(rig: AlarmRig, name: str) -> None:
     rig.parts[name]._fail("was ended by signal SIGKILL", 0.0)
     rig.alarms.begin(DOWN[name], "It was ended.")
     rig.spend(PERIOD, all=rig.receive)
@@ -158,14 +158,14 @@ def test_a_part_that_has_ended_is_an_alarm_until_it_runs_again(rig: AlarmRig, na
     assert (alarm.active, alarm.what) == (False, "It was ended.")
 
 
-def test_a_part_that_is_paused_is_not_wrong(rig: AlarmRig) -> None:
+def test_a_paused_process_is_no_fault(rig: AlarmRig) -> None:
     for part in rig.parts.values():
         part._set("paused")
     rig.spend(20.0)
     assert rig.alarms.listed() == []
 
 
-def test_a_disk_that_fills_up(rig: AlarmRig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_an_alarm(rig: AlarmRig, monkeypatch: pytest.MonkeyPatch) -> None:
     disk = SimpleNamespace()
     monkeypatch.setattr(shutil, "disk_usage", lambda _: disk)
     for disk.total, disk.free, low in (
@@ -178,7 +178,7 @@ def test_a_disk_that_fills_up(rig: AlarmRig, monkeypatch: pytest.MonkeyPatch) ->
         assert rig.active() == ({"disk_low"} if low else set())
 
 
-def test_a_database_that_fails(rig: AlarmRig, store: Store) -> None:
+def test_a_failing_database_is_an_alarm(rig: AlarmRig, store: Store) -> None:
     store.failing = "the disk is full"
     rig.spend(PERIOD, all=rig.receive)
     assert rig.active() == {"store_failing"}
@@ -187,13 +187,13 @@ def test_a_database_that_fails(rig: AlarmRig, store: Store) -> None:
     assert rig.active() == set()
 
 
-def test_every_fault_says_the_likely_cause_and_what_to_do() -> None:
+def test_every_fault_has_a_cause_and_a_remedy() -> None:
     for fault in FAULTS.values():
         assert fault.cause.endswith(".")
         assert fault.remedy.endswith(".")
 
 
-def test_a_server_that_was_started_again_says_so(settings: Settings) -> None:
+def test_a_restarted_server_raises_an_alarm(settings: Settings) -> None:
     async def started(ended: str) -> list[tuple[str, str, str]]:
         await place_with_samples(settings.data)
         app = create_app(settings)

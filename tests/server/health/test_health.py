@@ -16,7 +16,7 @@ def rig(settings: Settings, store: Store) -> MonitorRig:
     return MonitorRig(settings, store, "board", "runtime", "simulator")
 
 
-def test_all_is_well_while_everything_keeps_coming(rig: MonitorRig) -> None:
+def test_all_is_well_while_everything_is_received(rig: MonitorRig) -> None:
     rig.run_all()
     assert rig.status == "starting"
     for number in range(5):
@@ -26,7 +26,7 @@ def test_all_is_well_while_everything_keeps_coming(rig: MonitorRig) -> None:
     assert rig.text("link") == "connected"
 
 
-def test_a_silent_part_is_starting_at_first_and_then_failed(rig: MonitorRig) -> None:
+def test_a_silent_process_is_starting_at_first_and_then_failed(rig: MonitorRig) -> None:
     rig.run_all()
     rig.clock.forward(GRACE_SECONDS - 0.1)
     assert rig.status == "starting"
@@ -35,7 +35,7 @@ def test_a_silent_part_is_starting_at_first_and_then_failed(rig: MonitorRig) -> 
 
 
 @pytest.mark.parametrize(("name", "limit"), [("runtime", 2.5), ("board", 3.0), ("simulator", 2.0)])
-def test_what_was_heard_grows_old(rig: MonitorRig, name: str, limit: float) -> None:
+def test_received_data_becomes_stale(rig: MonitorRig, name: str, limit: float) -> None:
     rig.run_all()
     rig.clock.forward(60)
     rig.receive(0)
@@ -46,7 +46,7 @@ def test_what_was_heard_grows_old(rig: MonitorRig, name: str, limit: float) -> N
     assert rig.state(name) == "failed"
 
 
-def test_a_board_that_sends_no_more_bytes_has_failed_though_the_link_is_reported(rig: MonitorRig) -> None:
+def test_a_silent_board_has_failed_even_while_link_statistics_arrive(rig: MonitorRig) -> None:
     rig.run_all()
     rig.clock.forward(60)
     for number in range(5):
@@ -55,7 +55,7 @@ def test_a_board_that_sends_no_more_bytes_has_failed_though_the_link_is_reported
     assert rig.state("board") == "failed"
 
 
-def test_a_board_is_well_with_the_first_bytes_after_the_runtime_was_restarted(rig: MonitorRig) -> None:
+def test_a_restarted_byte_counter_counts_as_received_bytes(rig: MonitorRig) -> None:
     rig.run_all()
     rig.monitor.see(link_block(0, 500_000))
     rig.clock.forward(60)
@@ -67,7 +67,7 @@ def test_a_board_is_well_with_the_first_bytes_after_the_runtime_was_restarted(ri
     assert rig.state("board") == "ok"
 
 
-def test_the_link_speaks_in_the_words_of_the_runtime(rig: MonitorRig) -> None:
+def test_the_link_s_state_is_the_runtime_s_text(rig: MonitorRig) -> None:
     rig.run_all()
     rig.clock.forward(60)
     rig.receive(0, connected=False, connection="The definitions differ. Upload the firmware.")
@@ -77,7 +77,7 @@ def test_the_link_speaks_in_the_words_of_the_runtime(rig: MonitorRig) -> None:
     )
 
 
-def test_a_part_that_ended_has_failed_whatever_was_heard(rig: MonitorRig) -> None:
+def test_an_ended_process_has_failed_whatever_was_received(rig: MonitorRig) -> None:
     rig.run_all()
     rig.receive(0)
     rig.receive(1)
@@ -88,7 +88,7 @@ def test_a_part_that_ended_has_failed_whatever_was_heard(rig: MonitorRig) -> Non
     assert rig.status == "failed"
 
 
-def test_a_process_that_was_started_again_is_starting_until_it_sends(rig: MonitorRig) -> None:
+def test_a_restarted_process_is_starting_until_it_sends(rig: MonitorRig) -> None:
     rig.run_all()
     rig.clock.forward(60)
     rig.receive(0)
@@ -104,7 +104,7 @@ def test_a_process_that_was_started_again_is_starting_until_it_sends(rig: Monito
     assert [rig.state(name) for name in ("simulator", "runtime", "link", "board")] == ["ok"] * 4
 
 
-def test_what_is_lent_is_absent_and_not_failed(rig: MonitorRig) -> None:
+def test_a_reserved_board_is_absent_and_not_failed(rig: MonitorRig) -> None:
     rig.run_all()
     rig.clock.forward(60)
     rig.monitor.see(truth_block(0))
@@ -117,7 +117,7 @@ def test_what_is_lent_is_absent_and_not_failed(rig: MonitorRig) -> None:
     assert rig.state("board") == "failed"
 
 
-def test_a_board_without_its_firmware_is_told_until_it_answers(rig: MonitorRig) -> None:
+def test_a_board_without_its_firmware_is_reported_until_it_answers(rig: MonitorRig) -> None:
     rig.run_all()
     rig.clock.forward(60)
     rig.monitor.firmware_away = "The firmware is not on the board."
@@ -135,7 +135,7 @@ def test_a_real_robot_has_no_simulator(settings: Settings, store: Store) -> None
     assert (rig.state("simulator"), rig.state("board"), rig.status) == ("absent", "ok", "ok")
 
 
-def test_a_database_that_fails_is_told_with_its_reason(rig: MonitorRig, store: Store) -> None:
+def test_a_failing_database_is_reported_with_the_reason(rig: MonitorRig, store: Store) -> None:
     store.failing = "the disk is full"
     assert (rig.state("database"), rig.text("database")) == (
         "failed",
@@ -143,7 +143,7 @@ def test_a_database_that_fails_is_told_with_its_reason(rig: MonitorRig, store: S
     )
 
 
-def test_a_state_that_cannot_be_read_is_none(rig: MonitorRig) -> None:
+def test_an_invalid_state_counts_as_none(rig: MonitorRig) -> None:
     block = state_block(0)
     for payload in (b"", b"[]", b"[3]", b"{}", b"[" * 100_000):
         rig.monitor.see(Block(block.topic, 1, 0, bytes(12) + payload))

@@ -58,17 +58,17 @@ def test_an_error_is_answered_with_its_status_and_text(problem: Exception, statu
     assert (answer.status_code, answer.json()) == (status, {"detail": detail})
 
 
-def test_a_recording_that_cannot_be_read_leaves_the_others_alone() -> None:
+def test_an_unreadable_recording_does_not_affect_others() -> None:
     answer = ask(RecordingError("chunk 7 is damaged"))
     assert answer.status_code == 500
     assert "chunk 7 is damaged. Other sessions are not affected." in answer.json()["detail"]
 
 
-def test_too_many_tries_say_when_to_try_again() -> None:
+def test_too_many_tries_are_answered_with_retry_after() -> None:
     answer = ask(TooManyTriesError(59.2))
     assert (answer.status_code, answer.headers["retry-after"]) == (429, "60")
 
 
-def test_any_other_error_tells_nothing_of_the_inside() -> None:
+def test_any_other_error_reveals_no_internals() -> None:
     answer = ask(ZeroDivisionError("secret"))
     assert (answer.status_code, answer.text) == (500, "Internal Server Error")

@@ -62,12 +62,12 @@ def test_a_file_keeps_the_app_s_policy_and_the_other_headers(folder: Path) -> No
 
 
 @pytest.mark.parametrize("path", ["/help/gone", "/help/..%2fsecret.txt", "/help/%00", "/help/" + "a" * 300])
-def test_what_is_not_there_is_told_by_the_site_s_own_page(folder: Path, path: str) -> None:
+def test_a_missing_page_is_answered_by_the_site_s_own_404_page(folder: Path, path: str) -> None:
     answer = get(folder, path)
     assert (answer.status_code, answer.text) == (404, "<p>no such page</p>")
 
 
-def test_help_that_was_not_built_says_how_to_build_it(tmp_path: Path) -> None:
+def test_missing_help_is_answered_with_how_to_build_it(tmp_path: Path) -> None:
     answer = get(tmp_path / "help", "/help/")
     assert answer.status_code == 503
     assert "make setup" in answer.text

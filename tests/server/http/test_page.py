@@ -49,7 +49,7 @@ def test_paths_of_the_page_show_its_index(client: Client) -> None:
         assert answer.headers["cache-control"] == "no-cache"
 
 
-def test_hashed_files_are_kept_for_ever_and_sent_compressed(client: Client) -> None:
+def test_hashed_files_are_cached_for_ever_and_sent_compressed(client: Client) -> None:
     plain = client.get("/assets/main-abc123.js", **{"accept-encoding": "identity"})
     packed = client.get("/assets/main-abc123.js", **{"accept-encoding": "br;q=1, gzip;q=0.8"})
     assert plain.text == packed.text == "run()"
@@ -61,7 +61,7 @@ def test_hashed_files_are_kept_for_ever_and_sent_compressed(client: Client) -> N
         assert answer.headers["vary"] == "accept-encoding"
 
 
-def test_files_without_a_hash_are_asked_for_again(client: Client) -> None:
+def test_files_without_a_hash_are_revalidated(client: Client) -> None:
     answer = client.get("/icon.svg")
     assert (answer.text, answer.headers["cache-control"]) == ("<svg/>", "no-cache")
 
@@ -99,7 +99,7 @@ def test_links_out_of_the_folder_are_not_followed(folder: Path) -> None:
     assert Page(folder).find("out") == folder / "index.html"
 
 
-def test_an_unbuilt_page_says_so_and_is_found_once_it_is_built(tmp_path: Path) -> None:
+def test_a_missing_build_is_reported_and_found_once_it_exists(tmp_path: Path) -> None:
     client = Client(tmp_path / "page")
     answer = client.get("/")
     assert answer.status_code == 503

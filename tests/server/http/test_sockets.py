@@ -39,7 +39,7 @@ def test_messages_of_every_size_arrive_whole_and_between_texts() -> None:
     asyncio.run(_serve(app, scenario))
 
 
-def test_whoever_has_left_is_sent_nothing_more() -> None:
+def test_nothing_is_sent_to_a_closed_socket() -> None:
     app = FastAPI()
     outcomes: list[BaseException] = []
     over = asyncio.Event()

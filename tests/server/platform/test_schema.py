@@ -23,7 +23,7 @@ from tests.server.older import ROWS, fill_tables, make_session, read_tables, upg
 OLDER = [one.revision for one in ScriptDirectory(schema._scripts()).walk_revisions() if one.revision != HEAD]
 
 
-def test_the_newest_revision_is_the_one_the_server_wants() -> None:
+def test_the_newest_revision_is_the_server_s() -> None:
     assert ScriptDirectory(schema._scripts()).get_heads() == [HEAD]
 
 
@@ -70,14 +70,14 @@ def test_a_newer_database_is_refused_and_left_alone(settings: Settings) -> None:
 
 
 @pytest.mark.parametrize("content", [b"no database at all, but long enough to look like one" * 20])
-def test_what_is_no_database_is_refused(settings: Settings, content: bytes) -> None:
+def test_a_file_that_is_no_database_is_refused(settings: Settings, content: bytes) -> None:
     settings.data.database.write_bytes(content)
     with pytest.raises(SetupError, match="cannot be used"):
         schema.prepare(settings.data)
     assert settings.data.database.read_bytes() == content
 
 
-def test_a_full_disk_is_told_in_words(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_reported_in_a_sentence(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(_: Path) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -147,7 +147,7 @@ def describe(database: Path) -> list[tuple[str, ...]]:
         return connection.execute("SELECT type, name, sql FROM sqlite_master ORDER BY name").fetchall()
 
 
-def test_an_upgrade_that_is_broken_off_changes_nothing_and_can_be_done_again(
+def test_an_interrupted_upgrade_changes_nothing_and_can_be_repeated(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     upgrade_to(settings, "0003")
@@ -186,7 +186,7 @@ def test_reasons_of_older_cells_stand_on_lines_of_their_own(settings: Settings) 
     ]
 
 
-def test_what_a_session_holds_is_read_from_an_index_alone(store: Store) -> None:
+def test_a_session_s_contents_are_read_from_an_index_alone(store: Store) -> None:
     with store.read() as database:
         query = "EXPLAIN QUERY PLAN SELECT topic, sum(count), min(first_time), max(last_time) FROM chunk "
         plan = database.connection().exec_driver_sql(f"{query} WHERE session_id = 1 GROUP BY topic").all()

@@ -32,7 +32,7 @@ SESSION = {
 }
 
 
-def test_what_was_written_is_read_by_another_connection(store: Store) -> None:
+def test_written_rows_are_read_by_another_connection(store: Store) -> None:
     asyncio.run(store.write(lambda connection: connection.execute(insert(SessionRow).values(**SESSION))))
     with store.read() as database:
         assert [row.name for row in database.exec(select(SessionRow))] == ["n"]
@@ -53,7 +53,7 @@ def test_writing_is_durable_and_reading_cannot_write(store: Store) -> None:
         database.execute(text("DELETE FROM session"))
 
 
-def test_a_failed_change_leaves_nothing_behind_and_is_told(store: Store) -> None:
+def test_a_failed_change_is_rolled_back_and_reported(store: Store) -> None:
     def change(connection: object) -> None:
         connection.execute(insert(SessionRow).values(**SESSION))  # type: ignore[attr-defined]
         gap = {"session_id": 99, "topic": "t", "kind": "missed", "time": 0.0, "missed": 1}
@@ -68,7 +68,7 @@ def test_a_failed_change_leaves_nothing_behind_and_is_told(store: Store) -> None
     assert store.failing is None
 
 
-def test_a_full_disk_is_told_in_words_and_works_again_when_there_is_room(settings: Settings) -> None:
+def test_a_full_disk_is_reported_and_writing_works_again_with_free_space(settings: Settings) -> None:
     prepare(settings.data)
     store = Store(settings.data.database)
 
@@ -90,7 +90,7 @@ def test_a_full_disk_is_told_in_words_and_works_again_when_there_is_room(setting
     store.close()
 
 
-def test_what_was_acknowledged_survives_a_kill(settings: Settings, tmp_path: Path) -> None:
+def test_committed_changes_survive_a_kill(settings: Settings, tmp_path: Path) -> None:
     prepare(settings.data)
     program = tmp_path / "killed.py"
     program.write_text(

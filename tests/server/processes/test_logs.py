@@ -7,7 +7,7 @@ import server.processes.logs as logs_module
 from server.processes.logs import ProcessLog
 
 
-def test_the_files_are_bounded_and_nothing_recent_is_lost(
+def test_logs_are_limited_in_size_and_keep_the_newest_lines(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(logs_module, "FILE_BYTES_MAX", 100)
@@ -22,7 +22,7 @@ def test_the_files_are_bounded_and_nothing_recent_is_lost(
     assert all(path.stat().st_size <= 100 for path in tmp_path.iterdir())
 
 
-def test_a_process_writes_on_after_its_file_was_trimmed(
+def test_a_process_goes_on_writing_after_its_file_was_trimmed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(logs_module, "FILE_BYTES_MAX", 100)
@@ -49,7 +49,7 @@ def test_the_last_lines_are_found(tmp_path: Path) -> None:
     assert len(log.last(1)) <= 2000
 
 
-def test_a_log_that_cannot_be_written_harms_nobody(tmp_path: Path) -> None:
+def test_a_log_that_cannot_be_written_is_ignored(tmp_path: Path) -> None:
     log = ProcessLog(tmp_path / "missing" / "part.log")
     with log.open() as file:
         file.write(b"said\n")

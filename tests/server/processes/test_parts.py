@@ -66,7 +66,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(backoff_module, "MAX", 0.04)
 
 
-def test_what_dies_is_told_with_its_last_words_and_started_again(tmp_path: Path) -> None:
+def test_a_process_that_dies_is_reported_with_its_last_output_and_restarted(tmp_path: Path) -> None:
     count = tmp_path / "count"
     code = (
         f"import pathlib, sys, time; p = pathlib.Path({str(count)!r})\n"
@@ -89,7 +89,7 @@ def test_what_dies_is_told_with_its_last_words_and_started_again(tmp_path: Path)
     assert (tmp_path / "logs" / "engine.log").read_text() == "no oil\nbroken 0\nno oil\nbroken 1\n"
 
 
-def test_what_is_killed_is_told_by_its_signal_and_is_another_process_afterwards(tmp_path: Path) -> None:
+def test_a_killed_process_is_reported_with_the_signal_and_replaced(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
     async def scenario() -> None:
@@ -103,7 +103,7 @@ def test_what_is_killed_is_told_by_its_signal_and_is_another_process_afterwards(
     run(crew, scenario)
 
 
-def test_what_hangs_is_ended_told_why_and_started_again(tmp_path: Path) -> None:
+def test_a_hung_process_is_killed_reported_and_restarted(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
     async def scenario() -> None:
@@ -126,7 +126,7 @@ def test_what_hangs_is_ended_told_why_and_started_again(tmp_path: Path) -> None:
     ("killed", "wanted"),
     [(False, [0, 0.01, 0.02, 0.04, 0.04, 0, 0.01]), (True, [0, 0.01, 0.02, 0.02, 0.02, 0, 0.01])],
 )
-def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
+def test_pauses_grow_to_a_limit_and_reset_after_a_steady_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, killed: bool, wanted: list[float]
 ) -> None:
     pauses: list[float] = []
@@ -152,7 +152,9 @@ def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
     assert pauses == wanted
 
 
-def test_the_end_is_asked_for_first_and_then_forced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_is_terminated_first_and_then_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
     up = "print('up')\ntime.sleep(600)"
     polite = f"import signal, sys, time; signal.signal(15, lambda *_: sys.exit(print('bye')))\n{up}"
@@ -172,7 +174,7 @@ def test_the_end_is_asked_for_first_and_then_forced(tmp_path: Path, monkeypatch:
     assert crew.told == []
 
 
-def test_children_of_a_part_end_with_it(tmp_path: Path) -> None:
+def test_children_of_a_process_end_with_it(tmp_path: Path) -> None:
     code = "import subprocess, time; print(subprocess.Popen(['sleep', '600']).pid); time.sleep(600)"
     crew = Crew(tmp_path, program("parent", code))
     log = tmp_path / "logs" / "parent.log"
@@ -191,7 +193,7 @@ def test_children_of_a_part_end_with_it(tmp_path: Path) -> None:
     asyncio.run(until(lambda: not any(map(alive, children)), "the last child's end"))
 
 
-def test_a_part_starts_when_what_it_needs_is_there(tmp_path: Path) -> None:
+def test_a_process_starts_when_the_files_that_it_needs_exist(tmp_path: Path) -> None:
     socket = tmp_path / "board.sock"
     crew = Crew(tmp_path, program("water", "import time; time.sleep(600)", socket))
 
@@ -204,7 +206,7 @@ def test_a_part_starts_when_what_it_needs_is_there(tmp_path: Path) -> None:
     run(crew, scenario)
 
 
-def test_a_missing_program_is_told_and_the_others_run(tmp_path: Path) -> None:
+def test_a_missing_program_is_reported_and_the_others_run(tmp_path: Path) -> None:
     missing = ProcessCommand("board", "board", (str(tmp_path / "no" / "board"),))
     crew = Crew(tmp_path, missing, program("other", "import time; time.sleep(600)"))
 
@@ -216,7 +218,7 @@ def test_a_missing_program_is_told_and_the_others_run(tmp_path: Path) -> None:
     run(crew, scenario)
 
 
-def test_what_is_paused_does_not_run_until_it_is_resumed(tmp_path: Path) -> None:
+def test_a_paused_process_does_not_run_until_it_is_resumed(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
     async def scenario() -> None:
@@ -254,7 +256,7 @@ class Left:
         pid_file(data.run, command.name).write(self.process.pid, command.fingerprint())
 
 
-def test_what_a_killed_server_has_left_is_adopted(tmp_path: Path) -> None:
+def test_a_process_of_a_killed_server_is_adopted(tmp_path: Path) -> None:
     left = Left(tmp_path, program("engine", "import time; time.sleep(600)", tmp_path / "never"))
     crew = Crew(tmp_path, left.command)
 
@@ -278,7 +280,7 @@ def test_what_a_killed_server_has_left_is_adopted(tmp_path: Path) -> None:
     assert not list((tmp_path / "run").iterdir())
 
 
-def test_what_was_adopted_is_ended_in_order_and_then_forced(
+def test_an_adopted_process_is_terminated_first_and_then_killed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
@@ -296,7 +298,7 @@ def test_what_was_adopted_is_ended_in_order_and_then_forced(
     assert crew.told == []
 
 
-def test_another_command_or_other_files_are_started_anew(tmp_path: Path) -> None:
+def test_a_process_of_another_command_or_other_files_is_replaced(tmp_path: Path) -> None:
     read = tmp_path / "read"
     read.write_text("old")
     commands = [
@@ -317,7 +319,7 @@ def test_another_command_or_other_files_are_started_anew(tmp_path: Path) -> None
     run(crew, scenario)
 
 
-def test_a_number_that_was_given_again_is_not_taken_for_the_part(tmp_path: Path) -> None:
+def test_a_reused_process_number_is_not_adopted(tmp_path: Path) -> None:
     command = program("engine", "import time; time.sleep(600)")
     left = Left(tmp_path, command)
     file = tmp_path / "run" / "engine.pid"
@@ -335,13 +337,13 @@ def test_a_number_that_was_given_again_is_not_taken_for_the_part(tmp_path: Path)
 
 
 @pytest.mark.parametrize("text", ["", "nonsense", "[]", "{}", '{"pid": null}', '{"pid": 1, "started": 1}'])
-def test_a_damaged_note_of_a_part_is_passed_over(tmp_path: Path, text: str) -> None:
+def test_a_damaged_pid_file_is_ignored(tmp_path: Path, text: str) -> None:
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / "engine.pid").write_text(text)
     assert running_parts(tmp_path / "run") == {}
 
 
-def test_a_part_that_is_paused_at_the_start_does_not_go_on_either(tmp_path: Path) -> None:
+def test_a_process_that_is_paused_at_the_start_is_not_adopted(tmp_path: Path) -> None:
     left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
     crew = Crew(tmp_path, left.command)
 
@@ -352,7 +354,7 @@ def test_a_part_that_is_paused_at_the_start_does_not_go_on_either(tmp_path: Path
     asyncio.run(scenario())
 
 
-def test_who_does_not_need_what_was_left_ends_it(tmp_path: Path) -> None:
+def test_a_process_that_the_next_server_does_not_use_is_ended(tmp_path: Path) -> None:
     left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
     crew = Crew(tmp_path, left.command)
     asyncio.run(crew.parts.end_others())
@@ -377,7 +379,7 @@ def test_ctrl_c_reaches_the_server_alone(tmp_path: Path) -> None:
     run(crew, scenario)
 
 
-def test_a_real_robot_needs_the_runtime_alone_and_an_emulated_one_everything(settings: Settings) -> None:
+def test_a_real_robot_runs_only_the_runtime_and_an_emulated_one_all_processes(settings: Settings) -> None:
     assert [command.name for command in plan(replace(settings, mode="robot"))] == ["runtime"]
     commands = {command.name: command for command in plan(settings)}
     assert list(commands) == ["board", "runtime", "simulator", "scene"]

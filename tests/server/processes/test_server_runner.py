@@ -90,7 +90,7 @@ def running(folder: Path) -> Iterator[Family]:
         yield family
 
 
-def test_a_server_that_is_killed_is_replaced_and_the_next_one_is_told(tmp_path: Path) -> None:
+def test_a_killed_server_is_replaced_and_the_next_one_gets_the_reason(tmp_path: Path) -> None:
     with running(tmp_path) as family:
         first = family.kill("mucat-server")
         wait(lambda: family.whole() and len(family.servers) == 2, "the next server")
@@ -104,7 +104,7 @@ def test_a_server_that_is_killed_is_replaced_and_the_next_one_is_told(tmp_path: 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("everybody", [True, False])
-def test_it_ends_in_order_when_told(tmp_path: Path, number: signal.Signals, everybody: bool) -> None:
+def test_it_ends_in_order_on_sigterm(tmp_path: Path, number: signal.Signals, everybody: bool) -> None:
     with running(tmp_path) as family:
         # Ctrl-C reaches all of them.
         (os.killpg if everybody else os.kill)(family.started.pid, number)

@@ -28,7 +28,7 @@ async def closing_of(socket: ClientConnection) -> tuple[int, str]:
     return socket.close_code, socket.close_reason or ""
 
 
-def test_nobody_comes_in_without_a_sign_in(settings: Settings) -> None:
+def test_every_operation_needs_a_sign_in(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, None) as stranger:
             for method, path in (("GET", "/robot"), ("POST", "/robot/stop"), ("GET", "/nowhere")):
@@ -50,7 +50,7 @@ def test_nobody_comes_in_without_a_sign_in(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_a_stranger_s_body_is_not_read(settings: Settings) -> None:
+def test_a_body_is_not_read_without_a_sign_in(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         port = served.settings.port
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
@@ -63,7 +63,7 @@ def test_a_stranger_s_body_is_not_read(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_a_code_signs_a_browser_in_with_a_cookie_that_no_script_sees(settings: Settings) -> None:
+def test_a_code_signs_a_browser_in_with_an_http_only_cookie(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         code = await new_code(served, "operator")
         async with browser(served, None, "bench laptop") as one:
@@ -102,7 +102,7 @@ def test_only_hashes_are_stored(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_a_restart_knows_who_was_paired_and_makes_another_shell_token(settings: Settings) -> None:
+def test_pairings_survive_a_restart_and_the_shell_token_does_not(settings: Settings) -> None:
     async def run() -> None:
         async with serve(settings) as served, browser(served, "viewer") as one:
             cookies = dict(one.api.cookies)
@@ -121,7 +121,7 @@ def test_a_restart_knows_who_was_paired_and_makes_another_shell_token(settings: 
     asyncio.run(run())
 
 
-def test_what_is_no_token_is_nobody_whatever_the_cookie_says(settings: Settings) -> None:
+def test_an_invalid_token_is_refused_despite_a_valid_cookie(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "operator") as one:
             (secret,) = one.api.cookies.values()
@@ -132,7 +132,7 @@ def test_what_is_no_token_is_nobody_whatever_the_cookie_says(settings: Settings)
     play(settings, scenario)
 
 
-def test_viewers_look_and_stop_and_nothing_else(settings: Settings) -> None:
+def test_viewers_may_read_and_stop_only(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "viewer") as viewer:
             assert (await viewer.api.post("/robot/stop")).status_code == 204
@@ -198,7 +198,7 @@ def test_revocation_closes_live_sockets_and_ends_everything(settings: Settings) 
     play(settings, scenario)
 
 
-def test_a_new_role_closes_live_sockets_and_holds_at_once(settings: Settings) -> None:
+def test_a_new_role_closes_live_sockets_and_applies_at_once(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with (
             browser(served, "operator", "boss") as boss,
@@ -220,7 +220,7 @@ def test_a_new_role_closes_live_sockets_and_holds_at_once(settings: Settings) ->
     play(settings, scenario)
 
 
-def test_the_last_operator_stays_one_unless_the_shell_says_so(settings: Settings) -> None:
+def test_only_the_shell_can_remove_the_last_operator(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "operator", "boss") as boss, browser(served, "viewer") as other:
             await served.api.post("/access/tokens", json={"name": "script", "role": "operator"})
@@ -239,7 +239,7 @@ def test_the_last_operator_stays_one_unless_the_shell_says_so(settings: Settings
     play(settings, scenario)
 
 
-def test_signing_out_forgets_the_browser(settings: Settings) -> None:
+def test_signing_out_removes_the_browser(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "operator") as one, one.connect() as socket:
             await next_text(socket, "hello")
@@ -255,7 +255,7 @@ def test_signing_out_forgets_the_browser(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_a_browser_that_is_known_is_not_paired_twice(settings: Settings) -> None:
+def test_a_paired_browser_is_not_paired_twice(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "viewer", "tablet") as one:
             cookies = dict(one.api.cookies)
@@ -269,7 +269,7 @@ def test_a_browser_that_is_known_is_not_paired_twice(settings: Settings) -> None
     play(settings, scenario)
 
 
-def test_too_many_wrong_codes_are_refused_and_told_once(settings: Settings) -> None:
+def test_too_many_wrong_codes_are_refused_and_reported_once(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         code = await new_code(served, "operator")
         async with browser(served, None) as stranger, served.connect() as socket:
@@ -290,7 +290,7 @@ def test_too_many_wrong_codes_are_refused_and_told_once(settings: Settings) -> N
     play(settings, scenario)
 
 
-def test_what_happens_is_told_without_secrets(settings: Settings) -> None:
+def test_events_of_sign_in_are_reported_without_secrets(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as socket, browser(served, "viewer", "tablet") as one:
             token = (await served.api.post("/access/tokens", json={"name": "script"})).json()["token"]
@@ -326,7 +326,7 @@ async def notices(socket: ClientConnection, count: int) -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize("name", ["", "   ", "a\nb\x00", "x" * 41, "\x1b[31mred", "a\u202eb"])
-def test_names_are_short_and_can_be_shown(settings: Settings, name: str) -> None:
+def test_names_are_short_and_printable(settings: Settings, name: str) -> None:
     async def scenario(served: Served) -> None:
         code = await new_code(served, "operator")
         async with browser(served, None, name) as one:

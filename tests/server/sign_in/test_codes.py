@@ -80,7 +80,7 @@ def test_ten_wrong_codes_an_hour(codes: PairingCodes, clock: SimulatedClock) -> 
     assert codes.use(code) == "operator"
 
 
-def test_refused_tries_do_not_prolong_the_wait(codes: PairingCodes, clock: SimulatedClock) -> None:
+def test_refused_attempts_do_not_prolong_the_wait(codes: PairingCodes, clock: SimulatedClock) -> None:
     for _ in range(3):
         try_wrong(codes)
     for _ in range(100):
@@ -90,19 +90,19 @@ def test_refused_tries_do_not_prolong_the_wait(codes: PairingCodes, clock: Simul
     try_wrong(codes)
 
 
-def test_right_codes_are_no_tries(codes: PairingCodes) -> None:
+def test_valid_codes_do_not_count_as_attempts(codes: PairingCodes) -> None:
     for _ in range(11):
         codes.use(codes.make("viewer"))
 
 
-def test_the_oldest_code_makes_room(codes: PairingCodes) -> None:
+def test_the_oldest_code_is_dropped_for_a_new_one(codes: PairingCodes) -> None:
     made = [codes.make("viewer") for _ in range(CODES_MAX + 1)]
     with pytest.raises(WrongCodeError):
         codes.use(made[0])
     assert all(codes.use(code) == "viewer" for code in made[1:])
 
 
-def test_what_is_kept_is_no_code(codes: PairingCodes) -> None:
+def test_codes_are_not_stored_in_plain_text(codes: PairingCodes) -> None:
     code = codes.make("operator")
     assert code.replace("-", "") not in repr(vars(codes))
 

@@ -37,7 +37,7 @@ def test_every_operation_declares_its_need() -> None:
     assert [operation for operation, need in declared.items() if need is None] == []
 
 
-def test_the_gate_is_open_for_what_needs_nothing_alone() -> None:
+def test_only_operations_without_a_need_are_open() -> None:
     app = make_app()
     there = operations(app)
     assert {there[name] for name, need in list_needs(app.routes).items() if need is Need.NOTHING} == OPEN

@@ -19,7 +19,7 @@ def encrypted(settings: Settings) -> Settings:
     return replace(settings, tls=True)
 
 
-def test_pages_shell_and_sockets_talk_by_tls_and_nothing_talks_without(encrypted: Settings) -> None:
+def test_pages_shell_and_sockets_use_tls_only(encrypted: Settings) -> None:
     async def scenario(served: Served) -> None:
         port = served.settings.port
         me = (await served.api.get("/access/me")).json()
@@ -47,7 +47,7 @@ def test_pages_shell_and_sockets_talk_by_tls_and_nothing_talks_without(encrypted
     asyncio.run(run())
 
 
-def test_the_certificate_is_the_robot_s_own_and_stays(encrypted: Settings) -> None:
+def test_the_certificate_is_created_once_and_is_private(encrypted: Settings) -> None:
     made = prepare_certificate(encrypted)
     assert made == prepare_certificate(encrypted)
     der = ssl.PEM_cert_to_DER_cert(made.file.read_text())
@@ -59,7 +59,9 @@ def test_the_certificate_is_the_robot_s_own_and_stays(encrypted: Settings) -> No
     assert prepare_certificate(other).fingerprint != made.fingerprint
 
 
-def test_what_cannot_be_had_is_told(encrypted: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_certificate_that_cannot_be_made_or_read_is_reported(
+    encrypted: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with monkeypatch.context() as patch:
         patch.setenv("PATH", "/nowhere")
         with pytest.raises(SetupError, match="apt install openssl"):

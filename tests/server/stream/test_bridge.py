@@ -39,9 +39,7 @@ def fetch(settings: Settings, monkeypatch: pytest.MonkeyPatch, process: Process)
     return asyncio.run(scenario())
 
 
-def test_a_question_that_was_lost_is_asked_again_soon(
-    settings: Settings, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_lost_request_is_repeated_soon(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
     process, began = Process(lost=1), time.monotonic()
     assert fetch(settings, monkeypatch, process) is ANSWER
     assert time.monotonic() - began < 1.5

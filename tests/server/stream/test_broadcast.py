@@ -9,7 +9,7 @@ from tests.server.blocks import debug_block, depth_block, link_block, state_bloc
 DEPTH, DEBUG = BY_NAME["depth"], BY_NAME["debug"]
 
 
-def test_lane_keeps_the_newest_messages() -> None:
+def test_a_buffer_keeps_the_newest_messages() -> None:
     lane = BroadcastBuffer(messages_max=3, bytes_max=10**6)
     blocks = [depth_block(number, 1) for number in range(5)]
     for block in blocks:
@@ -18,7 +18,7 @@ def test_lane_keeps_the_newest_messages() -> None:
     assert [lane.get(number).data for number in range(2, 5)] == [block.data for block in blocks[2:]]
 
 
-def test_lane_is_bounded_in_bytes_but_keeps_the_newest_message_however_large() -> None:
+def test_a_buffer_is_limited_in_bytes_but_keeps_the_newest_message_of_any_size() -> None:
     lane = BroadcastBuffer(messages_max=100, bytes_max=1000)
     for number in range(20):
         lane.append([depth_block(number, 10)])
@@ -73,7 +73,7 @@ def filled(seconds: float, bytes_max: int = 10**7) -> TopicHistory:
     return history
 
 
-def test_history_keeps_ten_minutes_in_little_more_than_the_rows_themselves() -> None:
+def test_the_history_of_ten_minutes_takes_little_more_memory_than_its_rows() -> None:
     history = filled(700)
     kept = everything(history)
     wanted = list(range(numbers(kept)[0], 700 * 50))
@@ -83,7 +83,7 @@ def test_history_keeps_ten_minutes_in_little_more_than_the_rows_themselves() -> 
     assert sum(map(len, history.since(-1, 10**6))) < 600 / CHUNK_SECONDS + 3
 
 
-def test_history_is_bounded_for_each_topic_alone() -> None:
+def test_the_history_is_limited_per_topic() -> None:
     history = filled(0)
     line = debug_block(0, "kept")
     history.add(line, tick=0, now=100.0)
@@ -94,7 +94,7 @@ def test_history_is_bounded_for_each_topic_alone() -> None:
 
 
 @given(st.lists(st.integers(0, 200), max_size=5))
-def test_what_was_given_and_what_comes_after_it_are_everything_once(asked: list[int]) -> None:
+def test_history_and_later_blocks_give_every_block_once(asked: list[int]) -> None:
     history = TopicHistory(seconds=600, bytes_max=10**6)
     given: list[int] = []
     tick = -1
@@ -107,13 +107,13 @@ def test_what_was_given_and_what_comes_after_it_are_everything_once(asked: list[
     assert given == list(range(200))
 
 
-def test_a_message_of_the_past_is_bounded() -> None:
+def test_a_message_of_history_is_limited_in_size() -> None:
     groups = filled(100).since(-1, message_bytes=10_000)
     assert len(groups) > 5
     assert all(sum(map(len, group)) <= 10_000 for group in groups)
 
 
-def test_of_rows_the_past_can_begin_later_of_lines_never() -> None:
+def test_a_later_start_applies_to_rows_and_not_to_documents() -> None:
     history = filled(100)
     history.add(debug_block(0, "old"), tick=0, now=100.0)
     data = b"".join(b"".join(group) for group in history.since(-1, 10**6, rows_from=190.0))
@@ -122,14 +122,14 @@ def test_of_rows_the_past_can_begin_later_of_lines_never() -> None:
     assert numbers(data, DEBUG) == [0]
 
 
-def test_of_a_state_only_the_newest_is_kept() -> None:
+def test_only_the_newest_state_is_in_the_history() -> None:
     history = TopicHistory(seconds=600, bytes_max=10**6)
     for number in range(5):
         history.add(state_block(number), tick=number, now=100.0 + number)
     assert everything(history) == state_block(4).data
 
 
-def test_a_gap_in_the_numbers_stays_one() -> None:
+def test_a_gap_in_the_numbers_stays_a_gap() -> None:
     history = TopicHistory(seconds=600, bytes_max=10**6)
     for first in (0, 2, 7, 8):
         history.add(depth_block(first, 1), tick=first, now=100.0)
@@ -137,7 +137,7 @@ def test_a_gap_in_the_numbers_stays_one() -> None:
     assert [(block.first, block.count) for block in blocks] == [(0, 1), (2, 1), (7, 2)]
 
 
-def test_the_rows_before_a_time_are_given_by_topic() -> None:
+def test_rows_before_a_time_are_selected_by_topic() -> None:
     history = filled(100)
     history.add(link_block(0, 1), tick=0, now=100.0)
     data = history.rows({"depth"}, until=150.0)

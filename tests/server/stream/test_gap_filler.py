@@ -71,7 +71,7 @@ def play(scenario: Callable[[Receiver], Awaitable[None]]) -> None:
     asyncio.run(run())
 
 
-def test_at_first_contact_all_that_was_kept_comes_first() -> None:
+def test_at_first_contact_the_backlog_comes_first() -> None:
     async def scenario(receiver: Receiver) -> None:
         sender = receiver.alive = Sender("a")
         sender.send()
@@ -87,7 +87,7 @@ def test_at_first_contact_all_that_was_kept_comes_first() -> None:
     play(scenario)
 
 
-def test_a_hole_is_filled_before_what_comes_after_it() -> None:
+def test_a_gap_is_filled_before_later_blocks() -> None:
     async def scenario(receiver: Receiver) -> None:
         sender = receiver.alive = Sender("a")
         receiver.hear(sender, sender.send())
@@ -108,7 +108,7 @@ def test_a_hole_is_filled_before_what_comes_after_it() -> None:
     play(scenario)
 
 
-def test_what_comes_twice_is_passed_on_once() -> None:
+def test_duplicates_are_passed_on_once() -> None:
     async def scenario(receiver: Receiver) -> None:
         sender = receiver.alive = Sender("a")
         first, second = sender.send(), sender.send()
@@ -121,7 +121,7 @@ def test_what_comes_twice_is_passed_on_once() -> None:
     play(scenario)
 
 
-def test_a_hole_that_nobody_fills_stays_and_does_not_stop_the_rest() -> None:
+def test_an_unfilled_gap_stays_and_does_not_stop_later_blocks() -> None:
     async def scenario(receiver: Receiver) -> None:
         sender = Sender("a")
         first, _, third, fourth = (sender.send() for _ in range(4))
@@ -136,7 +136,7 @@ def test_a_hole_that_nobody_fills_stays_and_does_not_stop_the_rest() -> None:
     play(scenario)
 
 
-def test_what_is_no_longer_kept_is_asked_for_once() -> None:
+def test_samples_beyond_the_replay_cache_are_requested_once() -> None:
     async def scenario(receiver: Receiver) -> None:
         sender = receiver.alive = Sender("a")
         receiver.hear(sender, sender.send())
@@ -151,7 +151,7 @@ def test_what_is_no_longer_kept_is_asked_for_once() -> None:
     play(scenario)
 
 
-def test_a_new_run_is_heard_from_its_beginning_after_the_end_of_the_old_one() -> None:
+def test_a_new_run_is_passed_on_from_its_beginning_after_the_end_of_the_old_one() -> None:
     async def scenario(receiver: Receiver) -> None:
         old = receiver.alive = Sender("old")
         receiver.hear(old, old.send())
@@ -172,7 +172,7 @@ def test_a_new_run_is_heard_from_its_beginning_after_the_end_of_the_old_one() ->
     play(scenario)
 
 
-def test_a_run_that_is_over_before_it_could_be_asked_does_no_harm() -> None:
+def test_a_run_that_ends_before_its_request_does_no_harm() -> None:
     async def scenario(receiver: Receiver) -> None:
         short = Sender("short")
         heard = short.send()
@@ -188,7 +188,7 @@ def test_a_run_that_is_over_before_it_could_be_asked_does_no_harm() -> None:
     play(scenario)
 
 
-def test_senders_without_a_name_are_not_asked() -> None:
+def test_runs_without_a_name_are_not_requested() -> None:
     async def scenario(receiver: Receiver) -> None:
         for first in (100, 50, 200):
             receiver.source.take("", [depth_block(first, 5), debug_block(first, "a")])
@@ -199,7 +199,7 @@ def test_senders_without_a_name_are_not_asked() -> None:
 
 
 @given(st.lists(st.sampled_from(["lost", "heard", "twice", "later"]), max_size=30))
-def test_whatever_is_lost_on_the_way_nothing_is_missing_in_the_end(fates: list[str]) -> None:
+def test_whatever_is_lost_on_the_way_is_filled_in_the_end(fates: list[str]) -> None:
     async def scenario(receiver: Receiver) -> None:
         sender = receiver.alive = Sender("a")
         held: list[Block] = []

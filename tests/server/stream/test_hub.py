@@ -61,7 +61,7 @@ def with_hub(scenario: Callable[[Hub, SimulatedClock], Awaitable[None]]) -> None
     asyncio.run(run())
 
 
-def test_a_page_is_greeted_first_then_gets_the_past_then_the_present() -> None:
+def test_a_page_gets_greeting_history_and_live_messages_in_this_order() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         hub.notify({"op": "health", "parts": []})
         hub.add([depth_block(0, 3), debug_block(0, "before")])
@@ -78,7 +78,7 @@ def test_a_page_is_greeted_first_then_gets_the_past_then_the_present() -> None:
     with_hub(scenario)
 
 
-def test_no_gap_and_no_double_while_the_past_is_still_being_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_gap_and_no_duplicate_while_the_history_is_being_sent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(hub_module, "HISTORY_MESSAGE_BYTES", 200)
 
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
@@ -119,7 +119,7 @@ def test_all_pages_get_the_same_bytes() -> None:
     with_hub(scenario)
 
 
-def test_who_reads_slowly_loses_the_oldest_rows_and_is_told_how_many() -> None:
+def test_a_slow_page_loses_the_oldest_rows_and_gets_their_number() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         slow, quick = Page(hub), Page(hub)
         hub.add([depth_block(0, 1)])
@@ -144,7 +144,7 @@ def test_who_reads_slowly_loses_the_oldest_rows_and_is_told_how_many() -> None:
     with_hub(scenario)
 
 
-def test_documents_are_never_skipped_until_the_page_is_sent_away() -> None:
+def test_documents_are_never_skipped_until_the_page_is_disconnected() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         page, other = Page(hub), Page(hub)
         await until(lambda: hub.clients == 2, "both pages")
@@ -169,7 +169,7 @@ def test_documents_are_never_skipped_until_the_page_is_sent_away() -> None:
     with_hub(scenario)
 
 
-def test_of_pictures_there_is_only_the_newest() -> None:
+def test_only_the_newest_picture_is_sent() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         page = Page(hub)
         await until(lambda: page.texts, "the greeting")
@@ -187,7 +187,7 @@ def test_of_pictures_there_is_only_the_newest() -> None:
     with_hub(scenario)
 
 
-def test_who_has_stopped_reading_is_cut_off_and_costs_the_others_nothing(
+def test_a_page_that_stops_reading_is_disconnected_without_effect_on_others(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(hub_module, "WATCH_SECONDS", 0.001)
@@ -214,7 +214,7 @@ def test_who_has_stopped_reading_is_cut_off_and_costs_the_others_nothing(
     with_hub(scenario)
 
 
-def test_answers_nobody_reads_end_the_connection() -> None:
+def test_unread_answers_end_the_connection() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         page = Page(hub)
         await until(lambda: page.texts, "the greeting")
@@ -231,7 +231,7 @@ def test_answers_nobody_reads_end_the_connection() -> None:
     with_hub(scenario)
 
 
-def test_news_of_one_kind_replace_each_other() -> None:
+def test_notifications_of_one_kind_replace_each_other() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         page = Page(hub)
         await until(lambda: page.texts, "the greeting")
@@ -246,7 +246,7 @@ def test_news_of_one_kind_replace_each_other() -> None:
     with_hub(scenario)
 
 
-def test_pictures_are_wanted_only_while_somebody_looks() -> None:
+def test_picture_topics_are_subscribed_only_while_a_page_shows_them() -> None:
     async def scenario() -> None:
         wanted: list[frozenset[str]] = []
         hub = Hub(SimulatedClock(), wanted.append)
@@ -267,7 +267,7 @@ def test_pictures_are_wanted_only_while_somebody_looks() -> None:
     asyncio.run(scenario())
 
 
-def test_a_page_has_the_pictures_that_it_watches() -> None:
+def test_a_page_gets_only_its_subscribed_pictures() -> None:
     async def scenario() -> None:
         wanted: list[frozenset[str]] = []
         hub = Hub(SimulatedClock(), wanted.append)
@@ -293,7 +293,7 @@ def test_a_page_has_the_pictures_that_it_watches() -> None:
     asyncio.run(scenario())
 
 
-def test_there_is_room_for_so_many_pages_and_no_more() -> None:
+def test_the_number_of_pages_is_limited() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         pages = [Page(hub) for _ in range(hub_module.CLIENTS_MAX)]
         await until(lambda: hub.clients == hub_module.CLIENTS_MAX, "all pages")

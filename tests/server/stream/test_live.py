@@ -41,7 +41,7 @@ def numbers(blocks: list[Block], topic: str) -> list[int]:
     ]
 
 
-def test_a_page_is_greeted_and_gets_the_past_and_the_present_without_hole_or_double(
+def test_a_page_gets_greeting_history_and_live_messages_without_gap_or_duplicate(
     settings: Settings,
 ) -> None:
     async def scenario(served: Served) -> None:
@@ -73,7 +73,7 @@ def test_a_page_is_greeted_and_gets_the_past_and_the_present_without_hole_or_dou
     play(settings, scenario)
 
 
-def test_news_about_health_and_recording(settings: Settings) -> None:
+def test_changes_of_health_and_recording_are_sent(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as page:
             health = await next_text(page, "health")
@@ -113,7 +113,7 @@ def test_ping_and_stop(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_stops_while_one_is_on_its_way_become_one_more(settings: Settings) -> None:
+def test_stops_during_a_pending_stop_become_one_more(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as page:
             served.runtime.gates["stop"].clear()
@@ -132,7 +132,7 @@ def test_stops_while_one_is_on_its_way_become_one_more(settings: Settings) -> No
     play(settings, scenario)
 
 
-def test_a_stop_that_nobody_takes_is_told(settings: Settings) -> None:
+def test_a_stop_without_an_answer_is_reported(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.__exit__()
         async with served.connect() as page:
@@ -158,7 +158,7 @@ NONSENSE: list[str | bytes] = [
 ]
 
 
-def test_nonsense_is_answered_in_words_and_does_nothing(settings: Settings) -> None:
+def test_invalid_messages_are_answered_with_the_reason_and_do_nothing(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as page:
             for message in NONSENSE:
@@ -169,7 +169,7 @@ def test_nonsense_is_answered_in_words_and_does_nothing(settings: Settings) -> N
     play(settings, scenario)
 
 
-def test_nothing_but_nonsense_closes_the_socket(settings: Settings) -> None:
+def test_too_many_invalid_messages_close_the_socket(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as page:
             for _ in range(INVALID_MAX - 1):
@@ -187,7 +187,7 @@ def test_nothing_but_nonsense_closes_the_socket(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_messages_of_the_page_are_small(settings: Settings) -> None:
+def test_messages_of_a_page_are_limited_in_size(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as page:
             frame = '{"op": "ping", "id": "%s"}'
@@ -204,7 +204,7 @@ def test_messages_of_the_page_are_small(settings: Settings) -> None:
 
 
 @pytest.mark.parametrize("origin", ["http://evil.example", "null", "https://127.0.0.1"])
-def test_pages_of_others_get_no_socket(settings: Settings, origin: str) -> None:
+def test_foreign_pages_get_no_socket(settings: Settings, origin: str) -> None:
     async def scenario(served: Served) -> None:
         with pytest.raises(InvalidStatus) as refused:
             await served.connect(origin=origin)
@@ -216,7 +216,7 @@ def test_pages_of_others_get_no_socket(settings: Settings, origin: str) -> None:
     play(settings, scenario)
 
 
-def test_pictures_are_asked_for_only_while_a_page_is_open(settings: Settings) -> None:
+def test_pictures_are_requested_only_while_a_page_is_open(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await served.heard("stream")
         assert not served.runtime.is_heard("picture")
@@ -231,7 +231,7 @@ def test_pictures_are_asked_for_only_while_a_page_is_open(settings: Settings) ->
     play(settings, scenario)
 
 
-def test_a_page_that_stops_reading_is_dropped_and_the_others_miss_nothing(
+def test_a_page_that_stops_reading_is_disconnected_and_the_others_miss_nothing(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(hub_module, "STALL_SECONDS", 0.3)

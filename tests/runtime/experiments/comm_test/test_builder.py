@@ -26,7 +26,7 @@ def test_the_flags_are_those_of_the_firmware() -> None:
     assert makefile_flags("OWN")[:3] == list(module.OWN)
 
 
-def test_every_parameter_makes_another_product_and_none_the_same(builder: Builder) -> None:
+def test_every_parameter_changes_the_product_and_equal_parameters_reuse_it(builder: Builder) -> None:
     first = builder.build(make_test(), 9600, 0.1)
     made = first.elf.stat().st_mtime_ns
     assert builder.build(make_test(name="another", delay=(3.0,)), 9600, 0.1) == first

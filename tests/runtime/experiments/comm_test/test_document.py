@@ -55,7 +55,7 @@ def test_the_sketch_s_own_path_framing_and_direction(path: str) -> None:
     assert (test.framing, test.direction) == ("plain", "both")
 
 
-def test_faults_are_read_and_what_was_stored_can_be_read_again() -> None:
+def test_faults_are_parsed_and_stored_documents_can_be_parsed_again() -> None:
     wanted = {"seed": 7, "bit_errors": 1e-3, "insert": 0.1, "burst": [1e-4, 20], "stall": [2, 0.25]}
     (test,) = read_document(changed(faults=wanted))
     assert test.faults == Faults(seed=7, bit_errors=1e-3, insert=0.1, burst=(1e-4, 20), stall=(2.0, 0.25))
@@ -132,7 +132,7 @@ def test_faults_are_read_and_what_was_stored_can_be_read_again() -> None:
         ),
     ],
 )
-def test_a_mistake_is_told_where_it_is(changes: dict[str, Any], words: str) -> None:
+def test_an_error_is_reported_with_its_place(changes: dict[str, Any], words: str) -> None:
     (problem,) = problems(changed(**changes))
     assert problem.startswith(f"test 1: {words}")
 
@@ -161,7 +161,7 @@ def test_a_mistake_carries_the_path_to_it(
     assert problem.text.endswith(problem.words)
 
 
-def test_all_mistakes_are_told_at_once() -> None:
+def test_all_errors_are_reported_together() -> None:
     found = problems('[{"id": 1, "delay": [-1]}, 3]')
     assert "test 1: name is missing" in found
     assert "test 1: delay[0] is -1; it must lie between 0 and 10" in found
@@ -176,7 +176,7 @@ def test_all_mistakes_are_told_at_once() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", "nonsense", "[" * 100_000, " " * 1_000_001])
-def test_what_is_no_list_of_tests(text: str) -> None:
+def test_a_document_that_is_no_list_is_refused(text: str) -> None:
     assert len(problems(text)) == 1
 
 
@@ -194,5 +194,5 @@ def test_500_cells_are_run_and_501_are_not() -> None:
 @pytest.mark.parametrize(
     ("baud", "made"), [(115200, 117647), (250000, 250000), (500000, 500000), (57600, 58824), (300, 300)]
 )
-def test_what_the_chip_makes_of_a_baud_rate(baud: int, made: int) -> None:
+def test_the_actual_speed_of_the_chip_for_a_baud_rate(baud: int, made: int) -> None:
     assert round(chip_baud(baud)) == made

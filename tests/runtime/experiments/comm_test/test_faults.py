@@ -23,7 +23,7 @@ def test_stalls_and_cuts_come_in_order_from_the_beginning_of_the_traffic_on() ->
     assert list(Faults(bit_errors=0.1).timed(0.0)) == []
 
 
-def test_a_noisy_line_is_told_of_and_comes_again_the_same(run: Run) -> None:
+def test_noise_is_reported_and_repeatable(run: Run) -> None:
     noise = Faults(seed=3, bit_errors=1e-3, drop=5e-3, double=5e-3, insert=5e-3, burst=(1e-3, 20))
     changes = {"framing": "plain", "direction": "both", "faults": noise, "delay": (0.0, 0.01)}
     first, second = run(**changes), run(**changes)
@@ -57,7 +57,7 @@ def test_a_cut_line_loses_what_is_on_it(run: Run) -> None:
     assert f"{result.line.faults.cuts} bytes lost while the line was cut" in result.explanation
 
 
-def test_more_than_the_port_keeps_passes_a_line_that_puts_in_bytes(run: Run) -> None:
+def test_more_bytes_than_the_port_buffers_pass_a_line_that_inserts_bytes(run: Run) -> None:
     numbers = {"from_val": 100, "to_val": 2100, "expected": 2000}
     (result,) = run(**numbers, framing="thesis", faults=Faults(double=0.1, insert=0.1))
     assert result.board is not None

@@ -33,7 +33,7 @@ def test_a_clean_stream_counts_every_number(name: FramingName) -> None:
     assert framing.count(stream, 20, 120) == Counts(right=100, bytes_read=len(stream))
 
 
-def test_the_end_mark_within_a_packet_costs_exactly_two_of_the_thesis_s_numbers() -> None:
+def test_an_end_mark_within_a_packet_loses_exactly_two_numbers_of_the_thesis() -> None:
     counts = THESIS.count(b"".join(map(THESIS.message, range(1, 101))), 1, 101)
     assert counts == Counts(98, 0, 0, 2, 0, 900)
     lost = [n for n in range(1, 101) if THESIS.count(THESIS.message(n), 1, 101).right == 0]
@@ -52,7 +52,7 @@ def test_an_odd_number_of_lost_plain_bytes_spoils_all_that_follow() -> None:
     assert PLAIN.count(stream[:6] + stream[7:], 1, 101) == Counts(3, 6, 0, 1, 0, 19)
 
 
-def test_what_was_there_before_is_out_of_sequence() -> None:
+def test_numbers_from_before_the_test_are_out_of_sequence() -> None:
     stream = b"".join(map(PLAIN.message, (1, 2, 5, 4, 5, 6, 101)))
     assert PLAIN.count(stream, 1, 101) == Counts(4, 3, 0, 0, 0, 14)
 

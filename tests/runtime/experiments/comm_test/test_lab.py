@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("program")
 EMULATED = ("--where", "emulated")
 
 
-def test_it_tells_of_every_step_and_the_cells_in_order(builder: Builder, run: Run) -> None:
+def test_every_step_and_the_cells_are_reported_in_order(builder: Builder, run: Run) -> None:
     changes = {"framing": "plain", "baud_rate": (9600, 115200), "delay": (0.0, 0.01)}
     first, second = make_test(**changes), make_test(name="next", direction="both")
     status, events = run_lab(write_document(first, second), *EMULATED)
@@ -41,7 +41,7 @@ def test_a_bad_document_is_refused_with_every_problem() -> None:
     assert named == ["delay[0]", "baud_rate[0]"]
 
 
-def test_what_is_no_text_is_refused() -> None:
+def test_bytes_that_are_no_text_are_refused() -> None:
     status, (event,) = run_lab(b"[\xff]", *EMULATED)
     assert (status, event["event"]) == (2, "refused")
     assert event["problems"][0].startswith("the document is not UTF-8")
@@ -57,7 +57,7 @@ def test_cancelled_in_the_middle_of_a_long_cell() -> None:
     assert events[-1] == {"event": "ended", "test": 0, "state": "cancelled", "problem": ""}
 
 
-def test_without_the_emulated_board_it_says_what_to_do(tmp_path: Path) -> None:
+def test_without_the_emulated_board_the_remedy_is_named(tmp_path: Path) -> None:
     status, events = run_lab(write_document(make_test()), "--where", "emulated", "--build", str(tmp_path))
     assert (status, events[-1]["state"]) == (1, "failed")
     assert "`make firmware`" in events[-1]["problem"]

@@ -110,7 +110,7 @@ def test_the_same_test_gives_the_same_results_however_many_cells_run_at_once(
     assert list(Runner(builder, program, 3).run(test)) == alone
 
 
-def test_the_delays_are_waited_by_both_ends(run: Run) -> None:
+def test_both_ends_wait_their_delays(run: Run) -> None:
     numbers = {"framing": "robot", "from_val": 1, "to_val": 9, "expected": 8}
     quick, pi = run(delay=(0.0, 0.5), **numbers)
     (arduino,) = run(arduinodelay=(0.5,), direction="to_host", **numbers)
@@ -118,7 +118,7 @@ def test_the_delays_are_waited_by_both_ends(run: Run) -> None:
     assert arduino.seconds - quick.seconds == pytest.approx(8 * 0.5, abs=0.6)
 
 
-def test_a_board_that_never_answers_is_told(run_harmed: RunHarmed) -> None:
+def test_a_board_that_never_answers_is_reported(run_harmed: RunHarmed) -> None:
     result = run_harmed(lambda _: None, 0.0, baud_of_sketch=250000)
     assert (result.board, result.rate, result.host) == (None, 0.0, Counts())
     assert result.causes[0] == "no link"
@@ -127,7 +127,7 @@ def test_a_board_that_never_answers_is_told(run_harmed: RunHarmed) -> None:
 
 
 @pytest.mark.parametrize("delays", [{"arduinodelay": (0.1,)}, {"delay": (0.5,)}], ids=["busy", "idle"])
-def test_a_board_that_restarts_is_told(run_harmed: RunHarmed, delays: dict[str, Any]) -> None:
+def test_a_board_that_restarts_is_reported(run_harmed: RunHarmed, delays: dict[str, Any]) -> None:
     result = run_harmed(lambda board: board.reset(), 1.2, **delays)
     assert (result.board, result.causes[0]) == (None, "restart")
     assert "the chip restarted after" in result.explanation
@@ -135,7 +135,7 @@ def test_a_board_that_restarts_is_told(run_harmed: RunHarmed, delays: dict[str, 
     assert result.seconds < 1.2 + SILENCE + 0.5
 
 
-def test_a_line_that_is_cut_for_good_is_given_up_loudly(run_harmed: RunHarmed) -> None:
+def test_a_line_that_stays_cut_is_given_up_with_an_error(run_harmed: RunHarmed) -> None:
     result = run_harmed(lambda board: board.cut_line("to_board", True), 1.0, arduinodelay=(0.03,))
     assert (result.board, result.rate) == (None, 0.0)
     assert result.causes[0] == "out of time"

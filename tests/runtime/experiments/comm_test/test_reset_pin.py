@@ -72,7 +72,7 @@ def test_a_line_that_another_program_holds_is_not_pulled(chip: GpioChip) -> None
     assert chip.levels(LINE) == []
 
 
-def test_without_the_package_it_says_what_brings_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_package_its_installation_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "gpiod", None)
     with pytest.raises(ResetError, match=r"gpiod is missing: `pip install mucat\[pi\]` brings it"):
         find_reset("gpio:/dev/gpiochip0:4")()

@@ -101,6 +101,6 @@ def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino:
 
 
 @pytest.mark.parametrize("spec", ["", "gpio", "gpio:4", "gpio:/dev/gpiochip0:x", "board:", "dtr:", "rts"])
-def test_a_reset_that_cannot_be_is_refused(spec: str) -> None:
+def test_an_invalid_reset_is_refused(spec: str) -> None:
     with pytest.raises(ResetError, match="it must be gpio:CHIP:LINE, board:SOCKET or dtr"):
         find_reset(spec)

@@ -24,7 +24,7 @@ def test_plain_numbers_all_arrive_at_a_sketch_that_keeps_up(run: Run, baud: int)
 
 
 @pytest.mark.parametrize("direction", ["to_board", "to_host", "both"])
-def test_the_end_mark_within_costs_the_thesis_s_packets_two_numbers(run: Run, direction: str) -> None:
+def test_an_end_mark_within_a_thesis_packet_loses_two_numbers(run: Run, direction: str) -> None:
     (result,) = run(direction=direction, baud_rate=(9600,))
     ends = 2 if direction == "both" else 1
     assert result.counts == Counts(98 * ends, 0, 0, 2 * ends, 0, 900 * ends)
@@ -32,7 +32,7 @@ def test_the_end_mark_within_costs_the_thesis_s_packets_two_numbers(run: Run, di
     assert "end mark" in result.explanation
 
 
-def test_a_slow_sketch_keeps_what_its_ring_holds(run: Run) -> None:
+def test_a_slow_sketch_receives_only_the_numbers_in_its_ring(run: Run) -> None:
     plain, thesis = (run(framing=name, arduinodelay=(0.1,))[0] for name in ("plain", "thesis"))
     assert plain.board is not None
     assert plain.board.bytes_read in (RING + 1, RING + 2)
@@ -43,7 +43,7 @@ def test_a_slow_sketch_keeps_what_its_ring_holds(run: Run) -> None:
     assert thesis.rate == (RING + 9) // 9 / 100
 
 
-def test_what_waits_in_the_host_s_port_is_not_lost(run: Run) -> None:
+def test_numbers_waiting_in_the_host_s_port_are_not_lost(run: Run) -> None:
     (result,) = run(from_val=1000, to_val=2000, expected=1000, baud_rate=(500000,))
     assert result.board is not None
     assert result.board.bytes_read == 9000
@@ -91,7 +91,7 @@ def test_a_board_that_does_not_understand_is_a_lost_result(
     assert "line" in result.causes
 
 
-def test_whoever_stops_asking_cancels(builder: Builder, program: Path) -> None:
+def test_closing_the_iterator_cancels_the_run(builder: Builder, program: Path) -> None:
     test = make_test(delay=tuple(number / 10 for number in range(100)))
     cells = Runner(builder, program, 1).run(test)
     before = time.monotonic()

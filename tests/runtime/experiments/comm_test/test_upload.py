@@ -38,11 +38,11 @@ def run_there(empty: Empty) -> CellResult:
         return run_cell(TEST, CELL, line)
 
 
-def test_avrdude_says_which_it_is() -> None:
+def test_the_version_of_avrdude_is_read() -> None:
     assert avrdude_version().startswith("avrdude version ")
 
 
-def test_how_an_upload_went_leaves_no_trace(builder: Builder, empty: Empty) -> None:
+def test_a_second_upload_does_not_depend_on_the_first(builder: Builder, empty: Empty) -> None:
     process, board = empty
     product = builder.build(TEST, CELL.baud, 0.0)
     upload_paused(product.hex, process.tty, board, Cancellation())
@@ -55,7 +55,7 @@ def test_how_an_upload_went_leaves_no_trace(builder: Builder, empty: Empty) -> N
     assert again == first
 
 
-def test_a_host_that_thinks_for_long_finds_the_boot_loader_waiting(
+def test_the_boot_loader_waits_for_a_slow_host(
     builder: Builder, empty: Empty, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Much longer between two looks than between two of avrdude's commands.
@@ -85,7 +85,7 @@ def test_an_upload_that_loses_step_is_started_over(
     assert run_there(empty).rate == 1.0
 
 
-def test_an_upload_that_never_succeeds_is_told_after_some_attempts(
+def test_a_failing_upload_is_reported_after_some_attempts(
     builder: Builder, empty: Empty, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     product = builder.build(TEST, CELL.baud, 0.0)
@@ -100,7 +100,7 @@ def test_an_upload_that_never_succeeds_is_told_after_some_attempts(
     assert len(calls.read_text().splitlines()) == module.ATTEMPTS
 
 
-def test_a_board_without_a_boot_loader_is_told_in_avrdudes_words(
+def test_a_missing_boot_loader_is_reported_with_avrdude_s_text(
     builder: Builder, program: Path, tmp_path: Path
 ) -> None:
     product = builder.build(TEST, CELL.baud, 0.0)
@@ -121,7 +121,7 @@ def test_an_upload_can_be_cancelled(builder: Builder, empty: Empty) -> None:
         upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, stop)
 
 
-def test_without_avrdude_it_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_avrdude_its_installation_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(UploadError, match="install the package avrdude"):
         avrdude_version()

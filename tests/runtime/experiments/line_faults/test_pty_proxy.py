@@ -47,13 +47,13 @@ def channel() -> FaultyChannel:
     return FaultyChannel("to_board", seed=1)
 
 
-def test_a_clean_channel_harms_nothing(channel: FaultyChannel) -> None:
+def test_a_channel_without_faults_changes_nothing(channel: FaultyChannel) -> None:
     assert channel.carry(DATA) == DATA
     assert not any(channel.counts.values())
 
 
 @pytest.mark.parametrize("rate", [0.0005, 0.02, 0.5, 1.0])
-def test_as_many_bits_are_wrong_as_are_counted(channel: FaultyChannel, rate: float) -> None:
+def test_the_count_of_wrong_bits_is_exact(channel: FaultyChannel, rate: float) -> None:
     channel.set_rate("bit_errors", rate)
     wrong = wrong_bits(DATA, channel.carry(DATA))
     assert wrong == channel.counts["bit_errors"]
@@ -70,7 +70,7 @@ def test_dropped_bytes_are_missing(channel: FaultyChannel) -> None:
 
 
 @pytest.mark.parametrize(("kind", "count"), [("double", "doubles"), ("insert", "inserts")])
-def test_there_are_more_bytes_as_counted(channel: FaultyChannel, kind: Kind, count: str) -> None:
+def test_the_count_of_added_bytes_is_exact(channel: FaultyChannel, kind: Kind, count: str) -> None:
     channel.set_rate(kind, 0.1)
     arrived = channel.carry(DATA)
     assert len(arrived) - len(DATA) == channel.counts[count]
@@ -104,7 +104,7 @@ def test_a_dropped_byte_is_not_doubled_as_well(channel: FaultyChannel) -> None:
     assert (channel.counts["drops"], channel.counts["doubles"]) == (3, 0)
 
 
-def test_a_bit_in_a_burst_is_harmed_by_nothing_else(channel: FaultyChannel) -> None:
+def test_a_bit_in_a_burst_gets_no_other_fault(channel: FaultyChannel) -> None:
     channel.burst(1.0, 100)
     channel.set_rate("bit_errors", 1.0)
     wrong = wrong_bits(DATA, channel.carry(DATA))
@@ -128,14 +128,14 @@ def everything(seed: int, portion: int, name: str = "to_board") -> bytes:
     return b"".join(channel.carry(DATA[i : i + portion]) for i in range(0, len(DATA), portion))
 
 
-def test_a_seed_decides_and_the_portions_do_not() -> None:
+def test_faults_depend_on_the_seed_and_not_on_the_pieces() -> None:
     whole = everything(1, len(DATA))
     assert everything(1, 1) == everything(1, 61) == whole
     assert everything(2, len(DATA)) != whole
     assert everything(1, len(DATA), "from_board") != whole
 
 
-def test_seeding_anew_repeats_it(channel: FaultyChannel) -> None:
+def test_the_same_seed_repeats_the_faults(channel: FaultyChannel) -> None:
     channel.set_rate("drop", 0.1)
     channel.seed(9)
     first = channel.carry(DATA)
@@ -143,7 +143,7 @@ def test_seeding_anew_repeats_it(channel: FaultyChannel) -> None:
     assert channel.carry(DATA) == first
 
 
-def test_clean_ends_it_all_and_the_counts_stay(channel: FaultyChannel) -> None:
+def test_clean_ends_all_faults_and_keeps_the_counts(channel: FaultyChannel) -> None:
     channel.set_rate("drop", 1.0)
     channel.burst(1.0, 10_000)
     channel.carry(b"lost")
@@ -159,7 +159,7 @@ def test_the_smallest_rate_hits_nothing_and_the_largest_everything() -> None:
 
 
 @pytest.mark.parametrize("rate", [-0.1, 1.1, float("nan")])
-def test_a_rate_that_is_none_is_refused(rate: float) -> None:
+def test_an_invalid_rate_is_refused(rate: float) -> None:
     with pytest.raises(ValueError, match="a rate is from 0 to 1"):
         Recurrence(rate, random.Random(1))
 
@@ -204,14 +204,14 @@ def wait_for(condition: Callable[[], bool], what: str) -> None:
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_it_carries_every_byte_as_it_is(ends: Ends, direction: Direction) -> None:
+def test_the_proxy_passes_every_byte_unchanged(ends: Ends, direction: Direction) -> None:
     every = bytes(range(256))
     ends.send(direction, every)
     assert ends.receive(direction, 256) == every
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_it_harms_one_direction_as_its_channel_does(ends: Ends, direction: Direction) -> None:
+def test_the_proxy_disturbs_one_direction_as_its_channel_does(ends: Ends, direction: Direction) -> None:
     ends.line.channels[direction].set_rate("bit_errors", 0.01)
     twin = FaultyChannel(direction, seed=1)
     twin.set_rate("bit_errors", 0.01)
@@ -224,7 +224,7 @@ def test_it_harms_one_direction_as_its_channel_does(ends: Ends, direction: Direc
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_a_stall_holds_back_and_loses_nothing(ends: Ends, direction: Direction) -> None:
+def test_a_stall_delays_bytes_and_loses_none(ends: Ends, direction: Direction) -> None:
     ends.line.stall(direction, 3600)
     ends.send(direction, b"late")
     assert ends.receive(direction, 4, limit=LOOK) == b""
@@ -241,7 +241,7 @@ def test_a_stall_ends_by_itself(ends: Ends) -> None:
     assert time.monotonic() - begin >= 0.1
 
 
-def test_a_host_that_does_not_read_loses_bytes_and_holds_nothing_up(ends: Ends) -> None:
+def test_a_host_that_does_not_read_loses_bytes_and_blocks_nothing(ends: Ends) -> None:
     sent = 0
     while not ends.line.channels["from_board"].counts["lost"]:
         assert sent < 1_000_000, "the operating system keeps everything"
@@ -257,13 +257,13 @@ def test_it_ends_when_the_port_goes_away(ends: Ends) -> None:
     assert "went away" in ends.line.failure
 
 
-def test_the_link_goes_with_it(tmp_path: Path) -> None:
+def test_the_symbolic_link_is_removed_at_the_end(tmp_path: Path) -> None:
     ends = Ends(tmp_path)
     ends.close()
     assert not ends.link.is_symlink()
 
 
-def test_what_is_in_the_way_is_kept(tmp_path: Path) -> None:
+def test_an_existing_file_is_not_overwritten(tmp_path: Path) -> None:
     end = BoardEnd(tmp_path / "port")
     (tmp_path / "file").write_text("kept")
     with pytest.raises(PortError, match=r"cannot make .*file"):
@@ -272,12 +272,12 @@ def test_what_is_in_the_way_is_kept(tmp_path: Path) -> None:
     end.vanish()
 
 
-def test_a_port_that_is_none_is_refused(tmp_path: Path) -> None:
+def test_a_path_that_is_no_port_is_refused(tmp_path: Path) -> None:
     with pytest.raises(PortError, match="cannot open /nowhere"):
         PtyProxy("/nowhere", 250_000, tmp_path / "link")
 
 
-def test_commands_do_as_the_boards(ends: Ends) -> None:
+def test_commands_work_as_the_emulated_board_s(ends: Ends) -> None:
     assert execute(ends.line, "seed 4") == "ok"
     assert execute(ends.line, "line to_board drop 1.0") == "ok"
     ends.send("to_board", b"gone")
@@ -306,7 +306,7 @@ def test_commands_do_as_the_boards(ends: Ends) -> None:
         "quit",
     ],
 )
-def test_commands_that_make_no_sense_are_refused(ends: Ends, command: str) -> None:
+def test_invalid_commands_are_refused(ends: Ends, command: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):
         execute(ends.line, command)
 

@@ -102,7 +102,7 @@ def shipped() -> dict[str, str]:
     return {file.name: file.read_text(encoding="utf-8") for file in folder.iterdir()}
 
 
-def test_five_are_shipped_and_can_be_run() -> None:
+def test_the_five_shipped_scenarios_are_valid() -> None:
     read = {name: read_scenario(text) for name, text in shipped().items()}
     assert len(read) == 5
     assert {name: f"{scenario.name}.toml" for name, scenario in read.items()} == {name: name for name in read}
@@ -115,7 +115,7 @@ def test_figure_14_is_the_thesis_evaluation() -> None:
     assert (scenario.control.set_point, scenario.control.set_point_detected) == (0.5, 1.0)
 
 
-def test_everything_is_read() -> None:
+def test_every_entry_is_parsed() -> None:
     scenario = read_scenario(WHOLE + "".join(event(do, rest) for do, rest in ALL_EVENTS.items()))
     assert scenario.seed == 4294967295
     assert (scenario.scene.basin.length, scenario.scene.beacons) == (6.0, ((1.0, 2.0, 0.5),))
@@ -130,7 +130,7 @@ def test_everything_is_read() -> None:
     assert all(one.words for one in scenario.events)
 
 
-def test_what_is_left_out_is_as_the_robot_is() -> None:
+def test_missing_entries_get_the_robot_s_defaults() -> None:
     scenario = read_scenario(BARE)
     assert (scenario.robot, scenario.trim, scenario.start.down) == (SimulationParameters(), None, None)
     assert (scenario.scene.beacons, scenario.water.waves.amplitude, scenario.events) == ((), 0, ())
@@ -286,11 +286,11 @@ def test_cards_have_the_colours_that_the_vision_node_knows() -> None:
         ("#" * 60_001, "the scenario is larger than 60000 bytes"),
     ],
 )
-def test_what_is_wrong_is_named(text: str, problem: str) -> None:
+def test_errors_are_named(text: str, problem: str) -> None:
     assert any(problem in one for one in problems(text)), problems(text)
 
 
-def test_every_problem_is_told_at_once() -> None:
+def test_all_problems_are_reported_together() -> None:
     text = (
         BARE.replace("duration = 20", "duration = 2")
         .replace('"bare"', '"B"')
@@ -303,5 +303,5 @@ def test_every_problem_is_told_at_once() -> None:
 
 
 @pytest.mark.parametrize("text", ["a = " + "[" * 5000, "\x00", 'name = "\\ud800"'])
-def test_nonsense_is_refused_in_words(text: str) -> None:
+def test_invalid_documents_are_refused_with_the_reason(text: str) -> None:
     assert problems(text)[0].startswith("the scenario is not TOML")

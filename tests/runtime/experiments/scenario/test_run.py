@@ -54,7 +54,7 @@ def read_blocks_of(data: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
-def test_what_ships_arms_and_dives_towards_its_set_point(path: Path) -> None:
+def test_the_shipped_scenarios_arm_and_dive_towards_their_set_point(path: Path) -> None:
     whole = read_scenario(path.read_text())
     events = tuple(event for event in whole.events if event.at <= 8)
     told = perform(replace(whole, duration=8.0, events=events))
@@ -219,7 +219,7 @@ def test_a_bad_scenario_is_refused_with_all_problems() -> None:
         assert any(words in problem for problem in event["problems"]), words
 
 
-def test_what_ran_is_told(tmp_path: Path) -> None:
+def test_the_run_reports_its_firmware_and_software(tmp_path: Path) -> None:
     out = tmp_path / "run"
     status, nothing = run_process(document(1), "--out", str(out))
     assert (status, nothing) == (0, b"")
@@ -228,7 +228,7 @@ def test_what_ran_is_told(tmp_path: Path) -> None:
     assert started == {"event": "started", "time": 0.0, "scenario": "test", "seed": 7, "board": "host"}
 
 
-def test_a_board_that_was_not_built_is_said(tmp_path: Path) -> None:
+def test_a_missing_build_of_the_board_is_reported(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "robot_runtime.experiments.scenario"]
     environment = {**os.environ, "MUCAT_BUILD": str(tmp_path)}
     done = subprocess.run(

@@ -21,7 +21,7 @@ SENSE = Reading(
 )
 
 
-def test_fins_line_is_read() -> None:
+def test_a_fins_line_is_parsed() -> None:
     fins = read_fins(FINS)
     assert fins.angles == (0.1, 0.2, 0.3, 0.4)
     assert fins.speeds == (1, 2, 3, 4)
@@ -44,12 +44,12 @@ def test_fins_line_is_read() -> None:
         FINS.replace("1.25", "nan"),
     ],
 )
-def test_what_is_no_fins_line_is_refused(line: str) -> None:
+def test_an_invalid_fins_line_is_refused(line: str) -> None:
     with pytest.raises(BoardLineError, match=r"is not|impossible fins|could not convert"):
         read_fins(line)
 
 
-def test_sense_line_says_what_was_read() -> None:
+def test_a_sense_line_holds_the_reading() -> None:
     assert write_sense(SENSE) == (
         "sense 106230.0 15.00 0.100000 -0.200000 -9.810000 0.001000 0.002000 -0.003000 1 0 7.8900 "
         "0.01000 -0.02000 nan 0.00000\n"
@@ -57,7 +57,7 @@ def test_sense_line_says_what_was_read() -> None:
 
 
 @given(st.lists(st.integers(1, 40)))
-def test_lines_come_whole_however_they_are_cut(cuts: list[int]) -> None:
+def test_lines_are_reassembled_from_any_pieces(cuts: list[int]) -> None:
     wanted = [FINS, "error no", "", "ok 2"]
     data = "".join(line + "\n" for line in wanted).encode()
     lines, got, at = LineBuffer(), list[str](), 0

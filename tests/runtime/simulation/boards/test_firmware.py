@@ -24,7 +24,7 @@ def test_another_speed_is_built_beside_the_default() -> None:
     assert default.read_bytes() == before
 
 
-def test_without_a_compiler_it_takes_what_is_there_or_says_what_to_do(
+def test_without_a_compiler_an_existing_build_is_used_or_the_remedy_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
@@ -36,6 +36,6 @@ def test_without_a_compiler_it_takes_what_is_there_or_says_what_to_do(
     build_firmware(tmp_path, 4800)
 
 
-def test_what_the_compiler_refuses_is_told(tmp_path: Path) -> None:
+def test_a_compiler_error_is_reported(tmp_path: Path) -> None:
     with pytest.raises(FirmwareBuildError, match=r"could not be built: .*2\.5 % off"):
         build_firmware(tmp_path, 460_800)

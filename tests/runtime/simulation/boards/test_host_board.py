@@ -55,7 +55,7 @@ def rig() -> Iterator[Rig]:
         yield rig
 
 
-def test_it_says_hello_and_what_its_sensors_feel(rig: Rig) -> None:
+def test_the_board_sends_hello_and_its_sensor_readings(rig: Rig) -> None:
     rig.reading = STILL_WATER._replace(force=(1.0, -2.0, -9.0), battery=7.0)
     said = rig.run(1.0)
     assert Hello.from_bytes(said[Hello.type][0]).definitions == DEFINITIONS_HASH
@@ -108,7 +108,7 @@ def test_the_line_can_be_cut_stalled_and_disturbed(rig: Rig) -> None:
     assert len(rig.run(1.0)[Imu.type]) >= 99
 
 
-def test_the_line_carries_no_more_than_its_speed(rig: Rig) -> None:
+def test_the_line_s_throughput_is_limited_by_its_speed(rig: Rig) -> None:
     rig.run(0.2)
     rig.board.write(bytes(1000))
     lost = Status.from_bytes(rig.run(0.5)[Status.type][-1])
@@ -116,7 +116,7 @@ def test_the_line_carries_no_more_than_its_speed(rig: Rig) -> None:
     assert lost.frames_invalid == 0
 
 
-def test_what_makes_no_sense_is_refused(rig: Rig) -> None:
+def test_invalid_faults_are_refused(rig: Rig) -> None:
     with pytest.raises(BoardError, match="no device 'rudder'"):
         rig.board.fault("rudder", "absent")
     with pytest.raises(BoardError, match="unknown command"):
@@ -128,7 +128,7 @@ def test_what_makes_no_sense_is_refused(rig: Rig) -> None:
         rig.board.run(1)
 
 
-def test_two_boards_do_not_know_of_each_other(rig: Rig) -> None:
+def test_two_boards_are_independent(rig: Rig) -> None:
     other = Rig()
     with other.board:
         other.board.fault("imu", "absent")
@@ -138,6 +138,6 @@ def test_two_boards_do_not_know_of_each_other(rig: Rig) -> None:
         assert Status.from_bytes(its[Status.type][-1]).faults == SensorFault.IMU
 
 
-def test_a_library_that_is_not_there_is_said(tmp_path: Path) -> None:
+def test_a_missing_library_is_reported(tmp_path: Path) -> None:
     with pytest.raises(BoardError, match="`make firmware` builds it"):
         HostBoard(tmp_path / "libhost_board.so", lambda _: STILL_WATER)

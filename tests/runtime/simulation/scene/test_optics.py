@@ -11,7 +11,7 @@ WIDTH, HEIGHT = 64, 48
 
 
 @pytest.mark.parametrize("distance", [0.1, 1.0, 3.4, 20.0])
-def test_a_wall_looks_as_the_formula_says(distance: float) -> None:
+def test_the_colour_of_a_wall_follows_the_formula(distance: float) -> None:
     seen = WaterOptics((0.06, 0.09, 0.6), (150.0, 128.0, 30.0), 0.05, caustics=0.0)
     paint = (20, 190, 245)
     picture = np.full((HEIGHT, WIDTH, 3), paint, np.uint8)
@@ -24,7 +24,7 @@ def test_a_wall_looks_as_the_formula_says(distance: float) -> None:
     assert result.reshape(-1, 3).mean(axis=0) == pytest.approx(expected, abs=1.0)
 
 
-def test_noise_is_as_strong_as_said_and_of_its_time() -> None:
+def test_noise_has_the_given_strength_and_depends_on_the_time() -> None:
     calm = WaterOptics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, caustics=0.0)
     picture = np.full((HEIGHT, WIDTH, 3), 128, np.uint8)
     near = np.ones((HEIGHT, WIDTH), np.float32)
@@ -36,7 +36,7 @@ def test_noise_is_as_strong_as_said_and_of_its_time() -> None:
     assert first.tobytes() == same.tobytes() != other.tobytes()
 
 
-def test_turbidity_takes_sight_away() -> None:
+def test_turbidity_reduces_visibility() -> None:
     assert water("pool", 0.0).attenuation == CLEAN["pool"].attenuation
     added = [
         water("natural", share).attenuation[0] - CLEAN["natural"].attenuation[0] for share in (0.1, 0.5, 1)

@@ -94,7 +94,7 @@ def link() -> Iterator[Ends]:
 
 
 @rendered
-def test_a_picture_is_of_the_newest_truth_and_says_when_that_was() -> None:
+def test_a_picture_shows_the_newest_truth_and_carries_its_time() -> None:
     with link() as ends:
         with pytest.raises(RefusedError, match="not sent the robot's position yet"):
             ends.picture()
@@ -138,7 +138,7 @@ def test_targets_and_water_change_what_is_seen() -> None:
         assert ends.picture().pixels[60, 80].tolist() != pytest.approx([35, 30, 215], abs=60)
 
 
-def test_the_contents_are_told_as_the_questions_that_make_them() -> None:
+def test_the_contents_are_reported_as_the_requests_that_create_them() -> None:
     with link() as ends:
         target = {"colour": "red", "position": [0.8, 0.0, 1.0], "size": 0.2, "shape": "box"}
         wanted: dict[str, dict[str, Any]] = {
@@ -165,7 +165,7 @@ def test_the_contents_are_told_as_the_questions_that_make_them() -> None:
         ("view", {"elevation": 100}, "must lie between -60 and 89"),
     ],
 )
-def test_bad_questions_are_refused_in_words(name: str, question: dict[str, Any], words: str) -> None:
+def test_bad_requests_are_refused_with_the_reason(name: str, question: dict[str, Any], words: str) -> None:
     with link() as ends, pytest.raises(RefusedError, match=words):
         ends.ask(name, question)
 
@@ -180,13 +180,13 @@ def test_bad_questions_are_refused_in_words(name: str, question: dict[str, Any],
         (b"\xff", "must be JSON"),
     ],
 )
-def test_bad_requests_for_pictures_are_refused_in_words(question: bytes, words: str) -> None:
+def test_bad_requests_for_pictures_are_refused_with_the_reason(question: bytes, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         read_request(question)
 
 
 @pytest.mark.parametrize("size", [0, 15, 33])
-def test_what_is_no_picture_is_refused(size: int) -> None:
+def test_a_file_that_is_no_picture_is_refused(size: int) -> None:
     whole = write_picture(Picture(1.0, np.zeros((2, 3, 3), np.uint8)))
     assert len(whole) == 34
     with pytest.raises(ValueError, match="picture"):
@@ -194,7 +194,7 @@ def test_what_is_no_picture_is_refused(size: int) -> None:
 
 
 @rendered
-def test_a_client_that_goes_away_harms_nobody() -> None:
+def test_a_client_that_disconnects_does_not_affect_others() -> None:
     with link() as ends:
         ends.tell(1.0, truth((0.0, 0.0, 1.0)))
         ends.picture()
@@ -205,7 +205,7 @@ def test_a_client_that_goes_away_harms_nobody() -> None:
 
 
 @rendered
-def test_a_bystander_is_drawn_only_while_somebody_watches() -> None:
+def test_the_bystander_view_is_rendered_only_for_subscribers() -> None:
     seen: list[Block] = []
     with link() as ends:
         ends.tell(5.0, truth((0.0, 0.0, 1.0)))
@@ -267,7 +267,9 @@ def test_the_vision_node_sees_the_card_in_the_scene() -> None:
         assert events == []
 
 
-def test_without_mujoco_a_drawn_card_stands_in_and_one_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_mujoco_a_drawn_card_replaces_the_scene_with_one_notice(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(process_module, "missing", lambda: "MuJoCo is not installed; do this")
     with link() as ends:
         ends.ask("ready", {})
@@ -279,7 +281,7 @@ def test_without_mujoco_a_drawn_card_stands_in_and_one_line_says_so(monkeypatch:
         assert "MuJoCo is not installed; do this. A drawn card stands in." in events[0].text
 
 
-def test_without_a_scene_there_is_no_picture_and_it_is_news_only_after_a_while() -> None:
+def test_a_missing_scene_gives_no_picture_and_is_reported_after_a_while() -> None:
     events: list[Event] = []
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         clock = SimulatedClock()

@@ -61,7 +61,7 @@ def test_what_is_to_the_right_sinks_as_the_robot_rolls_left(scene: Make) -> None
     assert down > 0.6
 
 
-def test_it_is_as_large_as_perspective_makes_it(scene: Make) -> None:
+def test_its_size_follows_perspective(scene: Make) -> None:
     box = Target(colour="yellow", position=(1.0 + NOSE + 0.1, 0.0, 5.0), size=0.2)
     contents = open_water(box)
     mask = changed(
@@ -106,7 +106,7 @@ def test_colours_are_lost_with_distance(
 @pytest.mark.parametrize(
     "contents", [Contents(), Contents(basin=Basin(2.0, 6.0, 4.0))], ids=["natural", "pool"]
 )
-def test_a_card_is_seen_as_what_it_is(scene: Make, contents: Contents) -> None:
+def test_a_card_is_detected_as_its_own_colour(scene: Make, contents: Contents) -> None:
     one = scene(contents)
     for colour, (time, depth) in product(PAINTS, ((1.0, 0.3), (7.0, 1.5))):
         picture = one.render_camera(time, truth((0.0, 0.0, depth)), *SIZE, PAINTS[colour])
@@ -119,7 +119,7 @@ def test_a_card_is_seen_as_what_it_is(scene: Make, contents: Contents) -> None:
 
 
 @pytest.mark.parametrize("size", [(320, 240), (640, 480)])
-def test_the_marker_card_is_read(scene: Make, size: tuple[int, int]) -> None:
+def test_the_marker_card_is_decoded(scene: Make, size: tuple[int, int]) -> None:
     pose = truth((0.0, 0.0, 1.0), roll=10.0)
     picture = scene(Contents()).render_camera(1.0, pose, *size, WHITE, marked=True)
     (marker,) = Detector(VisionSettings(markers="4x4_50")).search(picture).markers

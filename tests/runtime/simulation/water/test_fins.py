@@ -127,7 +127,7 @@ def test_turns_right_on_the_spot() -> None:
     assert abs(state.position[1]) < 0.02
 
 
-def test_a_held_fin_brakes_the_water_that_crosses_it() -> None:
+def test_a_fixed_fin_has_drag_in_cross_flow() -> None:
     push = Fins(NEUTRAL).push(STILL, STILL, (0.0, 0.0, 0.4), (0.0, 0.0, 0.0))
     expected = -4 * 0.5 * 1000 * 2.0 * 0.0045 * 0.4**2
     assert push[2] == pytest.approx(expected)

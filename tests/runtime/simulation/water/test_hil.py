@@ -78,7 +78,7 @@ def robot(simulator: Simulator) -> Iterator[Robot]:
                 thread.join()
 
 
-def test_the_water_moves_by_the_boards_time_and_nothing_else(robot: Robot) -> None:
+def test_the_water_advances_by_the_board_s_clock_only(robot: Robot) -> None:
     swing = [(100 + n * PERIOD, motor(round(1.2 * sin(n / 6), 3), drive=40)) for n in range(200)]
     for batch in range(4):
         robot.move(*swing[50 * batch : 50 * (batch + 1)])
@@ -92,9 +92,7 @@ def test_the_water_moves_by_the_boards_time_and_nothing_else(robot: Robot) -> No
     assert last.battery == pytest.approx(reading.battery, abs=0.01)
 
 
-def test_fins_that_were_not_heard_for_a_while_are_taken_to_have_rested(
-    robot: Robot, simulator: Simulator
-) -> None:
+def test_fins_without_data_for_a_while_count_as_resting(robot: Robot, simulator: Simulator) -> None:
     robot.move((100.0, motor(0.0)), (100.02, motor(0.0)))
     robot.hear(1)
     before = simulator.truth()
@@ -105,7 +103,7 @@ def test_fins_that_were_not_heard_for_a_while_are_taken_to_have_rested(
     assert after.position[0] == pytest.approx(before.position[0], abs=0.01)
 
 
-def test_a_clock_that_stands_or_runs_back_moves_nothing(robot: Robot, simulator: Simulator) -> None:
+def test_a_clock_that_stands_or_runs_back_advances_nothing(robot: Robot, simulator: Simulator) -> None:
     robot.move((100.0, motor(0.0)), (100.02, motor(0.0)))
     robot.hear(1)
     before = simulator.truth()
@@ -116,7 +114,7 @@ def test_a_clock_that_stands_or_runs_back_moves_nothing(robot: Robot, simulator:
     assert moved < 0.001
 
 
-def test_questions_are_answered_but_there_are_no_buses_to_break(simulator: Simulator) -> None:
+def test_requests_are_answered_except_bus_errors(simulator: Simulator) -> None:
     with (
         tempfile.TemporaryDirectory() as folder,
         ZenohTransport("turtle", [f"unixsock-stream/{folder}/z"]) as here,

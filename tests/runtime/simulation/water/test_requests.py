@@ -82,7 +82,7 @@ def test_a_pool_has_walls_and_begins_at_the_start(simulator: Simulator, ask: Ask
     assert simulator.truth().position[0] > 5
 
 
-def test_beacons_are_placed_moved_and_taken_away(simulator: Simulator, ask: Ask) -> None:
+def test_beacons_are_placed_moved_and_removed(simulator: Simulator, ask: Ask) -> None:
     def seen() -> tuple[bool, bool]:
         reading = rest(simulator)[-1]
         return reading.beacon_right, reading.beacon_left
@@ -172,7 +172,7 @@ def test_bus_errors_name_the_boards_devices(simulator: Simulator, ask: Ask) -> N
     assert "imu" not in simulator.broken_devices
 
 
-def test_after_a_reset_the_same_bytes_come_again() -> None:
+def test_a_reset_repeats_the_same_bytes() -> None:
     simulator = Simulator(SimulationParameters(), seed=9)
     known = changes(simulator)
     rest(simulator, 1)
@@ -245,7 +245,7 @@ def test_after_a_reset_the_same_bytes_come_again() -> None:
         ("fault", {"sensor": "pressure"}, "kind is missing"),
     ],
 )
-def test_what_cannot_be_is_refused_in_words_and_changes_nothing(
+def test_invalid_requests_are_refused_with_the_reason_and_change_nothing(
     simulator: Simulator, name: str, question: Question, words: str
 ) -> None:
     with pytest.raises(ValueError, match=words):
@@ -280,7 +280,7 @@ def test_a_reset_may_choose_the_noise(ask: Ask) -> None:
         ask("reset", seed=1.5)
 
 
-def test_the_surroundings_are_told_as_the_questions_that_make_them(simulator: Simulator) -> None:
+def test_the_surroundings_are_reported_as_the_requests_that_create_them(simulator: Simulator) -> None:
     known = changes(simulator)
     wanted: dict[str, Question] = {
         **SET,

@@ -27,7 +27,7 @@ def ramp(sensor: Sensor, count: int) -> list[float]:
     return [sensor.read(index * PERIOD, (index * PERIOD,))[0] for index in range(1, count + 1)]
 
 
-def test_a_perfect_sensor_shows_what_it_feels() -> None:
+def test_a_perfect_sensor_returns_the_true_value() -> None:
     assert made(SensorQuality(), axes=3).read(PERIOD, (0.1, -0.2, 0.3)) == (0.1, -0.2, 0.3)
 
 
@@ -109,13 +109,13 @@ def broken(fault: SimulatedFault, count: int = 1000, quality: SensorQuality | No
     return shown
 
 
-def test_stuck_shows_the_last_reading_for_ever() -> None:
+def test_a_stuck_sensor_repeats_the_last_reading() -> None:
     shown = broken(SimulatedFault(kind="stuck"))
     assert shown[:200] == ramp(made(SensorQuality()), 200)
     assert set(shown[200:]) == {1.0}
 
 
-def test_stuck_from_the_beginning_shows_what_it_felt_first() -> None:
+def test_a_sensor_stuck_from_the_beginning_repeats_the_first_reading() -> None:
     sensor = made(SensorQuality())
     sensor.set_fault(SimulatedFault(kind="stuck"), 0.0)
     assert ramp(sensor, 3) == [PERIOD, PERIOD, PERIOD]
@@ -137,7 +137,7 @@ def test_spikes_go_up_and_down_and_leave_the_rest() -> None:
     assert all(min(abs(error), abs(error - 50), abs(error + 50)) < 1e-9 for error in errors)
 
 
-def test_drift_grows_from_the_moment_it_is_asked_for() -> None:
+def test_drift_grows_from_the_time_of_its_request() -> None:
     shown = broken(SimulatedFault(kind="drift", speed=-2.0))
     for index in (201, 500, 1000):
         time = index * PERIOD
@@ -154,7 +154,7 @@ def test_drift_grows_from_the_moment_it_is_asked_for() -> None:
         SimulatedFault(kind="bus"),
     ],
 )
-def test_a_mended_sensor_goes_on_as_if_it_had_never_been_broken(fault: SimulatedFault) -> None:
+def test_after_a_fault_ends_readings_are_as_without_it(fault: SimulatedFault) -> None:
     quality = SensorQuality(noise=1.0, bias=1.0, walk=1.0)
     sound, mended = made(quality), made(quality)
     series(sound, 500)
@@ -178,7 +178,7 @@ def test_a_mended_sensor_goes_on_as_if_it_had_never_been_broken(fault: Simulated
         {"kind": "tired"},
     ],
 )
-def test_senseless_faults_are_refused(numbers: dict[str, float]) -> None:
+def test_invalid_faults_are_refused(numbers: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"takes|must be|there is no fault"):
         SimulatedFault(**numbers)  # type: ignore[arg-type]
 
@@ -186,6 +186,6 @@ def test_senseless_faults_are_refused(numbers: dict[str, float]) -> None:
 @pytest.mark.parametrize(
     "numbers", [{"rate": 0.0}, {"noise": -1.0}, {"latency": float("nan")}, {"step": -0.1}]
 )
-def test_senseless_qualities_are_refused(numbers: dict[str, float]) -> None:
+def test_invalid_sensor_properties_are_refused(numbers: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must"):
         SensorQuality(**numbers)

@@ -210,7 +210,7 @@ def test_bang_bang_control_ends_in_the_limit_cycle_of_the_reference() -> None:
     assert 2 < period < 6
 
 
-def test_bang_bang_without_dead_zone_swings_too_and_pid_less() -> None:
+def test_bang_bang_without_dead_zone_oscillates_too_and_pid_less() -> None:
     rmse, span, period = deviation(controlled(BangBang()))
     assert 0.04 < rmse < 0.08
     assert 0.15 < span < 0.27
@@ -218,7 +218,7 @@ def test_bang_bang_without_dead_zone_swings_too_and_pid_less() -> None:
     assert deviation(controlled(Pid()))[0] < 0.6 * rmse
 
 
-def test_sensors_are_as_noisy_as_their_parameters_say() -> None:
+def test_the_noise_of_sensors_equals_their_parameters() -> None:
     simulator = Simulator(SimulationParameters(), seed=2)
     readings = [rest(simulator) for _ in range(2000)]
     depths = [depth(reading) for reading in readings]

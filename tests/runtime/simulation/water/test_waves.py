@@ -111,7 +111,7 @@ def test_pressure_under_a_crest_is_that_of_the_water_above_and_in_the_air_none()
     assert world.pressure(1.0, (0.0, 0.0, 0.05)) == 101325
 
 
-def test_waves_run_where_they_are_said_to() -> None:
+def test_waves_travel_in_the_given_direction() -> None:
     world = waving(Waves(0.1, 2.0, pi / 2))
     number = DEEP_NUMBER
     beside = world.flow(0.0, (1.0, 0.0, 0.5))
@@ -164,7 +164,7 @@ def test_neutral_hull_goes_round_with_the_water() -> None:
     assert drift == pytest.approx(stokes, rel=0.1)
 
 
-def test_waves_are_not_felt_at_a_depth_of_one_length() -> None:
+def test_waves_vanish_at_a_depth_of_one_wavelength() -> None:
     length = 2 * pi / DEEP_NUMBER
     places = floating_in(pushed(NEUTRAL, depth=length), DEEP, 6.0)
     assert max(abs(part) for north, _, down in places for part in (north, down - length)) < 0.1 * 0.005

@@ -66,6 +66,6 @@ def test_waves_take_speed_only_where_the_hull_breaks_the_surface() -> None:
 @pytest.mark.parametrize(
     "wrong", [{"mass": 0.0}, {"inertia": (0.0, 1.0, 1.0)}, {"added_mass": (-1.0,) * 6}, {"floor": 0.05}]
 )
-def test_senseless_parameters_are_refused(wrong: dict[str, float]) -> None:
+def test_invalid_parameters_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"must be above 0|leaves no room"):
         SimulationParameters(**wrong)  # type: ignore[arg-type]

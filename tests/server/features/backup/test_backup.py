@@ -45,7 +45,7 @@ def names(database: Path) -> list[str]:
         return [session.name for session in Listing(reader).list()]
 
 
-def test_a_backup_is_whole_private_and_has_a_checksum(
+def test_a_backup_is_complete_private_and_has_a_checksum(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fill(settings, "one", "two")
@@ -61,7 +61,7 @@ def test_a_backup_is_whole_private_and_has_a_checksum(
     assert "exists already" in capsys.readouterr().err
 
 
-def test_a_backup_is_of_one_moment_while_it_is_written(settings: Settings, tmp_path: Path) -> None:
+def test_a_backup_of_a_database_in_use_is_consistent(settings: Settings, tmp_path: Path) -> None:
     prepare(settings.data)
     with closing(Store(settings.data.database)) as store:
         record(store, settings, [depth_block(0, 100)], name="0")
@@ -91,7 +91,7 @@ def test_a_backup_is_of_one_moment_while_it_is_written(settings: Settings, tmp_p
             writing.join()
 
 
-def test_what_is_restored_is_what_was_backed_up_and_the_other_is_put_aside(
+def test_a_restore_brings_back_the_backup_and_sets_the_present_database_aside(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fill(settings, "one")
@@ -107,7 +107,7 @@ def test_what_is_restored_is_what_was_backed_up_and_the_other_is_put_aside(
     assert names(settings.data.database) == ["three", "one"]
 
 
-def test_a_damaged_database_is_replaced_with_all_that_lay_beside_it(
+def test_a_restore_replaces_a_damaged_database_and_its_journal_files(
     settings: Settings, tmp_path: Path
 ) -> None:
     fill(settings, "one")
@@ -150,7 +150,7 @@ def test_a_backup_of_an_older_version_is_restored_and_then_upgraded(
         ("damaged", "damaged|malformed"),
     ],
 )
-def test_what_cannot_be_restored_changes_nothing(
+def test_a_failed_restore_changes_nothing(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: str, words: str
 ) -> None:
     fill(settings, "one")
@@ -196,7 +196,7 @@ SPOILS: dict[str, Callable[[Path], None]] = {
 }
 
 
-def test_nothing_is_restored_beside_a_server(
+def test_a_restore_beside_a_running_server_is_refused(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fill(settings, "one")
@@ -208,7 +208,7 @@ def test_nothing_is_restored_beside_a_server(
     assert "Another server works on" in capsys.readouterr().err
 
 
-def test_the_newest_backups_are_kept(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_the_newest_backups_stay(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
     fill(settings, "one")
     moments = iter(f"2026-01-0{day}_00-00-00" for day in range(1, 9))
     monkeypatch.setattr(time, "strftime", lambda *_: next(moments))

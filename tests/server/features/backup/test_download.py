@@ -22,7 +22,7 @@ def names(database: Path) -> list[str]:
         return [name for (name,) in connection.execute("SELECT name FROM session ORDER BY id")]
 
 
-def test_what_is_downloaded_is_whole_and_can_be_put_back(
+def test_a_downloaded_backup_is_complete_and_can_be_restored(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     copy = tmp_path / "copy.db"
@@ -46,7 +46,7 @@ def test_what_is_downloaded_is_whole_and_can_be_put_back(
     capsys.readouterr()
 
 
-def test_there_is_one_at_a_time_and_a_broken_off_one_makes_room(
+def test_one_download_at_a_time_and_an_aborted_one_frees_its_place(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(download, "PIECE_BYTES", 16)
@@ -63,7 +63,9 @@ def test_there_is_one_at_a_time_and_a_broken_off_one_makes_room(
     play(settings, scenario)
 
 
-def test_who_takes_nothing_is_cut_off(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_client_that_does_not_read_is_disconnected(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(serving, "USER_TIMEOUT_MS", 500)
 
     async def scenario(served: Served) -> None:
@@ -80,7 +82,9 @@ def test_who_takes_nothing_is_cut_off(settings: Settings, monkeypatch: pytest.Mo
     play(settings, scenario)
 
 
-def test_a_full_disk_is_told_and_nothing_is_left(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_reported_and_no_file_is_left_behind(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
     async def scenario(served: Served) -> None:
         with monkeypatch.context() as full:
             full.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1_000_000, total=10**9))
@@ -100,7 +104,7 @@ def fail(*_: object, **__: object) -> None:
     raise sqlite3.OperationalError("disk I/O error")
 
 
-def test_what_a_killed_server_has_left_goes_with_the_next_start(settings: Settings) -> None:
+def test_files_left_by_a_killed_server_are_deleted_at_the_next_start(settings: Settings) -> None:
     settings.data.backups.mkdir()
     left = settings.data.backups / "download.db.part"
     left.write_bytes(b"half")

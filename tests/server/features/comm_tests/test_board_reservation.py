@@ -84,7 +84,7 @@ async def reserved_reason(served: Served, name: str = "tested") -> AsyncIterator
     await disarming
 
 
-def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
+def test_the_board_is_reserved_and_released(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         await until(robot.started.exists, "the runtime")
         async with reserved_reason(served, "grid") as arguments:
@@ -116,7 +116,7 @@ def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
     robot.play(scenario)
 
 
-def test_it_is_not_lent_while_a_session_records(robot: Robot) -> None:
+def test_no_reservation_while_a_session_records(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
         with pytest.raises(RefusedError, match="“dive” is being recorded"):
@@ -128,7 +128,7 @@ def test_it_is_not_lent_while_a_session_records(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("state", [{"armed": True}, {"armed": False, "time": 0.0}, None])
-def test_it_is_not_lent_before_the_robot_says_that_it_is_disarmed(
+def test_no_reservation_before_the_robot_reports_that_it_is_disarmed(
     robot: Robot, monkeypatch: pytest.MonkeyPatch, state: dict[str, Any] | None
 ) -> None:
     monkeypatch.setattr(handover_module, "DISARM_SECONDS", 0.3)
@@ -147,7 +147,7 @@ def test_it_is_not_lent_before_the_robot_says_that_it_is_disarmed(
     robot.play(scenario)
 
 
-def test_it_is_not_lent_where_nobody_answers_the_stop(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_reservation_without_an_answer_to_stop(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", 0.3)
 
     async def scenario(served: Served) -> None:
@@ -161,7 +161,7 @@ def test_it_is_not_lent_where_nobody_answers_the_stop(robot: Robot, monkeypatch:
     robot.play(scenario)
 
 
-def test_it_is_not_lent_where_the_disk_takes_no_note_of_it(robot: Robot) -> None:
+def test_no_reservation_without_its_note_on_the_disk(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         robot.marker.mkdir()
         with pytest.raises(RefusedError, match="firmware-away cannot be written"):
@@ -173,7 +173,7 @@ def test_it_is_not_lent_where_the_disk_takes_no_note_of_it(robot: Robot) -> None
     robot.play(scenario)
 
 
-def test_a_firmware_that_does_not_come_back_is_told_and_the_next_test_tries_again(robot: Robot) -> None:
+def test_a_failed_firmware_restore_is_reported_and_the_next_test_retries_it(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         robot.upload_does("echo avrdude: not in sync; exit 1")
         async with reserved_reason(served):
@@ -195,7 +195,7 @@ def test_a_firmware_that_does_not_come_back_is_told_and_the_next_test_tries_agai
     robot.play(scenario)
 
 
-def test_an_interrupted_test_s_firmware_is_brought_back_before_the_runtime_starts(robot: Robot) -> None:
+def test_after_an_interrupted_test_the_firmware_is_restored_before_the_runtime_starts(robot: Robot) -> None:
     robot.marker.touch()
 
     async def scenario(served: Served) -> None:
@@ -207,7 +207,7 @@ def test_an_interrupted_test_s_firmware_is_brought_back_before_the_runtime_start
     robot.play(scenario)
 
 
-def test_without_a_port_the_runtime_starts_all_the_same_and_the_note_stays(
+def test_without_a_port_the_runtime_starts_and_the_note_stays(
     robot: Robot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(handover_module, "PORT_SECONDS", 0.1)

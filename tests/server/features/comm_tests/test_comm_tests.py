@@ -96,7 +96,7 @@ def test_run_show_compare_and_export(
     assert [cell["pi_delay"] for cell in exported["cells"]] == [0.0, 0.5]
 
 
-def test_what_cannot_be_done_is_said(
+def test_an_impossible_request_is_refused_with_the_reason(
     options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     document = write(tmp_path, ENTRY | {"delay": [-1], "speed": 3})
@@ -114,7 +114,7 @@ def test_what_cannot_be_done_is_said(
     assert len(capsys.readouterr().out.splitlines()) == 1
 
 
-def test_beside_a_running_server_the_page_is_the_place(
+def test_beside_a_running_server_the_command_refers_to_the_page(
     settings: Settings, options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     document = write(tmp_path, ENTRY)
@@ -126,7 +126,7 @@ def test_beside_a_running_server_the_page_is_the_place(
     assert "runs only while the server does" in capsys.readouterr().err
 
 
-def test_a_damaged_database_is_told_of(
+def test_a_damaged_database_is_reported(
     settings: Settings, options: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     settings.data.database.write_bytes(b"nonsense" * 1000)
@@ -134,7 +134,9 @@ def test_a_damaged_database_is_told_of(
     assert "cannot be used: file is not a database" in capsys.readouterr().err
 
 
-def test_an_interrupted_run_keeps_its_cells(settings: Settings, options: list[str], tmp_path: Path) -> None:
+def test_the_cells_of_an_interrupted_run_stay_stored(
+    settings: Settings, options: list[str], tmp_path: Path
+) -> None:
     delays = [number / 100 for number in range(100)]
     document = write(tmp_path, ENTRY | {"delay": delays, "arduinodelay": [0]})
     command = [sys.executable, "-m", "server.cli", "commtest", "run", document, *options]
@@ -156,7 +158,7 @@ def test_an_interrupted_run_keeps_its_cells(settings: Settings, options: list[st
     assert [cell.number for cell in cells] == list(range(len(cells)))
 
 
-def test_a_run_that_was_killed_is_not_running(store: Store) -> None:
+def test_a_killed_run_is_not_listed_as_running(store: Store) -> None:
     runs = CommTestStore(store)
 
     async def scenario() -> tuple[int, int]:
@@ -173,7 +175,7 @@ def test_a_run_that_was_killed_is_not_running(store: Store) -> None:
     assert oldest.problem
 
 
-def test_a_lost_result_is_kept_as_such(store: Store) -> None:
+def test_a_lost_result_is_stored_as_lost(store: Store) -> None:
     runs = CommTestStore(store)
 
     async def scenario() -> int:
@@ -192,7 +194,7 @@ def test_a_lost_result_is_kept_as_such(store: Store) -> None:
     assert whole.results[0].causes == ["lost result", "line"]
 
 
-def test_what_is_no_cell_is_not_stored(store: Store) -> None:
+def test_an_invalid_cell_is_not_stored(store: Store) -> None:
     runs = CommTestStore(store)
 
     async def scenario() -> None:
@@ -204,7 +206,7 @@ def test_what_is_no_cell_is_not_stored(store: Store) -> None:
     assert runs.cells(1) == []
 
 
-def test_runs_of_the_version_before_are_kept(settings: Settings) -> None:
+def test_runs_of_the_previous_version_are_still_there(settings: Settings) -> None:
     upgrade_to(settings, "0002")
     with closing(sqlite3.connect(settings.data.database)) as database:
         columns = "name, document, framing, direction, cells, firmware, tools, host, started, state, problem"
@@ -217,7 +219,7 @@ def test_runs_of_the_version_before_are_kept(settings: Settings) -> None:
     assert (run.name, run.place, run.sample) == ("old", "emulated", "")
 
 
-def test_samples_come_once_and_a_broken_one_costs_only_itself(
+def test_samples_are_imported_once_and_a_damaged_one_is_skipped(
     store: Store, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     runs = CommTestStore(store)
@@ -248,7 +250,7 @@ def test_samples_come_once_and_a_broken_one_costs_only_itself(
         assert f"{name}.json cannot be read" in caplog.text
 
 
-def test_what_ships_can_be_read_and_run(store: Store) -> None:
+def test_the_shipped_documents_are_valid(store: Store) -> None:
     first, *others = shipped_documents()
     assert (first.name, first.text) == ("figure10", THESIS.read_text(encoding="utf-8"))
     assert {document.name for document in others} >= {"plain", "robot", "both-ways", "noisy-line", "quick"}
@@ -263,7 +265,7 @@ def test_what_ships_can_be_read_and_run(store: Store) -> None:
     assert all(run.cells == run.cells_done for run in runs.summaries())
 
 
-def test_the_thesis_s_tables_are_whole() -> None:
+def test_the_tables_of_the_thesis_are_complete() -> None:
     table5, table6 = read_table("table5"), read_table("table6")
     assert len(table5) == 15
     assert len(table6) == 75

@@ -71,7 +71,7 @@ def is_back(stack: Stack) -> bool:
 
 
 @pytest.mark.timeout(400)
-def test_a_server_killed_in_the_middle_brings_the_firmware_back_at_its_next_start(data: Path) -> None:
+def test_after_a_kill_during_a_test_the_next_server_restores_the_firmware(data: Path) -> None:
     away = data / "firmware-away"
     with Stack(data) as stack:
         number = run(stack, LONG)

@@ -120,7 +120,7 @@ def test_a_document_is_run_test_by_test_and_every_page_sees_it(settings: Setting
     asyncio.run(scenario())
 
 
-def test_cancelled_in_the_middle_of_a_cell_it_keeps_the_others(settings: Settings) -> None:
+def test_a_run_cancelled_within_a_cell_keeps_the_finished_cells(settings: Settings) -> None:
     async def scenario() -> None:
         async with serve(settings) as served, watching(served) as socket:
             assert (await served.api.post("/comm-tests/cancel")).status_code == 204
@@ -143,7 +143,7 @@ def test_cancelled_in_the_middle_of_a_cell_it_keeps_the_others(settings: Setting
     asyncio.run(scenario())
 
 
-def test_a_lab_that_is_killed_costs_the_run_and_nothing_else(settings: Settings) -> None:
+def test_a_killed_lab_process_fails_its_run_only(settings: Settings) -> None:
     async def scenario() -> None:
         async with serve(settings) as served, watching(served) as socket:
             number = await start(served, ENDLESS)
@@ -168,7 +168,7 @@ def test_a_lab_that_is_killed_costs_the_run_and_nothing_else(settings: Settings)
     asyncio.run(scenario())
 
 
-def test_the_server_s_end_cancels_what_runs(settings: Settings) -> None:
+def test_the_end_of_the_server_cancels_the_run(settings: Settings) -> None:
     async def scenario() -> None:
         async with serve(settings) as served, watching(served) as socket:
             number = await start(served, ENDLESS)
@@ -189,7 +189,7 @@ def test_the_server_s_end_cancels_what_runs(settings: Settings) -> None:
         ("head -c 300000 /dev/zero; exit 0", "It broke off"),
     ],
 )
-def test_what_a_broken_lab_says_is_told_and_bounded(
+def test_the_output_of_a_broken_lab_is_reported_up_to_a_limit(
     settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str, words: str
 ) -> None:
     started = '{"event": "started", "test": 0, "firmware": "f", "tools": {}, "host": "h"}'
@@ -210,7 +210,9 @@ def test_what_a_broken_lab_says_is_told_and_bounded(
     asyncio.run(scenario())
 
 
-def test_a_lab_that_cannot_begin_says_why(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lab_that_cannot_start_reports_the_reason(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(sys, "executable", "/bin/false")
 
     async def scenario() -> None:
@@ -269,7 +271,7 @@ def test_a_document_is_checked_field_by_field(settings: Settings) -> None:
     asyncio.run(scenario())
 
 
-def test_what_is_no_request_is_refused(settings: Settings) -> None:
+def test_an_invalid_request_is_refused(settings: Settings) -> None:
     async def scenario() -> None:
         async with serve(settings) as served:
             api = served.api

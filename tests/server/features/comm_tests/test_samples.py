@@ -27,7 +27,7 @@ def rates(name: str) -> dict[Place, float]:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_a_sample_is_a_whole_run_of_the_grid(name: str) -> None:
+def test_a_sample_is_a_complete_run_of_the_grid(name: str) -> None:
     run = read(name)
     framing, direction, _ = SAMPLES[name]
     (test,) = read_document(json.dumps([run["document"]]))
@@ -49,7 +49,7 @@ def test_over_the_robot_s_link_every_number_arrives_in_every_cell(name: str) -> 
     assert {cell["out_of_sequence"] for cell in read(name)["cells"]} == {0}
 
 
-def test_the_documents_table_is_that_of_the_samples() -> None:
+def test_the_table_in_the_docs_equals_the_samples() -> None:
     thesis, plain = rates("grid-thesis"), rates("grid-plain")
     printed: dict[Place, tuple[float, float]] = {}
     for baud, arduino_delay, entries in TABLE_6.findall(DOCUMENT.read_text(encoding="utf-8")):

@@ -15,7 +15,9 @@ from tests.board.rig import ROOT, build
 
 @pytest.mark.stack  # Its uploads fail where others starve them of the processor.
 @pytest.mark.timeout(1200)
-def test_the_whole_example_gives_what_ships(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_example_of_the_thesis_gives_the_shipped_results(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
     build(ROOT / "firmware/emulator")
     build(ROOT / "firmware/bootloader")
     options = ["--data", str(settings.data.path), "--config", str(settings.config)]

@@ -69,7 +69,7 @@ def test_figures_of_a_known_dive(store: Store, session: int) -> None:
     assert (mark.low, mark.high) == (pytest.approx(0.05, abs=1e-3), pytest.approx(0.45, abs=1e-3))
 
 
-def test_the_step_that_is_aligned_is_the_one_that_is_measured(store: Store, session: int) -> None:
+def test_the_aligned_step_is_the_measured_one(store: Store, session: int) -> None:
     (first,) = compare(store, session, align={"by": "armed"}).sessions
     (second,) = compare(store, session, align={"by": "set_point"}).sessions
     assert first.figures["rise_time"].words.startswith("Step from 0.00 m to 0.50 m")
@@ -77,7 +77,7 @@ def test_the_step_that_is_aligned_is_the_one_that_is_measured(store: Store, sess
     assert second.figures["rise_time"].value == pytest.approx(RISE, abs=0.01)
 
 
-def test_a_chosen_range_is_all_that_counts(store: Store, session: int) -> None:
+def test_figures_come_from_the_chosen_range_only(store: Store, session: int) -> None:
     (one,) = compare(store, session, align={"by": "set_point"}, range={"start": -2.0, "end": 8.0}).sessions
     assert one.range == [pytest.approx((STEPPED - STARTED_STEADY - 2, STEPPED - STARTED_STEADY + 8))]
     assert one.figures["rise_time"].words.startswith("Step from 0.50 m to 1.00 m")
@@ -98,7 +98,7 @@ def test_losses_and_gaps_are_counted(store: Store, settings: Settings) -> None:
     assert one.figures["gaps"].words == "Missing samples: 30 of depth."
 
 
-def test_moments_are_where_they_are(store: Store, session: int) -> None:
+def test_sessions_are_aligned_at_the_chosen_moment(store: Store, session: int) -> None:
     mark(store, session, 120.25, "Here it turned")
     moments = [
         ({"by": "start"}, 0.0),
@@ -124,7 +124,9 @@ def test_a_recording_that_begins_armed(store: Store, settings: Settings) -> None
         assert (found.figures["rise_time"].value is not None) == measured
 
 
-def test_a_session_without_the_moment_says_so(store: Store, settings: Settings, session: int) -> None:
+def test_a_session_without_the_moment_is_listed_with_the_reason(
+    store: Store, settings: Settings, session: int
+) -> None:
     never = record(store, settings, dive(arms=False), name="never")
     problems = {
         "armed": "The robot was never armed in this session.",
@@ -145,7 +147,7 @@ def test_a_session_without_the_moment_says_so(store: Store, settings: Settings, 
     )
 
 
-def test_what_was_different(store: Store, settings: Settings, session: int) -> None:
+def test_differences_between_sessions_are_listed(store: Store, settings: Settings, session: int) -> None:
     settings.config.write_text('[robot]\nname = "tested"\n[control]\nrate = 20.0\n', encoding="utf-8")
     other = record(store, settings, dive("pid", {"kp": 6.0}), name="other")
     differences = {(one.group, one.name): one.values for one in compare(store, session, other).differences}
@@ -156,7 +158,7 @@ def test_what_was_different(store: Store, settings: Settings, session: int) -> N
     assert compare(store, session, session).sessions[0].id == session
 
 
-def test_lines_are_of_the_signals_that_a_session_has(store: Store, settings: Settings, session: int) -> None:
+def test_lines_exist_for_the_recorded_signals_only(store: Store, settings: Settings, session: int) -> None:
     bare = record(store, settings, [debug_block(0, "a")])
     both = compare(store, session, bare, signals=[*DEPTH, "state.set_point", "truth.position_2"], points=100)
     assert [signal.name for signal in both.signals] == [*DEPTH, "state.set_point"]

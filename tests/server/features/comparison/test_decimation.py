@@ -5,7 +5,7 @@ from server.features.comparison.decimation import decimate
 from server.features.metrics.series import Series
 
 
-def test_few_samples_are_passed_on_as_they_are() -> None:
+def test_few_samples_pass_unchanged() -> None:
     series = Series(np.array([0.0, 0.5, 1.0]), np.array([3.0, 1.0, 2.0]))
     drawn = decimate(series, 0.0, 1.0, 10)
     assert drawn.time.tolist() == [0.0, 0.5, 1.0]
@@ -25,7 +25,7 @@ def test_no_spike_is_lost(at: int) -> None:
     assert drawn.low.min() == values.min()
 
 
-def test_a_part_comes_finer_and_with_its_neighbours() -> None:
+def test_a_part_has_finer_samples_and_its_neighbours() -> None:
     times = np.arange(180_000) / 50
     drawn = decimate(Series(times, times.copy()), 100.0, 101.0, 500)
     assert drawn.time.tolist() == [one / 50 for one in range(4999, 5052)]
@@ -46,12 +46,12 @@ def test_slow_signals_are_not_broken() -> None:
     assert not np.isnan(decimate(Series(times, times), 0.0, 600.0, 5000).low).any()
 
 
-def test_nothing_gives_nothing() -> None:
+def test_no_samples_give_no_points() -> None:
     empty = np.empty(0)
     assert decimate(Series(empty, empty), 0.0, 10.0, 100).time.size == 0
 
 
-def test_numbers_that_are_none_do_not_hide_others() -> None:
+def test_nan_does_not_hide_other_samples() -> None:
     times = np.arange(1000) / 50
     values = np.ones(1000)
     values[::3] = np.nan

@@ -20,20 +20,20 @@ def differing(*histories: ControlHistory) -> dict[str, list[str]]:
     return {one.name: one.values for one in found if one.group == "Parameters"}
 
 
-def test_only_what_differs_is_told() -> None:
+def test_only_differing_parameters_are_listed() -> None:
     assert differing(history((0, 3)), history((0, 4))) == {"depth.pid.kp": ["3", "4"]}
 
 
-def test_what_changed_while_armed_is_told_in_order_and_what_did_before_and_after_is_not() -> None:
+def test_changes_while_armed_are_listed_in_order_and_others_are_not() -> None:
     one = history((0, 1), (5, 3), (12, 4), (25, 9))
     assert differing(one, history((0, 3))) == {"depth.pid.kp": [CHANGED + "3, 4", "3"]}
 
 
-def test_of_a_session_that_was_never_armed_what_it_began_with_counts() -> None:
+def test_a_session_that_was_never_armed_counts_with_its_initial_values() -> None:
     assert differing(history((0, 3), (5, 4), armed=()), history((0, 4), armed=())) == {
         "depth.pid.kp": ["3", "4"]
     }
 
 
-def test_older_recordings_have_none() -> None:
+def test_older_recordings_have_no_parameters() -> None:
     assert differing(history(), history((0, 3)))["loud"] == ["", "yes"]

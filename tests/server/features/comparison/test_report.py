@@ -10,7 +10,7 @@ from server.platform.store import Store
 from tests.server.features.comparison.dives import dive, record
 
 
-def test_it_is_one_file_with_all_that_it_needs(store: Store, settings: Settings, tmp_path: Path) -> None:
+def test_the_report_is_one_self_contained_file(store: Store, settings: Settings, tmp_path: Path) -> None:
     sessions = [
         record(store, settings, dive(gains={"kp": 3.0}), name="calm <b>"),
         record(store, settings, dive(gains={"kp": 6.0}), name="hasty"),
@@ -30,7 +30,7 @@ def test_it_is_one_file_with_all_that_it_needs(store: Store, settings: Settings,
 
 
 @pytest.mark.usefixtures("store")
-def test_what_cannot_be_reported_is_told_in_a_line(
+def test_an_impossible_report_is_refused_in_one_line(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "report.html"

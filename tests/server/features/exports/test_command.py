@@ -31,7 +31,7 @@ def run(settings: Settings, *arguments: str, data: Path | None = None) -> int:
     return main([*arguments, *where])
 
 
-def test_a_session_goes_through_a_shell_and_back(
+def test_a_session_is_exported_and_imported_by_shell_commands(
     settings: Settings, session: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "dive.zip"
@@ -48,7 +48,7 @@ def test_a_session_goes_through_a_shell_and_back(
     assert len(lines.read_text().splitlines()) == 6
 
 
-def test_beside_a_running_server_the_server_imports(
+def test_the_import_command_uses_a_running_server(
     settings: Settings, session: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "dive.zip"
@@ -84,7 +84,7 @@ def test_beside_a_running_server_the_server_imports(
         (["import", "robot.toml"], "It is no zip file"),
     ],
 )
-def test_what_cannot_be_done_is_told(
+def test_impossible_requests_are_refused_with_the_reason(
     settings: Settings, session: int, arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert session == 1

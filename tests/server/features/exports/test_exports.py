@@ -151,7 +151,7 @@ def test_parquet_without_its_package_says_what_to_install(monkeypatch: pytest.Mo
         check(ExportOptions(format="parquet"))
 
 
-def test_mcap_holds_every_sample_and_what_panels_look_for(store: Store, session: int) -> None:
+def test_mcap_holds_every_sample_and_the_topics_that_foxglove_panels_use(store: Store, session: int) -> None:
     reader = make_reader(write(store, session, format="mcap"), validate_crcs=True)
     summary = reader.get_summary()
     assert summary is not None
@@ -259,7 +259,7 @@ def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings)
     assert "control: 0.5 s" in readme
 
 
-def test_a_range_and_topics_are_kept_to(store: Store, session: int) -> None:
+def test_an_export_is_limited_to_its_range_and_topics(store: Store, session: int) -> None:
     chosen = {"topics": ["depth", "debug"], "start": 0.7, "end": 0.9}
     lines = write(store, session, format="jsonl", **chosen).getvalue().decode().splitlines()
     assert {json.loads(line)["topic"] for line in lines} == {"depth"}
@@ -283,7 +283,9 @@ def test_a_range_and_topics_are_kept_to(store: Store, session: int) -> None:
         ({"format": "archive", "start": 1}, "holds the whole session"),
     ],
 )
-def test_what_cannot_be_made_is_told(store: Store, session: int, wanted: dict[str, Any], words: str) -> None:
+def test_an_impossible_export_is_refused_with_the_reason(
+    store: Store, session: int, wanted: dict[str, Any], words: str
+) -> None:
     with pytest.raises(ExportRequestError, match=words):
         write(store, session, **wanted)
 
@@ -311,7 +313,7 @@ def test_the_report_needs_no_network_and_names_its_figures(store: Store, session
     assert re.search(r"<(script|link)[^>]+(src|href)=", text) is None
 
 
-def test_pictures_go_along(store: Store, settings: Settings, tmp_path: Path) -> None:
+def test_pictures_are_exported(store: Store, settings: Settings, tmp_path: Path) -> None:
     topic = BY_NAME["thumbnail"]
     blocks = [Block.of(topic, 1, place, row(100 + place, b"jpeg %d" % place)) for place in range(3)]
     number = record(store, settings, [depth_block(0, 1)], blocks)

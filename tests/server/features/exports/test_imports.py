@@ -76,7 +76,7 @@ def contents(store: Reader, number: int) -> dict[str, Any]:
     return told
 
 
-def test_a_session_goes_to_another_machine_and_stays_the_same(
+def test_a_session_imported_elsewhere_is_unchanged(
     store: Store, settings: Settings, session: int, archive: Path, tmp_path: Path
 ) -> None:
     folder = DataFolder(tmp_path / "other")
@@ -196,14 +196,14 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_a_bad_archive_is_refused_in_words(archive: Path, name: str) -> None:
+def test_a_bad_archive_is_refused_with_the_reason(archive: Path, name: str) -> None:
     edit, summed, words = BAD[name]
     change(archive, edit, summed=summed)
     with pytest.raises(ArchiveError, match=words):
         examine(archive)
 
 
-def test_what_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> None:
+def test_a_file_that_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> None:
     whole = archive.read_bytes()
     for data in (b"", b"time,depth\n", whole[:1000], whole[:-1], whole[:200] + b"\0" * 50 + whole[250:]):
         other = tmp_path / "other"
@@ -226,7 +226,7 @@ def test_a_session_that_records_is_not_archived(store: Store, session: int) -> N
         write_archive(store, ExportSelection(store, row, ExportOptions(format="archive")), io.BytesIO())
 
 
-def test_an_import_that_fails_on_the_way_leaves_nothing_and_is_seen_by_nobody(
+def test_a_failed_import_leaves_nothing_and_is_never_visible(
     store: Store, settings: Settings, session: int, archive: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     change(archive, tell(identifier="f" * 32))
@@ -254,7 +254,7 @@ def test_an_import_that_fails_on_the_way_leaves_nothing_and_is_seen_by_nobody(
     assert states == ["complete", REMOVING]
 
 
-def test_what_is_larger_than_the_room_is_refused_before_it_is_read(
+def test_an_archive_larger_than_the_free_space_is_refused_before_reading(
     store: Store, settings: Settings, session: int, archive: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     change(archive, tell(identifier="f" * 32))
@@ -270,7 +270,7 @@ def test_what_is_larger_than_the_room_is_refused_before_it_is_read(
     assert len(Catalogue(store).list()) == 2
 
 
-def test_what_a_killed_server_has_half_imported_is_removed(
+def test_a_half_imported_session_of_a_killed_server_is_removed(
     store: Store, settings: Settings, session: int
 ) -> None:
     half = text(f"UPDATE session SET state = '{IMPORTING}'")

@@ -43,7 +43,9 @@ async def ended(served: Served, job: dict[str, Any]) -> dict[str, Any]:
     return answer
 
 
-def test_a_file_is_made_summed_downloaded_in_pieces_and_deleted(settings: Settings, session: int) -> None:
+def test_an_export_is_written_with_a_checksum_downloaded_in_ranges_and_deleted(
+    settings: Settings, session: int
+) -> None:
     async def scenario(served: Served) -> None:
         api = served.api
         job = await start(api, session)
@@ -103,7 +105,7 @@ def finished(settings: Settings, name: str, made: datetime) -> Job:
     return job
 
 
-def test_files_outlive_the_server_and_what_it_left_is_cleared_away(settings: Settings) -> None:
+def test_exports_outlive_the_server_and_unfinished_files_are_deleted(settings: Settings) -> None:
     job = finished(settings, "e" * 16, datetime.now(UTC))
     folder = settings.data.exports
     (folder / ("a" * 16 + ".part")).write_bytes(b"half")
@@ -120,7 +122,7 @@ def test_files_outlive_the_server_and_what_it_left_is_cleared_away(settings: Set
     play(settings, scenario)
 
 
-def test_old_files_go(settings: Settings) -> None:
+def test_old_exports_are_deleted(settings: Settings) -> None:
     limit = datetime.now(UTC) - timedelta(days=RETENTION_DAYS)
     finished(settings, "a" * 16, limit - timedelta(minutes=1))
     young = finished(settings, "b" * 16, limit + timedelta(minutes=10))
@@ -154,7 +156,7 @@ def slow(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(child_module, "sys", System)
 
 
-def test_a_job_is_cancelled_and_the_next_one_comes(
+def test_the_next_job_starts_after_a_cancelled_one(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     slow(monkeypatch, tmp_path)
@@ -173,7 +175,7 @@ def test_a_job_is_cancelled_and_the_next_one_comes(
     play(settings, scenario)
 
 
-def test_a_process_that_is_killed_leaves_nothing(
+def test_a_killed_export_process_leaves_no_file(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     slow(monkeypatch, tmp_path)
@@ -203,7 +205,7 @@ runpy.run_module("server.features.exports", run_name="__main__")
 """
 
 
-def test_a_disk_that_fills_up_is_told_and_nothing_is_lost(
+def test_a_full_disk_is_reported_and_no_data_is_lost(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     script = tmp_path / "limited"
@@ -239,7 +241,7 @@ def test_a_disk_that_fills_up_is_told_and_nothing_is_lost(
         ({"session": 9, "format": "csv"}, 404, "no session 9"),
     ],
 )
-def test_what_cannot_be_made_is_refused(
+def test_an_impossible_export_is_refused(
     settings: Settings, session: int, body: dict[str, Any], status: int, words: str
 ) -> None:
     async def scenario(served: Served) -> None:
@@ -251,7 +253,7 @@ def test_what_cannot_be_made_is_refused(
     play(settings, scenario)
 
 
-def test_exports_that_do_not_exist(settings: Settings) -> None:
+def test_an_unknown_export_is_not_found(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         for path in ("/exports/" + "0" * 16, "/exports/" + "0" * 16 + "/file"):
             answer = await served.api.get(path)
@@ -262,7 +264,7 @@ def test_exports_that_do_not_exist(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_too_many_are_refused(settings: Settings, session: int) -> None:
+def test_too_many_exports_are_refused(settings: Settings, session: int) -> None:
     for number in range(JOBS_MAX):
         finished(settings, f"{number:016x}", datetime.now(UTC))
 

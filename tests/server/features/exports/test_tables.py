@@ -44,7 +44,7 @@ def table(archive: zipfile.ZipFile, name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(archive.read(f"{name}.csv").decode())))
 
 
-def test_numbers_are_the_very_ones_that_were_recorded(store: Store, settings: Settings) -> None:
+def test_exported_numbers_equal_the_recorded_ones(store: Store, settings: Settings) -> None:
     motor = Motor(
         time=2**32 - 1, wanted=(0.1, -0.2, 3.1, 0), angle=(1.234, 0, 0, -3.2), drive=(-63, 63, 0, 5)
     )
@@ -103,14 +103,14 @@ def test_documents_are_tables_too(store: Store, settings: Settings) -> None:
     assert json.loads(state["colours"]) == ["yellow"]
 
 
-def test_many_chunks_come_out_once_each_and_in_order(store: Store, settings: Settings) -> None:
+def test_each_chunk_is_exported_once_and_in_order(store: Store, settings: Settings) -> None:
     batches = [[depth_block(3 * number, 3)] for number in range(CHUNKS_AT_ONCE * 2 + 1)]
     archive = unpack(store, make(store, record(store, settings, *batches)))
     numbers = [int(one["time [µs]"]) for one in table(archive, "depth")]
     assert numbers == list(range(3 * len(batches)))
 
 
-def test_only_topics_that_were_heard_and_everything_about_the_session(
+def test_an_export_holds_the_recorded_topics_and_the_session_s_description(
     store: Store, settings: Settings
 ) -> None:
     session = record(store, settings, [depth_block(0, 1), depth_block(5, 1)])
@@ -125,7 +125,7 @@ def test_only_topics_that_were_heard_and_everything_about_the_session(
     assert datetime.fromisoformat(told["started"]).tzinfo == UTC
 
 
-def test_a_recording_is_read_as_it_was_defined_then(store: Store, settings: Settings) -> None:
+def test_a_recording_is_read_by_its_own_definitions(store: Store, settings: Settings) -> None:
     session = record(store, settings, [depth_block(0, 2)])
 
     def rename(connection: Connection) -> None:
@@ -135,7 +135,7 @@ def test_a_recording_is_read_as_it_was_defined_then(store: Store, settings: Sett
     assert "warmth [°C]" in table(unpack(store, make(store, session)), "depth")[0]
 
 
-def test_the_file_is_never_in_memory_as_a_whole(store: Store, settings: Settings) -> None:
+def test_the_file_is_streamed_and_never_whole_in_memory(store: Store, settings: Settings) -> None:
     batches = [[depth_block(1000 * number, 1000)] for number in range(CHUNKS_AT_ONCE * 4)]
     source = make(store, record(store, settings, *batches))
     pieces: list[int] = []
@@ -152,7 +152,7 @@ def test_the_file_name_is_safe(store: Store, settings: Settings) -> None:
     datetime.strptime(name[:19], "%Y-%m-%d_%H-%M-%S")
 
 
-def test_a_damaged_chunk_is_told(store: Store, settings: Settings) -> None:
+def test_a_damaged_chunk_is_reported(store: Store, settings: Settings) -> None:
     session = record(store, settings, [depth_block(0, 2)])
     asyncio.run(store.write(lambda connection: connection.execute(text("UPDATE chunk SET data = x'00'"))))
     with pytest.raises(RecordingError, match="chunk 0 of depth is damaged"):

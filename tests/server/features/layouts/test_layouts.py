@@ -35,7 +35,7 @@ def document(*panels: dict[str, Any]) -> LayoutDocument:
     return LayoutDocument.model_validate(layout(*panels))
 
 
-def test_a_layout_is_kept_and_found_again(settings: Settings) -> None:
+def test_a_layout_is_stored_and_listed(settings: Settings) -> None:
     async def scenario() -> None:
         async with serve(settings) as served:
             whole = layout(CAMERA, CHART)
@@ -66,7 +66,7 @@ def test_saving_under_the_same_name_replaces(store: Store) -> None:
     asyncio.run(scenario())
 
 
-def test_there_may_be_so_many(store: Store) -> None:
+def test_the_number_of_layouts_is_limited(store: Store) -> None:
     async def scenario() -> None:
         layouts = Layouts(store)
         rows = [{"name": f"n{one}", "document": "{}", "saved": 0.0} for one in range(LAYOUTS_MOST)]
@@ -101,13 +101,13 @@ def test_there_may_be_so_many(store: Store) -> None:
         ([], "valid dictionary"),
     ],
 )
-def test_what_is_no_layout_is_refused_in_words(given: object, why: str) -> None:
+def test_an_invalid_layout_is_refused_with_the_reason(given: object, why: str) -> None:
     with pytest.raises(ValidationError) as refused:
         LayoutDocument.model_validate(given)
     assert why in refused.value.errors()[0]["msg"]
 
 
-def test_another_version_changes_nothing(settings: Settings) -> None:
+def test_a_layout_of_another_version_is_refused_and_changes_nothing(settings: Settings) -> None:
     async def scenario() -> None:
         async with serve(settings) as served:
             wanted = {"name": "pool", "document": layout(CAMERA, version=2)}

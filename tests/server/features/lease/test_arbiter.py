@@ -15,7 +15,7 @@ from tests.server.features.lease.people import ANNA, BEN, VERA, Seen
 SCRIPT = Identity(5, "script", "operator", "program")
 
 
-def test_everybody_is_told_of_every_change() -> None:
+def test_every_client_is_notified_of_every_change() -> None:
     seen = Seen()
     arbiter = seen.arbiter
     with arbiter.page(ANNA) as anna, arbiter.page(BEN) as ben:
@@ -40,7 +40,7 @@ def test_everybody_is_told_of_every_change() -> None:
     ]
 
 
-def test_a_page_that_is_loaded_anew_has_control_again_with_nothing_in_the_record() -> None:
+def test_a_reloaded_page_has_control_again_without_an_entry() -> None:
     seen = Seen()
     arbiter = seen.arbiter
     with arbiter.page(ANNA) as anna:
@@ -58,7 +58,7 @@ def test_a_page_that_is_loaded_anew_has_control_again_with_nothing_in_the_record
 
 
 @pytest.mark.parametrize("other", [BEN, SCRIPT, Identity(ANNA.device, "Anna", "operator", "program")])
-def test_a_page_that_left_is_in_the_record_before_another_client_takes_control(other: Identity) -> None:
+def test_the_leaving_of_a_page_is_recorded_before_another_client_takes_control(other: Identity) -> None:
     seen = Seen()
     arbiter = seen.arbiter
     with arbiter.page(ANNA) as anna:
@@ -75,7 +75,7 @@ def test_a_page_that_left_is_in_the_record_before_another_client_takes_control(o
 
 
 @pytest.mark.parametrize("signed_out", [False, True])
-def test_a_page_that_comes_back_too_late_or_was_signed_out_has_left(signed_out: bool) -> None:
+def test_a_page_that_returns_too_late_or_was_signed_out_has_lost_control(signed_out: bool) -> None:
     seen = Seen()
     with seen.arbiter.page(ANNA) as anna:
         seen.arbiter.take(anna)
@@ -89,7 +89,7 @@ def test_a_page_that_comes_back_too_late_or_was_signed_out_has_left(signed_out: 
         assert seen.noted == [taken, left, taken]
 
 
-def test_held_control_is_not_taken_by_accident() -> None:
+def test_control_that_another_client_has_is_only_taken_over_explicitly() -> None:
     seen = Seen()
     arbiter = seen.arbiter
     with arbiter.page(ANNA) as anna, arbiter.page(BEN) as ben:
@@ -104,7 +104,7 @@ def test_held_control_is_not_taken_by_accident() -> None:
         assert arbiter.lease.holder == ben.number
 
 
-def test_a_server_that_was_started_again_begins_above_what_the_last_one_reached() -> None:
+def test_a_restarted_server_continues_above_the_last_epoch() -> None:
     seen = Seen()
     with seen.arbiter.page(ANNA) as anna:
         for _ in range(500):
@@ -126,7 +126,7 @@ def test_a_viewer_neither_takes_control_nor_takes_it_over() -> None:
         assert seen.arbiter.lease.holder == anna.number
 
 
-def test_it_says_who_has_control_and_what_to_do() -> None:
+def test_a_refusal_names_the_holder_and_the_remedy() -> None:
     seen = Seen()
     arbiter = seen.arbiter
     with arbiter.page(ANNA) as anna, arbiter.page(BEN) as ben:
@@ -150,7 +150,7 @@ def test_two_pages_of_one_browser_are_two_clients() -> None:
         assert seen.arbiter.clients.find(ANNA, None) is None
 
 
-def test_a_key_counts_only_together_with_the_identity_that_it_was_given_to() -> None:
+def test_a_key_is_valid_only_for_the_identity_that_received_it() -> None:
     seen = Seen()
     clients = seen.arbiter.clients
     seen.arbiter.open_program(SCRIPT)
@@ -162,7 +162,7 @@ def test_a_key_counts_only_together_with_the_identity_that_it_was_given_to() -> 
         assert clients.find(SCRIPT, "") is None
 
 
-def test_the_programs_of_one_token_are_one_client_while_they_are_heard() -> None:
+def test_programs_with_one_token_are_one_client_while_they_send_requests() -> None:
     seen = Seen()
     arbiter = seen.arbiter
     assert arbiter.clients.find(SCRIPT, None) is None
@@ -179,7 +179,7 @@ def test_the_programs_of_one_token_are_one_client_while_they_are_heard() -> None
     assert arbiter.open_program(SCRIPT).number > script.number
 
 
-def test_who_is_signed_out_or_made_a_viewer_has_no_client_and_no_control_any_more() -> None:
+def test_signing_out_or_becoming_a_viewer_ends_clients_and_control() -> None:
     seen = Seen()
     arbiter = seen.arbiter
     script = arbiter.open_program(SCRIPT)
@@ -198,7 +198,7 @@ def test_who_is_signed_out_or_made_a_viewer_has_no_client_and_no_control_any_mor
     assert arbiter.lease.holder is None
 
 
-def test_a_page_that_stays_away_is_in_the_record_on_time() -> None:
+def test_the_leaving_of_a_page_is_recorded_in_time() -> None:
     noted: list[str] = []
 
     async def run() -> None:
@@ -219,7 +219,7 @@ def test_a_page_that_stays_away_is_in_the_record_on_time() -> None:
     assert noted[-1] == "“Anna” left, and nobody has control now."
 
 
-def test_a_program_that_falls_silent_is_told_of_on_time() -> None:
+def test_the_silence_of_a_program_is_recorded_in_time() -> None:
     told: list[dict[str, Any]] = []
     noted: list[str] = []
 

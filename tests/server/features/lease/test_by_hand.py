@@ -85,7 +85,7 @@ def commands(blocks: bytes, since: float) -> list[tuple[float, Navigation]]:
     return [(time, command) for time, command in sent if time >= since]
 
 
-def test_a_driver_whose_line_is_cut_lets_the_fins_rest_and_then_the_robot_stops(stack: Stack) -> None:
+def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_stops(stack: Stack) -> None:
     folder = DataFolder(stack.data)
     fins = Fins(folder.board_socket)
     try:

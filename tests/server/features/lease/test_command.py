@@ -49,7 +49,7 @@ def test_a_command_does_not_take_control_over(settings: Settings) -> None:
     play(settings, with_address(scenario))
 
 
-def test_a_command_whose_control_is_taken_over_stays_without(settings: Settings) -> None:
+def test_a_command_whose_control_is_taken_over_does_not_take_it_back(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with open_page(served) as page:
 

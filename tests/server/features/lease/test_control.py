@@ -18,7 +18,7 @@ seed = 7
 """
 
 
-def test_what_happens_to_the_control_is_in_the_session(settings: Settings) -> None:
+def test_changes_of_control_are_recorded_in_the_session(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         session = (await served.api.post("/sessions", json={"name": "x", "note": ""})).json()["id"]
         async with open_page(served) as anna:
@@ -38,7 +38,9 @@ def test_what_happens_to_the_control_is_in_the_session(settings: Settings) -> No
     play(settings, scenario)
 
 
-def test_control_goes_from_page_to_page_and_everybody_and_the_runtime_are_told(settings: Settings) -> None:
+def test_control_passes_between_pages_and_all_clients_and_the_runtime_are_notified(
+    settings: Settings,
+) -> None:
     async def scenario(served: Served) -> None:
         await free(served)
         async with open_page(served) as anna, open_page(served) as ben:
@@ -61,7 +63,7 @@ def test_control_goes_from_page_to_page_and_everybody_and_the_runtime_are_told(s
     play(settings, scenario)
 
 
-def test_with_the_socket_goes_the_page_s_control(settings: Settings) -> None:
+def test_a_page_loses_control_with_its_socket(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await free(served)
         async with open_page(served) as ben:
@@ -79,7 +81,7 @@ def test_with_the_socket_goes_the_page_s_control(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Settings) -> None:
+def test_only_the_holder_may_command_and_everybody_may_stop(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         bare = {"X-Mucat-Client": ""}
         robot = [
@@ -114,7 +116,7 @@ def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Setti
     play(settings, scenario)
 
 
-def test_a_program_that_is_silent_loses_control(settings: Settings) -> None:
+def test_a_silent_program_loses_control(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with open_page(served) as page:
             arbiter = served.container.arbiter
@@ -130,7 +132,7 @@ def test_a_program_that_is_silent_loses_control(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_the_driver_s_sticks_reach_the_runtime_and_no_other_s(settings: Settings) -> None:
+def test_only_the_holder_s_driving_commands_reach_the_runtime(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await free(served)
         async with open_page(served) as anna, open_page(served) as ben:
@@ -154,7 +156,7 @@ def test_the_driver_s_sticks_reach_the_runtime_and_no_other_s(settings: Settings
     play(settings, scenario)
 
 
-def test_a_runtime_that_was_restarted_is_told_the_epoch_again(settings: Settings) -> None:
+def test_a_restarted_runtime_gets_the_epoch_again(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         epoch = served.container.arbiter.lease.epoch
         await until(lambda: served.runtime.epochs[-1:] == [epoch], "the runtime to be told")

@@ -7,7 +7,7 @@ from server.features.lease.driving import LATE_SECONDS
 from tests.server.features.lease.people import ANNA, BEN, Seen
 
 
-def test_the_driver_s_sticks_reach_the_robot() -> None:
+def test_driving_commands_reach_the_robot() -> None:
     seen = Seen()
     with seen.arbiter.page(ANNA) as anna:
         seen.arbiter.take(anna)
@@ -30,7 +30,7 @@ def test_the_driver_s_sticks_reach_the_robot() -> None:
         ({"taken": 1000.0 + LATE_SECONDS + 0.001}, "from_the_future"),
     ],
 )
-def test_what_is_not_the_driver_s_newest_is_dropped_and_counted(changes: Any, reason: str) -> None:
+def test_stale_or_foreign_driving_commands_are_dropped_and_counted(changes: Any, reason: str) -> None:
     seen = Seen()
     with seen.arbiter.page(ANNA) as anna:
         seen.arbiter.take(anna)
@@ -44,7 +44,7 @@ def test_what_is_not_the_driver_s_newest_is_dropped_and_counted(changes: Any, re
         assert len(seen.driven) == 2
 
 
-def test_only_who_has_control_drives_and_begins_with_any_number() -> None:
+def test_only_the_holder_drives_and_its_first_number_is_free() -> None:
     seen = Seen()
     with seen.arbiter.page(ANNA) as anna, seen.arbiter.page(BEN) as ben:
         seen.arbiter.drive(anna, seen.drive())
@@ -81,6 +81,6 @@ def test_only_who_has_control_drives_and_begins_with_any_number() -> None:
         {"taken": 10**400},
     ],
 )
-def test_what_is_no_driving_command_is_not_read_as_one(changes: Any) -> None:
+def test_invalid_bytes_are_no_driving_command(changes: Any) -> None:
     with pytest.raises(ValidationError):
         Seen().drive(**changes)

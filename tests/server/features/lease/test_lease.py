@@ -29,7 +29,7 @@ def test_held_control_is_taken_over_in_a_new_epoch() -> None:
     assert recorded.changes[1:] == [("taken over", BEN, ANNA)]
 
 
-def test_only_the_holder_frees_it() -> None:
+def test_only_the_holder_releases_control() -> None:
     recorded = Recorded()
     lease = recorded.lease
     lease.take(ANNA)

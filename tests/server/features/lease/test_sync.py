@@ -9,7 +9,7 @@ from server.stream.bridge import RuntimeSilentError
 from tests.server.waiting import until
 
 
-def test_the_runtime_is_told_each_epoch_and_each_run_until_it_has_answered(
+def test_each_epoch_is_sent_to_each_run_of_the_runtime_until_it_answers(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(sync_module, "TRY_AGAIN_SECONDS", 0.001)

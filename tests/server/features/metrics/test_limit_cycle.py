@@ -60,7 +60,7 @@ def test_noise_is_no_limit_cycle(seed: int) -> None:
     assert find_limit_cycle(Series(times, np.random.default_rng(seed).normal(0, 0.002, times.size))) is None
 
 
-def test_what_lies_still_or_drifts_is_no_limit_cycle() -> None:
+def test_rest_or_drift_is_no_limit_cycle() -> None:
     times = sampled(30.0)
     for values in (np.full(times.size, 0.3), 0.01 * times, np.exp(-times / 5)):
         assert find_limit_cycle(Series(times, values)) is None
@@ -72,7 +72,7 @@ def test_two_periods_are_too_few() -> None:
     assert find_limit_cycle(Series(times[:3], times[:3])) is None
 
 
-def test_a_square_wave_is_as_high_as_it_is() -> None:
+def test_the_amplitude_of_a_square_wave_is_exact() -> None:
     times = sampled(60.0)
     cycle = find_limit_cycle(Series(times, np.where(times % 2 < 1, 0.1, -0.1)))
     assert cycle is not None

@@ -67,7 +67,7 @@ def test_the_last_time_out_of_the_band_counts() -> None:
     assert response.settling_time < -np.log(0.05 * sqrt(1 - 0.04)) / (0.2 * WN)
 
 
-def test_a_step_upwards_in_the_water_is_the_same() -> None:
+def test_a_step_upwards_gives_the_same_figures() -> None:
     down = respond(0.4)
     up = Series(down.times, -down.values)
     one, other = measure_step(down, STEP, 23.0, TO), measure_step(up, STEP, 23.0, -TO)
@@ -78,7 +78,7 @@ def test_a_step_upwards_in_the_water_is_the_same() -> None:
     assert one.settling_time == pytest.approx(other.settling_time)
 
 
-def test_what_never_arrives_has_no_times() -> None:
+def test_a_response_that_never_arrives_has_no_times() -> None:
     slow = measure_step(respond(1.0), STEP, STEP + 1.0, TO)
     assert slow is not None
     assert slow.rise_time is None
@@ -86,7 +86,7 @@ def test_what_never_arrives_has_no_times() -> None:
     assert slow.overshoot == 0
 
 
-def test_what_goes_on_swinging_does_not_settle() -> None:
+def test_a_lasting_oscillation_does_not_settle() -> None:
     times = np.arange(0, 60, 0.02)
     swinging = Series(times, np.where(times < 1, times * 0.5, 0.5 + 0.1 * np.sin(2 * np.pi * times / 3)))
     for end in np.arange(57.0, 60.0, 0.1):
@@ -95,7 +95,7 @@ def test_what_goes_on_swinging_does_not_settle() -> None:
         assert response.settling_time is None
 
 
-def test_where_there_is_no_step_there_is_no_response() -> None:
+def test_without_a_step_there_is_no_response() -> None:
     times = np.arange(0, 10, 0.02)
     still = Series(times, np.full(times.size, 0.5))
     assert measure_step(still, 1.0, 9.0, 0.5) is None

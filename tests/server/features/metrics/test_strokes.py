@@ -17,7 +17,7 @@ def test_each_flap_is_a_stroke() -> None:
     assert count_strokes(flapping) == pytest.approx(130, abs=1)
 
 
-def test_noise_of_the_encoder_is_none() -> None:
+def test_encoder_noise_is_no_stroke() -> None:
     times = sampled(100.0)
     count = 2 * np.pi / 1024
     jitter = np.random.default_rng(1).integers(-1, 2, times.size) * count
@@ -39,12 +39,12 @@ def test_small_swings_within_a_large_one_do_not_count() -> None:
 
 
 @pytest.mark.parametrize("values", [[], [0.3], [0.3, 0.3], [0.0, 0.1]])
-def test_what_does_not_move_has_no_strokes(values: list[float]) -> None:
+def test_a_resting_fin_has_no_strokes(values: list[float]) -> None:
     assert count_strokes(np.array(values)) == 0
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_as_the_definition_says_one_after_the_other(seed: int) -> None:
+def test_the_count_equals_the_definition_applied_step_by_step(seed: int) -> None:
     angle = np.cumsum(np.random.default_rng(seed).normal(0, 0.05, 2000))
     assert count_strokes(angle) == swings(angle.tolist(), 0.2) / 2
 

@@ -47,7 +47,7 @@ def test_no_other_file_is_read(tmp_path: Path, name: str) -> None:
         read_panel(folder, name)
 
 
-def test_panels_are_listed_and_handed_out(settings: Settings) -> None:
+def test_panels_are_listed_and_served(settings: Settings) -> None:
     put(settings.data.panels, "Climb rate.js", b"// hello")
 
     async def scenario() -> None:
@@ -62,7 +62,7 @@ def test_panels_are_listed_and_handed_out(settings: Settings) -> None:
     asyncio.run(scenario())
 
 
-def test_the_frame_has_a_policy_of_its_own_and_nothing_else_has(settings: Settings) -> None:
+def test_only_the_panel_s_frame_has_its_own_content_policy(settings: Settings) -> None:
     async def scenario() -> None:
         async with serve(settings) as served:
             frame = await served.api.get("/panels/frame")

@@ -112,7 +112,7 @@ def test_gains_and_vision_settings_are_in_the_history_and_undone(settings: Setti
     play(settings, scenario)
 
 
-def test_a_scenario_is_in_the_history_with_what_it_left_changed(settings: Settings) -> None:
+def test_parameters_that_a_scenario_left_changed_are_in_the_history(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         changes, swim = served.container.changes, SteeringCommand(by="beacons")
 
@@ -160,7 +160,7 @@ def test_a_scenario_is_in_the_history_with_what_it_left_changed(settings: Settin
         "no JSON",
     ],
 )
-def test_what_is_no_value_does_not_reach_the_runtime(settings: Settings, body: str) -> None:
+def test_an_invalid_value_does_not_reach_the_runtime(settings: Settings, body: str) -> None:
     async def scenario(served: Served) -> None:
         answer = await served.api.post(
             "/robot/commands/parameters", content=body, headers={"content-type": "application/json"}
@@ -171,7 +171,7 @@ def test_what_is_no_value_does_not_reach_the_runtime(settings: Settings, body: s
     play(settings, scenario)
 
 
-def test_a_profile_is_kept_carried_about_restored_and_deleted(settings: Settings) -> None:
+def test_a_profile_is_stored_downloaded_uploaded_restored_and_deleted(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         saved = (await served.api.post("/profiles", json={"name": " calm ", "note": "pool"})).json()
         assert (saved["name"], saved["values"]) == ("calm", {"depth.pid.kp": 3.0, "vision.colour": "red"})
@@ -232,7 +232,7 @@ def test_a_file_that_is_no_profile_of_this_version_is_refused_with_the_reason(
     assert why in str(refused.value)
 
 
-def test_what_a_newer_version_of_the_same_format_adds_is_passed_over() -> None:
+def test_unknown_entries_of_the_same_format_are_ignored() -> None:
     text = json.dumps(
         {"format": 1, "name": "a", "mood": "calm", "parameters": {"x": 1, "y": "red", "z": True}}
     )

@@ -26,7 +26,7 @@ def shell(settings: Settings, capsys: pytest.CaptureFixture[str]) -> Shell:
     return run
 
 
-def test_people_and_programs_are_let_in_and_out_from_the_shell(settings: Settings, shell: Shell) -> None:
+def test_shell_commands_pair_and_revoke_people_and_programs(settings: Settings, shell: Shell) -> None:
     async def run() -> None:
         async with serve(settings) as served:
             announce(served.settings)
@@ -62,5 +62,5 @@ def test_people_and_programs_are_let_in_and_out_from_the_shell(settings: Setting
     asyncio.run(run())
 
 
-def test_without_a_server_there_is_nobody_to_ask(shell: Shell) -> None:
+def test_without_a_server_the_command_says_so(shell: Shell) -> None:
     assert "mucat run" in shell("pair", status=1)

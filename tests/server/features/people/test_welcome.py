@@ -37,7 +37,7 @@ def test_the_link_of_each_start_signs_this_computer_s_browser_in(settings: Setti
     asyncio.run(run())
 
 
-def test_where_others_reach_it_there_is_a_link_only_while_there_is_no_operator(settings: Settings) -> None:
+def test_on_a_network_address_a_link_is_printed_only_while_there_is_no_operator(settings: Settings) -> None:
     async def run() -> None:
         async with serve(settings) as served:
             public = replace(served.settings, host="0.0.0.0", allowed_hosts=PUBLIC)
@@ -53,7 +53,7 @@ def test_where_others_reach_it_there_is_a_link_only_while_there_is_no_operator(s
     asyncio.run(run())
 
 
-def test_no_picture_leads_a_telephone_to_itself(settings: Settings) -> None:
+def test_no_qr_code_for_the_loopback_address(settings: Settings) -> None:
     async def run() -> None:
         async with serve(settings) as served:
             assert not [line for line in lines(served, served.settings, picture=True) if "█" in line]
@@ -74,7 +74,7 @@ def test_no_picture_leads_a_telephone_to_itself(settings: Settings) -> None:
         ("192.168.0.7", ("localhost", "192.168.0.7"), "localhost", "http://192.168.0.7:8000"),
     ],
 )
-def test_links_name_the_server_as_others_can_call_it(
+def test_links_use_an_address_that_others_can_reach(
     settings: Settings, host: str, names: tuple[str, ...], called: str, base: str
 ) -> None:
     chosen = replace(settings, host=host, allowed_hosts=names)

@@ -165,7 +165,7 @@ def test_everything_is_set_up(surroundings: LiveSetup, simulator: Simulator, bri
     assert bridge.sight["targets"] == {"targets": [target]}
 
 
-def test_everything_is_put_back(
+def test_everything_is_undone(
     surroundings: LiveSetup, simulator: Simulator, bridge: DirectBridge, board: EmulatorProcess
 ) -> None:
     async def work() -> list[str]:
@@ -198,7 +198,7 @@ def test_everything_is_put_back(
         assert line.stats()["to_board_cuts"] == before_run
 
 
-def test_what_cannot_be_put_back_is_told_and_the_rest_done(
+def test_a_failed_step_of_the_undoing_is_reported_and_the_rest_is_done(
     simulator: Simulator, bridge: DirectBridge
 ) -> None:
     async def work() -> list[str]:

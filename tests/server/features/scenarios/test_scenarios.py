@@ -129,7 +129,7 @@ def query(stack: Stack, question: str) -> list[Any]:
         return database.execute(question).fetchall()
 
 
-def test_the_shipped_ones_are_there_and_sound(stack: Stack) -> None:
+def test_the_shipped_scenarios_are_listed_and_valid(stack: Stack) -> None:
     found = stack.api.get("/scenarios").json()
     assert found[0]["name"] == "figure_14"
     assert len(found) == 5
@@ -138,7 +138,7 @@ def test_the_shipped_ones_are_there_and_sound(stack: Stack) -> None:
         assert checked == {"problems": [], "summary": one["summary"]}
 
 
-def test_what_is_wrong_is_told(stack: Stack) -> None:
+def test_errors_of_a_scenario_are_reported(stack: Stack) -> None:
     wrong = SHORT.replace("[scene]", "[sea]").replace("duration = 3", "duration = -3")
     problems = stack.api.post("/scenarios/check", json={"text": wrong}).json()["problems"]
     assert {one["text"].split(" ")[0] for one in problems} == {"duration", "'sea'", "scene"}
@@ -148,7 +148,7 @@ def test_what_is_wrong_is_told(stack: Stack) -> None:
     assert state(stack)["active"] is None
 
 
-def test_a_live_run_is_recorded_and_leaves_everything_as_it_was(stack: Stack) -> None:
+def test_a_live_run_is_recorded_and_undoes_its_set_up(stack: Stack) -> None:
     chosen = {"name": "depth", "controller": "pid", "gains": {"kp": 7}}
     stack.api.post("/robot/commands/loop", json=chosen).raise_for_status()
     points = {"control.set_point": 0.9, "control.set_point_detected": 1.1}
@@ -191,7 +191,7 @@ def test_stop_ends_it(stack: Stack) -> None:
     assert query(stack, f"SELECT state FROM session WHERE id = {session}") == [("complete",)]
 
 
-def test_the_end_of_its_recording_ends_it_and_cancelling_does(stack: Stack) -> None:
+def test_a_run_ends_with_its_recording_and_on_cancellation(stack: Stack) -> None:
     begin_long(stack)
     session = state(stack)["active"]["session"]
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
@@ -201,7 +201,7 @@ def test_the_end_of_its_recording_ends_it_and_cancelling_does(stack: Stack) -> N
     assert (ended(stack)["state"], ended(stack)["problem"]) == ("cancelled", "It was cancelled.")
 
 
-def test_a_simulator_that_ends_fails_it(stack: Stack) -> None:
+def test_the_end_of_the_simulator_fails_the_run(stack: Stack) -> None:
     begin_long(stack)
     stack.child("robot_runtime.simulation --board").kill()
     last = ended(stack)
@@ -213,7 +213,7 @@ def test_a_simulator_that_ends_fails_it(stack: Stack) -> None:
     wait(lambda: simulator_answers(stack), "the next simulator to answer")
 
 
-def test_a_server_that_is_killed_puts_everything_back_at_its_next_start(stack: Stack) -> None:
+def test_after_a_kill_the_next_server_undoes_the_set_up(stack: Stack) -> None:
     before = settings_of(stack)
     begin_long(stack)
     session = state(stack)["active"]["session"]
@@ -226,7 +226,7 @@ def test_a_server_that_is_killed_puts_everything_back_at_its_next_start(stack: S
     assert query(stack, f"SELECT state FROM session WHERE id = {session}") == [("complete",)]
 
 
-def test_what_is_refused_says_why(stack: Stack) -> None:
+def test_a_refusal_gives_the_reason(stack: Stack) -> None:
     hull = SHORT + "[robot]\nmass = 3.1\n"
     assert refusal(stack, hull) == "It changes the hull's parameters, which needs simulated time."
     fast = SHORT.replace("[control]", "[control]\nrate = 20")
@@ -241,7 +241,7 @@ def test_what_is_refused_says_why(stack: Stack) -> None:
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
 
 
-def test_ones_own_are_kept(stack: Stack) -> None:
+def test_own_scenarios_are_stored(stack: Stack) -> None:
     answer = stack.api.post("/scenarios", json={"text": SHORT})
     assert answer.status_code == 201
     found = stack.api.get("/scenarios").json()

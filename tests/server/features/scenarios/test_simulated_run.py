@@ -91,9 +91,7 @@ def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Setting
     assert [(round(time), text) for time, text in marks] == [(1, "Arm"), (2, "Yellow card")]
 
 
-def test_a_cancelled_run_keeps_what_there_was_and_the_queue_is_forgotten(
-    settings: Settings, store: Store
-) -> None:
+def test_a_cancelled_run_keeps_its_recording_and_clears_the_queue(settings: Settings, store: Store) -> None:
     async def work(runs: ScenarioRunner) -> None:
         runs.start(LONG, "simulated", "host")
         runs.start(LONG, "simulated", "host")
@@ -111,7 +109,7 @@ def test_a_cancelled_run_keeps_what_there_was_and_the_queue_is_forgotten(
     assert row.duration < 3600
 
 
-def test_what_the_robot_refuses_is_marked_and_told(settings: Settings, store: Store) -> None:
+def test_a_refused_command_gets_a_bookmark_and_a_notice(settings: Settings, store: Store) -> None:
     broken = SHORT + "[[events]]\nat = 0.1\ndo = 'fault'\nsensor = 'pressure'\nkind = 'bus'\n"
 
     async def work(runs: ScenarioRunner) -> None:
@@ -124,7 +122,7 @@ def test_what_the_robot_refuses_is_marked_and_told(settings: Settings, store: St
     assert last.problem.startswith("At 2.5 s: Arm: refused. ")
 
 
-def test_a_process_that_fails_is_told_with_its_words(
+def test_a_failed_process_is_reported_with_its_output(
     settings: Settings, store: Store, tmp_path: Path
 ) -> None:
     async def work(runs: ScenarioRunner) -> None:
@@ -139,7 +137,9 @@ def test_a_process_that_fails_is_told_with_its_words(
     assert str(tmp_path) in last.problem
 
 
-def test_from_the_shell(settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_scenario_runs_from_the_shell(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     file = tmp_path / "short.toml"
     file.write_text(SHORT)
     options = ["--data", str(settings.data.path), "--config", str(settings.config)]

@@ -84,7 +84,7 @@ def test_it_leaves_an_operator_s_session_alone(store: Store, settings: Settings)
     play(store, settings, scenario)
 
 
-def test_one_that_an_earlier_server_began_is_ended_too(store: Store, settings: Settings) -> None:
+def test_a_recording_of_an_earlier_server_is_ended_too(store: Store, settings: Settings) -> None:
     async def scenario(watched: _ProcessGroup) -> None:
         await watched.recorder.start(await watched.make_row("resumed", "null"))
         await watched.see(armed=False)
@@ -94,7 +94,7 @@ def test_one_that_an_earlier_server_began_is_ended_too(store: Store, settings: S
     play(store, settings, scenario)
 
 
-def test_an_operator_who_stops_it_is_obeyed(store: Store, settings: Settings) -> None:
+def test_an_operator_can_stop_it(store: Store, settings: Settings) -> None:
     async def scenario(watched: _ProcessGroup) -> None:
         await watched.see(armed=True)
         assert watched.recorder.session is not None

@@ -48,7 +48,7 @@ def test_sessions_are_found_by_words_tags_and_origin(settings: Settings) -> None
     play(settings, scenario)
 
 
-def test_the_bin_gives_back_what_was_not_purged(settings: Settings) -> None:
+def test_a_session_in_the_bin_can_be_restored_until_it_is_purged(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         api, first, second = served.api, await record(served, "first"), await record(served, "second")
         assert (await api.post(f"/sessions/{first}/purge")).status_code == 409
@@ -68,7 +68,7 @@ def test_the_bin_gives_back_what_was_not_purged(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_marks_are_set_live_and_later(settings: Settings) -> None:
+def test_bookmarks_are_set_live_and_later(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         api = served.api
         session = (await api.post("/sessions", json={"name": "marked"})).json()["id"]
@@ -98,7 +98,7 @@ def test_marks_are_set_live_and_later(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_a_session_says_what_is_in_it(settings: Settings) -> None:
+def test_a_session_lists_its_contents(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.publish(state_block(0, set_point_default=0.7))
         await until(lambda: served.container.monitor.state() is not None, "the state")
@@ -139,7 +139,7 @@ def test_a_session_says_what_is_in_it(settings: Settings) -> None:
         {"state": "complete"},
     ],
 )
-def test_what_cannot_be_said_of_a_session_is_refused(settings: Settings, body: dict[str, Any]) -> None:
+def test_invalid_descriptions_of_a_session_are_refused(settings: Settings, body: dict[str, Any]) -> None:
     async def scenario(served: Served) -> None:
         session = await record(served, "as it was")
         before = (await served.api.get(f"/sessions/{session}")).json()

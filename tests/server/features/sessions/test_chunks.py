@@ -18,11 +18,11 @@ def test_shuffling_is_undone(size: int, count: int, random: object) -> None:
     assert chunks.unshuffle(chunks.shuffle(rows, size), size) == rows
 
 
-def test_shuffling_puts_equal_places_side_by_side() -> None:
+def test_shuffling_groups_bytes_of_equal_place() -> None:
     assert chunks.shuffle(b"a1a2a3", 2) == b"aaa123"
 
 
-def test_bytes_that_are_no_whole_rows_are_refused() -> None:
+def test_incomplete_rows_are_refused() -> None:
     with pytest.raises(ValueError, match="not whole rows"):
         chunks.unshuffle(b"12345", 2)
 
@@ -62,12 +62,12 @@ def test_documents_become_lines() -> None:
 @pytest.mark.parametrize(
     "payload", [b"nonsense", b"[1]", b"[]", b'[{"text": "x"}]', b'{"time": 1}', b"[" * 5000]
 )
-def test_what_is_no_list_of_documents_is_refused(payload: bytes) -> None:
+def test_bytes_that_are_no_list_of_documents_are_refused(payload: bytes) -> None:
     with pytest.raises((ValueError, RecursionError)):
         chunks.encode_documents([payload], 1)
 
 
-def test_the_description_is_enough_to_read_every_topic_of_rows() -> None:
+def test_rows_of_every_topic_can_be_read_by_their_stored_description() -> None:
     described = json.loads(json.dumps(chunks.describe_topics()))
     for topic in TOPICS:
         if topic.kind is Kind.ROWS:

@@ -54,15 +54,13 @@ def test_sessions_without_a_server(settings: Settings, capsys: pytest.CaptureFix
     assert "No server works on" in told("record", "start")
 
 
-def test_in_a_folder_that_no_server_has_used_yet(
-    settings: Settings, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_works_in_a_new_folder(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
     settings.data.database.unlink(missing_ok=True)
     assert run(settings, "sessions", "list") == 0
     assert "No matching session" in capsys.readouterr().out
 
 
-def test_what_a_running_server_is_asked(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
+def test_requests_to_a_running_server(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
     async def scenario() -> None:
         async with serve(settings) as served:
             announce(served.settings)

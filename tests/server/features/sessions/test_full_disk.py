@@ -24,7 +24,7 @@ def on_small_disk(folder: Path, *command: str) -> subprocess.CompletedProcess[st
     )
 
 
-def test_recording_on_a_disk_that_fills_up_loses_nothing(tmp_path: Path) -> None:
+def test_recording_loses_nothing_when_the_disk_is_full_for_a_while(tmp_path: Path) -> None:
     try:
         trial = on_small_disk(tmp_path, "true")
     except FileNotFoundError:

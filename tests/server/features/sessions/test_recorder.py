@@ -41,7 +41,7 @@ def play(scenario: Callable[[], Awaitable[Any]]) -> None:
     asyncio.run(run())
 
 
-def test_what_arrives_is_stored_unchanged_and_in_order(rig: RecorderRig) -> None:
+def test_received_samples_are_stored_unchanged_and_in_order(rig: RecorderRig) -> None:
     async def scenario() -> None:
         await rig.start()
         blocks = [depth_block(0, 5), depth_block(5, 5), depth_block(10, 5)]
@@ -62,7 +62,7 @@ def test_what_arrives_is_stored_unchanged_and_in_order(rig: RecorderRig) -> None
     play(scenario)
 
 
-def test_before_and_after_a_session_nothing_is_kept(rig: RecorderRig) -> None:
+def test_nothing_is_stored_outside_a_session(rig: RecorderRig) -> None:
     async def scenario() -> None:
         rig.recorder.add(depth_block(0, 5))
         session = await rig.start()
@@ -87,7 +87,7 @@ def test_pictures_are_not_recorded(rig: RecorderRig) -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 3), st.integers(1, 4)), min_size=1, max_size=15))
-def test_holes_are_counted_and_chunks_stay_without_holes(
+def test_gaps_are_counted_and_split_chunks(
     steps: list[tuple[int, int]],
 ) -> None:
     recorder = Recorder(None, SimulatedClock(), Notices(SimulatedClock(), lambda _: None), lambda: None)  # type: ignore[arg-type]
@@ -107,7 +107,7 @@ def test_holes_are_counted_and_chunks_stay_without_holes(
     assert gaps == ({("depth", "missed"): missed} if missed else {})
 
 
-def test_a_writer_that_counts_anew_begins_a_new_chunk(rig: RecorderRig) -> None:
+def test_a_restarted_numbering_begins_a_new_chunk(rig: RecorderRig) -> None:
     async def scenario() -> None:
         session = await rig.start()
         rig.recorder.add(depth_block(1000, 5))
@@ -120,7 +120,7 @@ def test_a_writer_that_counts_anew_begins_a_new_chunk(rig: RecorderRig) -> None:
     play(scenario)
 
 
-def test_a_gap_is_noted_when_it_shows_however_late_it_is_stored(
+def test_a_gap_has_the_time_of_its_discovery_even_when_stored_later(
     rig: RecorderRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> None:
@@ -142,7 +142,7 @@ def test_a_gap_is_noted_when_it_shows_however_late_it_is_stored(
     play(scenario)
 
 
-def test_numbers_run_through_their_end_without_a_hole(rig: RecorderRig) -> None:
+def test_numbers_wrap_without_a_gap(rig: RecorderRig) -> None:
     async def scenario() -> None:
         session = await rig.start()
         rig.recorder.add(depth_block(NUMBERS - 2, 2))
@@ -154,7 +154,7 @@ def test_numbers_run_through_their_end_without_a_hole(rig: RecorderRig) -> None:
     play(scenario)
 
 
-def test_a_session_knows_what_is_stored_of_it(rig: RecorderRig) -> None:
+def test_a_session_counts_its_stored_samples(rig: RecorderRig) -> None:
     async def scenario() -> None:
         session = await rig.start("first")
         rig.recorder.add(depth_block(0, 5))
@@ -192,7 +192,7 @@ def test_one_session_at_a_time(rig: RecorderRig) -> None:
     play(scenario)
 
 
-def test_what_cannot_be_written_waits_and_is_written_later(
+def test_samples_wait_while_the_database_fails_and_are_stored_later(
     rig: RecorderRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> None:
@@ -215,7 +215,7 @@ def test_what_cannot_be_written_waits_and_is_written_later(
     play(scenario)
 
 
-def test_what_does_not_fit_into_memory_while_it_waits_is_counted(
+def test_waiting_samples_beyond_the_memory_limit_are_counted_as_lost(
     rig: RecorderRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(recorder_module, "BACKLOG_BYTES", 1000)
@@ -237,7 +237,9 @@ def test_what_does_not_fit_into_memory_while_it_waits_is_counted(
     play(scenario)
 
 
-def test_failing_and_recovering_are_told_once_each(rig: RecorderRig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failure_and_recovery_are_reported_once_each(
+    rig: RecorderRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(recorder_module, "PERIOD", 0.005)
 
     async def scenario() -> None:
@@ -261,7 +263,7 @@ def test_failing_and_recovering_are_told_once_each(rig: RecorderRig, monkeypatch
     play(scenario)
 
 
-def test_failing_without_a_session_is_tried_again(rig: RecorderRig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_writing_is_retried_without_a_session(rig: RecorderRig, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recorder_module, "PERIOD", 0.002)
 
     async def scenario() -> None:
@@ -281,7 +283,7 @@ def test_failing_without_a_session_is_tried_again(rig: RecorderRig, monkeypatch:
     play(scenario)
 
 
-def test_samples_that_cannot_be_read_are_counted_and_harm_no_others(rig: RecorderRig) -> None:
+def test_invalid_samples_are_counted_and_the_others_stored(rig: RecorderRig) -> None:
     async def scenario() -> None:
         session = await rig.start()
         bad = debug_block(0, "x")
@@ -319,7 +321,7 @@ def test_a_cancelled_flush_stores_everything_once(rig: RecorderRig, monkeypatch:
     play(scenario)
 
 
-def test_what_a_crash_left_recording_is_marked_and_keeps_its_chunks(rig: RecorderRig) -> None:
+def test_a_session_interrupted_by_a_crash_is_marked_and_keeps_its_chunks(rig: RecorderRig) -> None:
     async def scenario() -> None:
         await rig.start()
         rig.recorder.add(depth_block(0, 5))

@@ -31,7 +31,7 @@ def test_a_range_of_time_gives_its_samples_and_no_others(store: Store, settings:
     assert len(list(recording.chunks("depth", start, end))) < 2 * CHUNKS_AT_ONCE
 
 
-def test_a_column_that_is_not_there_is_named(store: Store, settings: Settings) -> None:
+def test_a_missing_column_is_named(store: Store, settings: Settings) -> None:
     recording = read(store, record(store, settings, [depth_block(0, 1)]))
     with pytest.raises(KeyError, match="depth has no column deep; it has time, depth, pressure"):
         recording.columns("depth", ["deep"])
@@ -46,7 +46,7 @@ def test_documents_of_a_range(store: Store, settings: Settings) -> None:
         assert list(recording.documents("debug", second["time"], second["time"])) == [second]
 
 
-def test_thumbnails_are_kept_and_other_pictures_are_not(store: Store, settings: Settings) -> None:
+def test_thumbnails_are_recorded_and_other_pictures_are_not(store: Store, settings: Settings) -> None:
     small = [thumbnail_block(n, 100.0 + 2 * n, bytes([n]) * (n + 1)) for n in range(3)]
     recording = read(store, record(store, settings, [small[0], small[1], picture_block(0)], [small[2]]))
     assert recording.counts() == {"thumbnail": 3}
@@ -58,7 +58,7 @@ def test_thumbnails_are_kept_and_other_pictures_are_not(store: Store, settings: 
     assert [time for time, _ in recording.pictures("thumbnail", 101.0, 103.0)] == [102.0]
 
 
-def test_a_chunk_of_pictures_that_is_cut_off_is_damaged() -> None:
+def test_a_truncated_chunk_of_pictures_is_damaged() -> None:
     data, _, _ = encode_pictures([thumbnail_block(0, 1.0, b"jpeg").payload])
     assert list(decode_pictures(data)) == [(1.0, b"jpeg")]
     for end in range(1, len(data)):
@@ -66,7 +66,7 @@ def test_a_chunk_of_pictures_that_is_cut_off_is_damaged() -> None:
             list(decode_pictures(data[:end]))
 
 
-def test_changes_are_documents_that_say_something_else(store: Store, settings: Settings) -> None:
+def test_changes_are_documents_that_differ_from_the_one_before(store: Store, settings: Settings) -> None:
     documents = [(100.0, 0.5), (101.0, 0.5), (102.0, 1.0), (103.0, 1.0), (104.0, 0.5)]
     batches = [
         [state_block(place, time=time, set_point_default=set_point)]
@@ -83,7 +83,9 @@ def test_changes_are_documents_that_say_something_else(store: Store, settings: S
 @pytest.mark.parametrize(
     ("change", "words"), [("data = x'00'", "is damaged"), ("encoding = 'other'", "is encoded as 'other'")]
 )
-def test_what_cannot_be_read_is_told(store: Store, settings: Settings, change: str, words: str) -> None:
+def test_an_unreadable_recording_is_reported(
+    store: Store, settings: Settings, change: str, words: str
+) -> None:
     recording = read(store, record(store, settings, [depth_block(0, 5), state_block(0)]))
     asyncio.run(store.write(lambda connection: connection.execute(text(f"UPDATE chunk SET {change}"))))
     with pytest.raises(RecordingError, match=f"chunk 0 of depth {words}"):

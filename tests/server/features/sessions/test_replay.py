@@ -90,7 +90,7 @@ def dive(store: Store, settings: Settings) -> Recording:
     return read(store, record(store, settings, *batches))
 
 
-def test_a_stretch_is_cut_to_its_range(dive: Recording) -> None:
+def test_a_range_is_cut_at_its_limits(dive: Recording) -> None:
     stretch = read_blocks_between(dive, 102.5, 104.1)
     numbers = [int(record.time) for _, record in depths(stretch.data)]
     assert numbers == list(range(125, 205))
@@ -99,7 +99,7 @@ def test_a_stretch_is_cut_to_its_range(dive: Recording) -> None:
     assert stretch.left_out == 0
 
 
-def test_blocks_say_the_numbers_and_come_in_order_of_time(dive: Recording) -> None:
+def test_blocks_have_numbers_and_come_in_order_of_time(dive: Recording) -> None:
     blocks = read_blocks(read_blocks_between(dive, 102.5, 104.1).data)
     assert [(one.first, one.count) for one in blocks if one.topic.name == "depth"] == [
         (125, 25),
@@ -113,7 +113,7 @@ def test_blocks_say_the_numbers_and_come_in_order_of_time(dive: Recording) -> No
     assert starts == sorted(starts)
 
 
-def test_stretches_side_by_side_give_every_sample_once(dive: Recording) -> None:
+def test_adjacent_ranges_give_every_sample_once(dive: Recording) -> None:
     edges = [100.0, 100.02, 101.999, 102.0, 105.5, 110.0]
     joined = b"".join(read_blocks_between(dive, start, end).data for start, end in pairwise(edges))
     assert [int(record.time) for _, record in depths(joined)] == list(range(500))
@@ -121,7 +121,7 @@ def test_stretches_side_by_side_give_every_sample_once(dive: Recording) -> None:
     assert len(told(joined, "state")) == 10
 
 
-def test_a_seek_brings_what_was_in_force(store: Store, settings: Settings) -> None:
+def test_a_seek_returns_the_documents_in_force(store: Store, settings: Settings) -> None:
     batches = [[state_block(0, time=100.0, set_point_default=0.7), lines(0, 1)]]
     batches += [[depth_block(50 * n, 50)] for n in range(20)]
     recording = read(store, record(store, settings, *batches))
@@ -136,7 +136,7 @@ def test_a_seek_brings_what_was_in_force(store: Store, settings: Settings) -> No
     }
 
 
-def test_a_seek_into_a_hole_brings_the_newest_sample_before_it(store: Store, settings: Settings) -> None:
+def test_a_seek_into_a_gap_returns_the_newest_sample_before_it(store: Store, settings: Settings) -> None:
     batches = [[depth_block(0, 50)], [depth_block(50, 50), state_block(0)], [depth_block(1500, 50)]]
     recording = read(store, record(store, settings, *batches))
     found = depths(read_blocks_between(recording, 110.0, 112.0, history=1.0).data)
@@ -169,7 +169,7 @@ def test_before_the_beginning_there_is_nothing(dive: Recording) -> None:
     assert read_blocks_between(dive, 90.0, 99.0, history=300.0).data == b""
 
 
-def test_of_lines_the_last_ones_come(store: Store, settings: Settings) -> None:
+def test_a_seek_returns_the_last_lines(store: Store, settings: Settings) -> None:
     count = LISTED_CHUNKS + 50
     recording = read(store, record(store, settings, *[[lines(n, 1)] for n in range(count)]))
     texts = [
@@ -179,7 +179,7 @@ def test_of_lines_the_last_ones_come(store: Store, settings: Settings) -> None:
     assert LISTED_CHUNKS <= len(texts) < count
 
 
-def test_too_long_a_range_is_refused_with_its_limit(dive: Recording) -> None:
+def test_too_long_a_range_is_refused_with_the_limit(dive: Recording) -> None:
     with pytest.raises(InvalidError, match="at most 120 s"):
         read_blocks_between(dive, 100.0, 100.1 + RANGE_MAX)
 
@@ -230,7 +230,7 @@ def test_rows_of_another_size_are_rewritten(store: Store, settings: Settings) ->
     assert [record.depth for _, record in found] == pytest.approx([0.25, 32.767, -32.768])
 
 
-def test_documents_with_missing_fields_get_stand_ins_or_are_left_out(
+def test_missing_fields_of_documents_get_defaults_or_the_document_is_left_out(
     store: Store, settings: Settings
 ) -> None:
     lacking = state_block(0)
@@ -275,7 +275,7 @@ def test_thumbnails_come_as_pictures(store: Store, settings: Settings) -> None:
     ]
 
 
-def test_a_topic_that_is_unknown_now_is_counted(store: Store, dive: Recording) -> None:
+def test_samples_of_an_unknown_topic_are_counted(store: Store, dive: Recording) -> None:
     change(store, """UPDATE session SET topics = replace(topics, '"depth":', '"sonar":')""")
     change(store, "UPDATE chunk SET topic = 'sonar' WHERE topic = 'depth'")
     assert dive.row.id is not None
@@ -284,7 +284,7 @@ def test_a_topic_that_is_unknown_now_is_counted(store: Store, dive: Recording) -
     assert stretch.left_out == 500
 
 
-def test_the_timeline_has_events_markers_and_holes(store: Store, settings: Settings) -> None:
+def test_the_timeline_has_events_bookmarks_and_gaps(store: Store, settings: Settings) -> None:
     event = documents.Event(time=102.0, kind="arm", severity="info", text="Armed.")
     batches = [
         [state_block(0, time=100.0), state_block(1, time=101.0)],

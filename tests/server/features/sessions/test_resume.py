@@ -110,7 +110,7 @@ def play(scenario: Callable[[], Awaitable[None]]) -> None:
 
 
 @pytest.mark.parametrize("first", [0, 1000, NUMBERS - 12])
-def test_a_session_goes_on_without_a_hole_and_nothing_is_there_twice(wreck: Wreck, first: int) -> None:
+def test_a_resumed_session_has_no_gap_and_no_duplicate(wreck: Wreck, first: int) -> None:
     async def scenario() -> None:
         await wreck.start(first)
         missing = await wreck.resume()
@@ -132,7 +132,7 @@ def test_a_session_goes_on_without_a_hole_and_nothing_is_there_twice(wreck: Wrec
     play(scenario)
 
 
-def test_parameters_that_were_told_before_it_began_do_not_end_it(wreck: Wreck) -> None:
+def test_parameters_sent_before_the_session_do_not_prevent_resuming(wreck: Wreck) -> None:
     async def scenario() -> None:
         wreck.send(parameters_block(7))
         wreck.before.clock.forward(3)
@@ -145,7 +145,7 @@ def test_parameters_that_were_told_before_it_began_do_not_end_it(wreck: Wreck) -
     play(scenario)
 
 
-def test_a_session_of_which_nothing_is_stored_yet_goes_on_with_its_runtime_alone(wreck: Wreck) -> None:
+def test_a_session_without_stored_samples_resumes_only_with_its_own_runtime(wreck: Wreck) -> None:
     async def scenario() -> None:
         await wreck.before.start("dive")
         wreck.send(depth_block(0, 5), truth_block(0, 3))
@@ -177,7 +177,7 @@ def test_notices_are_numbered_on(wreck: Wreck) -> None:
     play(scenario)
 
 
-def test_what_is_older_than_the_session_is_not_taken_into_it(wreck: Wreck) -> None:
+def test_samples_older_than_the_session_are_not_recorded(wreck: Wreck) -> None:
     async def scenario() -> None:
         # Board time 50 s is the session's start.
         wreck.send(debug_block(0, "before", start=40.0), heard=False)
@@ -193,7 +193,7 @@ def test_what_is_older_than_the_session_is_not_taken_into_it(wreck: Wreck) -> No
     play(scenario)
 
 
-def test_a_runtime_that_was_restarted_before_goes_on_though_not_all_its_topics_were_heard_since(
+def test_a_session_resumes_after_an_earlier_restart_though_some_topics_sent_nothing_since(
     wreck: Wreck,
 ) -> None:
     async def scenario() -> None:
@@ -216,7 +216,7 @@ def test_a_runtime_that_was_restarted_before_goes_on_though_not_all_its_topics_w
     play(scenario)
 
 
-def test_its_parameters_need_not_have_been_heard_either(wreck: Wreck) -> None:
+def test_a_session_resumes_though_no_parameters_were_sent_since(wreck: Wreck) -> None:
     async def scenario() -> None:
         wreck.send(parameters_block(7))
         await wreck.start()
@@ -234,7 +234,7 @@ def test_its_parameters_need_not_have_been_heard_either(wreck: Wreck) -> None:
     play(scenario)
 
 
-def test_a_runtime_that_is_restarted_later_is_recorded_from_its_first_number_on(wreck: Wreck) -> None:
+def test_a_later_restart_is_recorded_from_its_first_number(wreck: Wreck) -> None:
     async def scenario() -> None:
         wreck.session = await wreck.before.start("dive")
         wreck.send(depth_block(0, 5), debug_block(0, "a"), debug_block(1, "b"))
@@ -305,7 +305,9 @@ def test_a_new_run_whose_number_happens_to_follow_is_stored_apart(wreck: Wreck) 
     play(scenario)
 
 
-def test_what_is_no_longer_kept_ends_the_session(wreck: Wreck, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_samples_beyond_the_replay_cache_end_the_session(
+    wreck: Wreck, monkeypatch: pytest.MonkeyPatch
+) -> None:
     async def scenario() -> None:
         await wreck.start()
         monkeypatch.setattr(cache_module, "BYTES_MAX", 10)
@@ -319,7 +321,7 @@ def test_what_is_no_longer_kept_ends_the_session(wreck: Wreck, monkeypatch: pyte
     play(scenario)
 
 
-def test_without_a_runtime_that_answers_the_session_ends(wreck: Wreck) -> None:
+def test_without_an_answer_of_the_runtime_the_session_ends(wreck: Wreck) -> None:
     async def scenario() -> None:
         await wreck.start()
         del wreck.kept["runtime"]
@@ -329,7 +331,7 @@ def test_without_a_runtime_that_answers_the_session_ends(wreck: Wreck) -> None:
     play(scenario)
 
 
-def test_a_simulator_that_has_begun_anew_is_noted_as_a_gap(wreck: Wreck) -> None:
+def test_a_restarted_simulator_is_recorded_as_a_gap(wreck: Wreck) -> None:
     async def scenario() -> None:
         await wreck.start()
         wreck.restart("simulator")
@@ -347,7 +349,7 @@ def test_a_simulator_that_has_begun_anew_is_noted_as_a_gap(wreck: Wreck) -> None
     "change",
     [{"boot": "another"}, {"boot": ""}, {"origin": "simulated"}],
 )
-def test_other_starts_of_the_computer_and_simulated_runs_are_over(
+def test_sessions_of_an_earlier_boot_and_simulated_runs_are_not_resumed(
     wreck: Wreck, change: dict[str, str]
 ) -> None:
     async def scenario() -> None:

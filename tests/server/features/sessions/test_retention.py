@@ -88,7 +88,7 @@ NO_RULES = SessionsConfig(keep_free=0.0)
 Keep = Callable[[SessionsConfig, Callable[[Keeper], Coroutine[Any, Any, None]]], None]
 
 
-def test_what_has_been_in_the_bin_for_long_is_removed(keep: Keep) -> None:
+def test_old_sessions_in_the_bin_are_purged(keep: Keep) -> None:
     async def scenario(keeper: Keeper) -> None:
         for name in ("stays", "goes"):
             await keeper.record(name, DAY)
@@ -104,7 +104,7 @@ def test_what_has_been_in_the_bin_for_long_is_removed(keep: Keep) -> None:
     keep(NO_RULES, scenario)
 
 
-def test_nothing_goes_by_its_age_for_a_day_after_the_clock_has_jumped(keep: Keep) -> None:
+def test_for_a_day_after_a_clock_jump_nothing_is_purged_by_age(keep: Keep) -> None:
     async def scenario(keeper: Keeper) -> None:
         for name in ("stays", "goes"):
             await keeper.record(name, DAY)
@@ -156,7 +156,7 @@ def test_recording_goes_on_while_a_session_is_removed_in_small_steps(
     keep(NO_RULES, scenario)
 
 
-def test_a_removal_that_was_cut_off_is_taken_up_again(keep: Keep) -> None:
+def test_an_interrupted_purge_is_resumed(keep: Keep) -> None:
     async def scenario(keeper: Keeper) -> None:
         await keeper.record("half gone", DAY)
         await keeper.store.write(
@@ -173,7 +173,7 @@ def test_a_removal_that_was_cut_off_is_taken_up_again(keep: Keep) -> None:
     keep(NO_RULES, scenario)
 
 
-def test_room_is_given_back_to_the_disk(keep: Keep, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_purge_returns_space_to_the_disk(keep: Keep, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tidying_module, "PAGES_AT_ONCE", 4)
     monkeypatch.setattr(tidying_module, "PAUSE", 0.0)
 
@@ -193,7 +193,7 @@ def test_room_is_given_back_to_the_disk(keep: Keep, monkeypatch: pytest.MonkeyPa
     keep(NO_RULES, scenario)
 
 
-def test_old_sessions_go_but_never_what_is_kept_tagged_or_recording(keep: Keep) -> None:
+def test_old_sessions_are_binned_except_kept_tagged_or_recording_ones(keep: Keep) -> None:
     async def scenario(keeper: Keeper) -> None:
         for name in ("old", "kept", "tagged"):
             await keeper.record(name, 31 * DAY)
@@ -211,7 +211,7 @@ def test_old_sessions_go_but_never_what_is_kept_tagged_or_recording(keep: Keep) 
     keep(SessionsConfig(keep_days=30.0, keep_free=0.0), scenario)
 
 
-def test_where_room_is_short_the_oldest_go_into_the_bin_and_an_hour_later_for_good(
+def test_on_a_nearly_full_disk_the_oldest_are_binned_and_purged_after_an_hour(
     keep: Keep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     free = 10**9
@@ -247,7 +247,7 @@ def test_where_room_is_short_the_oldest_go_into_the_bin_and_an_hour_later_for_go
     keep(SessionsConfig(keep_free=1.0), scenario)
 
 
-def test_the_true_disk_is_asked(store: Store, settings: Settings) -> None:
+def test_free_space_is_read_from_the_real_disk(store: Store, settings: Settings) -> None:
     shown = storage_module.measure(store, settings)
     assert shown.total == shutil.disk_usage(settings.data.path).total
     assert shown.database == settings.data.database.stat().st_size + sum(

@@ -27,7 +27,7 @@ def told(value: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("value", [7, 7.5, "pid", True])
-def test_a_value_of_several_kinds_is_rewritten_as_what_it_is(value: object) -> None:
+def test_a_value_of_a_union_is_rewritten_by_its_own_type(value: object) -> None:
     (parameter,) = rewrite_document(told(value), BY_NAME["parameters"])["parameters"]
     assert (parameter["value"], type(parameter["value"])) == (value, type(value))
     assert (parameter["minimum"], parameter["maximum"]) == (None, 50.0)
@@ -35,6 +35,6 @@ def test_a_value_of_several_kinds_is_rewritten_as_what_it_is(value: object) -> N
 
 
 @pytest.mark.parametrize("value", [None, [], {}])
-def test_a_value_of_no_such_kind_is_not_made_up(value: object) -> None:
+def test_a_value_of_no_type_of_the_union_is_left_out(value: object) -> None:
     with pytest.raises(NoCounterpartError, match="is no"):
         rewrite_document(told(value), BY_NAME["parameters"])

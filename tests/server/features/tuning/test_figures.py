@@ -52,7 +52,7 @@ def test_second_order_systems(damping: float, frequency: float) -> None:
     assert 0.8 < found["rise_time"] * frequency < 2.6
 
 
-def test_what_follows_by_arithmetic() -> None:
+def test_figures_that_follow_by_arithmetic() -> None:
     curve = TuningCurve([], [], [], [])
     for tick in range(-10, 101):
         curve.add(tick / 10, 0.4 if tick < 0 else 0.9, 0.4 if tick < 50 else 0.86, 0.5 if tick % 2 else -0.5)
@@ -67,7 +67,7 @@ def test_what_follows_by_arithmetic() -> None:
     assert found["fin_strokes"] is None
 
 
-def test_angles_are_told_in_degrees() -> None:
+def test_angles_are_reported_in_degrees() -> None:
     curve = TuningCurve([], [], [], [])
     for tick in range(-10, 101):
         curve.add(tick / 10, 0.0 if tick < 0 else 0.5, 0.0 if tick < 10 else 0.49, 0.0)
@@ -129,7 +129,7 @@ def test_a_load_shows_as_asymmetry() -> None:
     assert "One half of each cycle is much longer" in found.remarks[0]
 
 
-def test_what_is_no_cycle_is_told() -> None:
+def test_a_response_without_a_cycle_is_reported() -> None:
     with pytest.raises(ValueError, match="no whole cycle"):
         measure_limit_cycle(TuningCurve([], [], [], []), 0.0, 0.01)
     with pytest.raises(ValueError, match="beyond the hysteresis"):
@@ -146,7 +146,7 @@ def test_the_rules() -> None:
     assert gains["amigo"] == pytest.approx({"kp": 2.7, "ki": 1.125, "kd": 1.62})
 
 
-def test_proposals_say_what_cannot_be_set() -> None:
+def test_proposals_name_gains_out_of_range() -> None:
     cycle = measure_limit_cycle(relayed(0.2, 1.0, 0.3, 0.0, 0.5), 20.0, 0.0)
     limits = {"kp": (0.0, 50.0), "ki": (0.0, 20.0), "kd": (0.0, 0.1)}
     proposals = {one.rule: one for one in propose("depth", cycle, limits)}
@@ -158,7 +158,7 @@ def test_proposals_say_what_cannot_be_set() -> None:
 
 @settings(max_examples=50, deadline=None)
 @given(st.lists(st.tuples(*[st.floats(-1e3, 1e3)] * 4), max_size=50))
-def test_curves_are_kept_as_they_are(ticks: list[tuple[float, float, float, float]]) -> None:
+def test_curves_are_stored_unchanged(ticks: list[tuple[float, float, float, float]]) -> None:
     curve = TuningCurve([], [], [], [])
     for tick in ticks:
         curve.add(*tick)

@@ -112,7 +112,7 @@ async def over(served: Served) -> dict[str, Any]:
     return answer
 
 
-def test_a_step_is_kept_with_its_curve_and_figures(settings: Settings) -> None:
+def test_a_step_is_stored_with_its_curve_and_figures(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
         robot.arm()
         async with served.connect() as socket:
@@ -228,7 +228,7 @@ async def refused(served: Served, wanted: Any, status: int) -> str:
     return str(answer.json()["detail"])
 
 
-def test_what_cannot_begin_is_refused_and_leaves_nothing(settings: Settings) -> None:
+def test_an_experiment_that_cannot_start_is_refused_and_stores_nothing(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
         robot.arm("disarmed")
         assert "The robot is disarmed. Arm it" in await refused(served, STEP, 409)

@@ -37,7 +37,7 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
     asyncio.run(run())
 
 
-def test_settings_are_handed_on_whole_and_read_back(settings: Settings) -> None:
+def test_settings_are_passed_on_completely_and_read_back(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         assert (await served.api.post(SET, json=SETTINGS)).status_code == 200
         assert served.runtime.asked == [("vision_settings", SETTINGS)]
@@ -65,7 +65,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-def test_settings_that_cannot_be_are_refused_at_the_edge(settings: Settings) -> None:
+def test_invalid_settings_are_refused_by_the_server(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         for change, words in WRONG:
             answer = await served.api.post(SET, json={**SETTINGS, **change})
@@ -81,7 +81,7 @@ def test_settings_that_cannot_be_are_refused_at_the_edge(settings: Settings) -> 
     play(settings, scenario)
 
 
-def test_picking_tells_what_the_runtime_says(settings: Settings) -> None:
+def test_picking_returns_the_runtime_s_answer(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         answer = await served.api.post("/vision/pick", json={"x": 0.25, "y": 1})
         assert answer.json() == {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
@@ -147,7 +147,7 @@ def any_settings(draw: st.DrawFn) -> VisionSettings:
 
 
 @given(any_settings())
-def test_whatever_is_set_survives_toml(settings: VisionSettings) -> None:
+def test_any_settings_survive_toml(settings: VisionSettings) -> None:
     text = tomli_w.dumps({"vision": settings.table()})
     assert read_document(text) == settings.table()
     # What goes before all others keeps its place.
