@@ -142,11 +142,11 @@ export const panels = {
     noneText: 'Angles, turn rates and forces appear with the first sample of the inertial sensor.',
   },
   link: {
-    qualityHint: (seconds: number) => `Quality: share of the board’s frames that arrived in the last ${seconds} s`,
+    qualityHint: (seconds: number) => `Share of the board’s frames that arrived in the last ${seconds} s`,
     quality: 'Quality, 1 min',
     losses: 'losses',
     roundTrip: 'Round trip',
-    roundTripMinute: 'Round trip over the last minute',
+    roundTripHint: 'From a reliable frame to its acknowledgement. The strip shows the last minute',
     pageToServer: 'Page to server',
     pageToServerMeaning: 'Round trip between this page and the server',
   },

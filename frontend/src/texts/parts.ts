@@ -35,6 +35,7 @@ export const parts = {
   export: 'Export',
   all: 'All',
   none: 'None',
+  chipHint: 'Press an entry, or point at it, to see its meaning.',
   name: 'Name',
   note: 'Note',
   state: 'State',

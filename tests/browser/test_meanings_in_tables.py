@@ -1,0 +1,51 @@
+"""Meanings of headings, axes, signals and chips are there for fingers, keys and screen readers too."""
+
+from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSize, expect
+
+from tests.browser.conftest import PHONE
+from tests.stack import Stack
+
+ROOMY: ViewportSize = {"width": 1920, "height": 1080}
+"""Its layout shows the serial link."""
+
+
+def test_a_key_asks_what_a_column_of_the_frames_means(page: Page, stack: Stack) -> None:
+    page.goto(f"{stack.url}/#/system")
+    page.get_by_role("button", name="Show frames").click()
+    frames = page.get_by_role("region", name="Frames, newest first")
+    term = frames.get_by_role("columnheader", name="Awaits").locator("summary")
+    ask_by_key(term, frames.get_by_text("the reliable frame that the sender expects next"))
+
+
+def test_a_finger_asks_what_a_signal_and_an_axis_mean(
+    browser: Browser, stack: Stack, cookies: StorageState
+) -> None:
+    context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(stack.url)
+    for tab, panel, words in (
+        ("Motion", "Depth over time", "depth.depth: "),
+        ("Sensors", "Inertial sensor", "Axis pointing forwards"),
+    ):
+        page.get_by_role("tab", name=tab).tap()
+        shown = page.get_by_role("region", name=panel)
+        meaning = shown.get_by_text(words)
+        expect(meaning).to_be_hidden()
+        shown.locator("summary").first.tap()
+        expect(meaning).to_be_visible()
+    context.close()
+
+
+def test_a_key_asks_what_the_quality_of_the_link_means(page: Page) -> None:
+    page.set_viewport_size(ROOMY)
+    page.reload()
+    link = page.get_by_role("region", name="Serial link")
+    ask_by_key(link.locator("summary", has_text="Quality"), link.get_by_text("Share of the board’s frames"))
+
+
+def ask_by_key(term: Locator, meaning: Locator) -> None:
+    """Press a name with the keyboard; its meaning is hidden before and shown after."""
+    expect(meaning).to_be_hidden()
+    term.focus()
+    term.press("Enter")
+    expect(meaning).to_be_visible()
