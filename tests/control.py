@@ -1,4 +1,4 @@
-"""A client of a running robot that has control whenever it needs it, and at no other time."""
+"""A client of a running robot that takes control for each command only."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import httpx
 
 
 class Commander(httpx.Client):
-    """Takes control for each command that needs it, and releases it: the next page finds it free."""
+    """Takes control for each command that needs it, and releases it afterwards."""
 
     def request(self, method: str, url: httpx.URL | str, **options: Any) -> httpx.Response:
         answer = super().request(method, url, **options)

@@ -18,7 +18,7 @@ class Client(Protocol):
 
 
 def export_session(client: Client, session: int, format_: str = "csv", base: str = "") -> Any:
-    """The answer with the file of a session in this format; the server has deleted it by then."""
+    """The file of a session's export in this format; the export is deleted afterwards."""
     answer = client.post(f"{base}/exports", json={"session": session, "format": format_})
     answer.raise_for_status()
     job: dict[str, Any] = answer.json()

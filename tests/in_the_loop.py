@@ -85,7 +85,7 @@ def state(stack: Stack) -> dict[str, Any]:
 
 
 def has_turned(stack: Stack, session: int) -> bool:
-    """The robot has been below its set point, and rises again."""
+    """True once the robot was below its set point and rises again."""
     answer = stack.api.get(f"/sessions/{session}/blocks", params={"start": 0.0, "end": PATIENCE})
     answer.raise_for_status()
     blocks = [block for block in read_blocks(answer.content) if block.topic is DEPTH]

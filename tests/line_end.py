@@ -1,4 +1,4 @@
-"""One end of the serial line that sends what a test tells it to, at the test's time."""
+"""One end of the serial line that sends the test's packets, at the test's time."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ _NO_PACE = 10**30
 
 
 class LineEnd:
-    """Greets, delivers and acknowledges as the real ends do, but sends nothing of its own accord.
+    """Greets, delivers and acknowledges as the real ends do, but sends nothing by itself.
 
     What it hears is acknowledged by what it says next.
     """
@@ -28,7 +28,7 @@ class LineEnd:
 
     @property
     def invalid(self) -> int:
-        """Frames thrown away."""
+        """Number of invalid frames."""
         return self._decoder.invalid
 
     @property
@@ -57,14 +57,14 @@ class LineEnd:
         return data + (self.poll(now) if len(opened) < len(packets) else b"")
 
     def poll(self, now: float) -> bytes:
-        """Frames that are due without the test: repetitions and acknowledgements."""
+        """Frames that are due by themselves: retransmissions and acknowledgements."""
         data = b""
         while frame := self._channel.poll(now):
             data += frame
         return data
 
     def hear(self, data: bytes, now: float) -> list[tuple[int, bytes]]:
-        """The messages, by type and payload, that these bytes let through."""
+        """The messages in these bytes, by type and payload."""
         heard: list[tuple[int, bytes]] = []
         for frame in self._decoder.feed(data):
             self.frames += 1

@@ -8,7 +8,7 @@ from server.platform.settings import DataFolder
 
 
 class ShellToken(httpx.Auth):
-    """The token of the server that works on this folder; each start of it makes another."""
+    """The token of the server of this folder; each start of it makes another."""
 
     def __init__(self, folder: DataFolder) -> None:
         self._folder = folder
@@ -19,7 +19,7 @@ class ShellToken(httpx.Auth):
 
 
 def shell_headers(folder: DataFolder) -> dict[str, str]:
-    """The headers that prove it; none before a first server was there."""
+    """The headers with the token; none before a first server has started."""
     try:
         return {"authorization": f"Bearer {folder.token.read_text().strip()}"}
     except FileNotFoundError:

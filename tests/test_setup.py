@@ -28,7 +28,7 @@ PLAIN = (
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """A folder to be the whole PATH, with links to what the set-up asks for, but neither apt nor sudo."""
+    """A folder as the whole PATH, with links to what the set-up needs, but neither apt nor sudo."""
     for name in PLAIN:
         # A version manager's python3 is a script that needs more than itself.
         real = os.path.realpath(sys.executable) if name == "python3" else shutil.which(name)

@@ -1,4 +1,4 @@
-"""Two hosts on one computer, and a network between them that delays, jitters and loses packets.
+"""Two hosts on one computer, with a network between them that delays, jitters and loses packets.
 
 Each host is a network namespace of its own with one interface, whose far end (a TUN device) is in the hands
 of this program: it carries the IP packets over, when and if it wants to. So TCP sees true delay and true
@@ -46,7 +46,7 @@ def available() -> str:
 
 
 class TwoHosts:
-    """This process is on the one host, `HERE`; `enter_there` takes a child to the other, `THERE`.
+    """Makes this process the host `HERE`; `enter_there` moves a child to the host `THERE`.
 
     `delay` and `jitter` in s for each way; packets may overtake each other. `loss` is the share that is lost.
     """
@@ -76,7 +76,7 @@ class TwoHosts:
             os.close(handle)
 
     def enter_there(self) -> None:
-        """For a child about to run its program: from now on it is on the other host."""
+        """Move a child that is about to run its program to the other host."""
         _call(_libc.setns, self._away, _CLONE_NEWNET)
 
     def _carry(self) -> None:
@@ -100,7 +100,7 @@ class TwoHosts:
 
 
 def _interface(address: str) -> int:
-    """Bring up the loopback and a TUN device of this address in the present namespace; its far end."""
+    """Bring up the loopback and a TUN device of this address in this namespace; returns its far end."""
     handle = os.open("/dev/net/tun", os.O_RDWR)
     fcntl.ioctl(handle, _TUNSETIFF, _REQUEST.pack(b"tun0", _IFF_TUN | _IFF_NO_PI))
     for command in (

@@ -29,7 +29,7 @@ P = TypeVar("P", bound=Packet)
 
 
 class Robot:
-    """A paused board with the firmware, and a host that speaks with it tick by tick."""
+    """A paused board with the firmware, and a host in step with it."""
 
     def __init__(self, rig: Rig) -> None:
         self.rig = rig
@@ -40,7 +40,7 @@ class Robot:
         self._passed = 0.0
 
     def send(self, *packets: Packet) -> None:
-        """Put these into the host's port; they go out as emulated time passes."""
+        """Write these packets to the host's port; they are sent as emulated time advances."""
         self.rig.port.write(self._end.say(packets, self._passed))
 
     def listen(self, seconds: float) -> list[Packet]:
@@ -54,7 +54,7 @@ class Robot:
         return packets
 
     def converse(self, seconds: float, command: Navigation | None = None) -> list[Packet]:
-        """The same while the host says a HEARTBEAT ten times a second, and this command if there is one."""
+        """Packets of the board in this emulated time, while HEARTBEAT and the command, if any, are sent."""
         packets: list[Packet] = []
         for _ in range(round(seconds / TICK)):
             if self._ticks % HEARTBEAT_TICKS == 0:
@@ -64,12 +64,12 @@ class Robot:
         return packets
 
     def greet(self) -> Hello:
-        """Say HELLO until it is answered."""
+        """Send HELLO until it is answered."""
         self.send(Hello(definitions=DEFINITIONS_HASH, epoch=77, credit=4096))
         return last(self.listen(0.05), Hello)
 
     def arm(self) -> None:
-        """Greet, be steady for long enough, and START."""
+        """Greet, send steady traffic for long enough, and START."""
         hello = self.greet()
         self.converse(0.7)
         self.send(Start(epoch=hello.epoch))
@@ -79,11 +79,11 @@ class Robot:
         self.send(Stop())
 
     def status(self) -> Status:
-        """The next one that the board sends, which may say something of the last 100 ms."""
+        """The next status of the board, which may describe the last 100 ms."""
         return last(self.converse(0.2), Status)
 
     def until(self, holds: Callable[[Status], bool], limit: float) -> float:
-        """Listen, silently, until a Status says so; the emulated time it took. Fails beyond the limit."""
+        """Receive until a status meets the condition; returns the emulated time. Fails beyond the limit."""
         passed = 0.0
         while passed <= limit:
             packets = self.listen(TICK)
@@ -104,7 +104,7 @@ def last(packets: list[Packet], cls: type[P]) -> P:
 
 
 def start(name: str, folder: Path, *options: str) -> Rig:
-    """A board with this program of the firmware's."""
+    """Start a board with this program of the firmware."""
     return Rig(FIRMWARE / f"{name}.elf", folder, *options, baud=BAUD)
 
 
@@ -120,7 +120,7 @@ class Host:
         self.now = 0.0
 
     def say(self, *packets: Packet) -> None:
-        """Hand these to the session, which sends them as the line allows."""
+        """Pass these packets to the session, which sends them as the line allows."""
         self._write(self.session.send(packets, self.now))
 
     def run(self, seconds: float) -> list[tuple[float, Packet]]:
@@ -137,7 +137,7 @@ class Host:
         return self.heard[before:]
 
     def until(self, holds: Callable[[], bool], limit: float) -> float:
-        """The emulated s until this holds. Fails beyond the limit."""
+        """Emulated s until the condition holds. Fails beyond the limit."""
         start = self.now
         while not holds():
             assert self.now - start < limit, f"not within {limit:.2f} s"
@@ -145,7 +145,7 @@ class Host:
         return self.now - start
 
     def last(self, cls: type[P]) -> P:
-        """The newest packet of this kind."""
+        """The newest packet of this type."""
         return last([packet for _, packet in self.heard], cls)
 
     def _write(self, data: bytes) -> None:

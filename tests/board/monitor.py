@@ -13,7 +13,7 @@ LAST_DATA = 0x58
 
 
 class Monitor:
-    """Asks the sketch to do things; each takes a little emulated time."""
+    """Commands the sketch; each command takes a little emulated time."""
 
     def __init__(self, rig: Rig) -> None:
         self._rig = rig

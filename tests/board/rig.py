@@ -1,4 +1,4 @@
-"""A board whose time passes only by the test, with a host at its serial port."""
+"""A board whose time advances only on request, with a host at its serial port."""
 
 import fcntl
 import os
@@ -24,7 +24,7 @@ PATIENCE = 10.0
 
 @contextmanager
 def building() -> Iterator[None]:
-    """Nobody else builds meanwhile: make does not know of another one at the same files."""
+    """Lock the build: make does not know of another make on the same files."""
     lock = ROOT / "build/.building"
     lock.parent.mkdir(exist_ok=True)
     with lock.open("w") as file:
@@ -33,14 +33,14 @@ def building() -> Iterator[None]:
 
 
 def build(folder: Path, *targets: str) -> None:
-    """Bring what `folder` builds up to date, or fail with what make says."""
+    """Build `folder`, or fail with make's output."""
     with building():
         made = subprocess.run(["make", "-s", "-C", str(folder), *targets], capture_output=True, text=True)
     assert made.returncode == 0, made.stdout + made.stderr
 
 
 def wait_for(condition: Callable[[], bool], what: str) -> None:
-    """Wait until another process has come so far."""
+    """Wait for another process's progress."""
     end = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < end, f"waited in vain for {what}"
@@ -57,18 +57,18 @@ class Port:
         self._serial = serial.Serial(str(tty), int(baud), timeout=0)
 
     def set_baud(self, baud: int) -> None:
-        """The board takes it over before anything that is written later."""
+        """Set the host's baud; the board applies it before later bytes."""
         self._serial.baudrate = baud
         wait_for(lambda: self._board.stats()["baud_host"] == baud, "the board to see the new speed")
 
     def write(self, data: bytes) -> None:
-        """Write, and wait until the board has it; none of it is on the line yet."""
+        """Write, and wait until the board has the bytes; none of them is on the line yet."""
         os.write(self._serial.fileno(), data)
         self._taken += len(data)
         wait_for(lambda: self._board.stats()["bytes_from_host"] == self._taken, "the board to take the bytes")
 
     def read(self) -> bytes:
-        """All that the board has handed over since the last time."""
+        """All bytes that the board has handed over since the last call."""
         given = self._board.stats()["bytes_to_host"]
         data = bytearray()
 
@@ -81,7 +81,7 @@ class Port:
         return bytes(data)
 
     def close(self) -> None:
-        """Close; the board sees it before its time goes on."""
+        """Close; the board detects it before its time advances."""
         self._serial.close()
 
 

@@ -60,7 +60,7 @@ def insist_on_upload(tty: Path, program: Path) -> None:
 
 @contextmanager
 def empty_board(folder: Path) -> Iterator[tuple[EmulatorProcess, EmulatorClient]]:
-    """In real time, for avrdude waits by its own clock."""
+    """Uploads run in real time, for avrdude waits by its own clock."""
     options = ("--bootloader", str(OPTIBOOT), "--reset-on-open")
     with (
         EmulatorProcess(PROGRAM, None, folder / "tty", folder / "board", *options) as process,

@@ -1,4 +1,4 @@
-"""Resets, the watchdog, sleep, the EEPROM and programs that crash."""
+"""Resets, the watchdog, sleep, the EEPROM and crashing programs."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The devices as a program finds them on the chip's buses and pins."""
+"""The devices on the chip's buses and pins, as a program sees them."""
 
 import math
 import struct

@@ -49,7 +49,7 @@ def robot(built: None, tmp_path: Path) -> Iterator[Robot]:  # noqa: ARG001 - bui
 
 
 def feel(robot: Robot, depth: float, seconds: float, command: Navigation | None = None) -> list[object]:
-    """Sends these values to the board for this time, fifty times a second."""
+    """Send these values to the board for this time, fifty times a second."""
     heard: list[object] = []
     for _ in range(round(seconds / (2 * TICK))):
         robot.send(word(depth))

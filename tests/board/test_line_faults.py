@@ -25,7 +25,7 @@ def rig(make_rig: Make) -> Rig:
 
 
 def data(count: int) -> bytes:
-    """Bytes that `echo` takes for no commands."""
+    """Bytes that `echo` does not take for commands."""
     return bytes(random.Random(3).choices(range(5, 256), k=count))
 
 

@@ -1,4 +1,4 @@
-"""The board as a process: how it starts, keeps time, and ends."""
+"""The board as a process: its start, its clock, and its end."""
 
 import fcntl
 import os

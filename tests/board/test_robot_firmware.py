@@ -61,7 +61,7 @@ class Programs:
 
 @pytest.fixture
 def robot(programs: Programs) -> Robot:
-    """Booted, in still water."""
+    """The booted robot in still water."""
     return programs.start("robot")
 
 
@@ -207,7 +207,7 @@ def test_the_fins_follow_a_command(robot: Robot) -> None:
 
 
 def frequency(values: list[float], middle: float, period: float) -> float:
-    """Hz, from the crossings of the middle upwards."""
+    """Frequency in Hz, from the upward crossings of the middle."""
     rising = [i for i in range(1, len(values)) if values[i - 1] < middle <= values[i]]
     return (len(rising) - 1) / ((rising[-1] - rising[0]) * period)
 

@@ -1,4 +1,4 @@
-"""The serial line with two UARTs, at equal and at different speeds."""
+"""The serial line between two UARTs, at equal and at different speeds."""
 
 import os
 import random

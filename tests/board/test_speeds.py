@@ -37,7 +37,7 @@ Join = Callable[[int, int], Host]
 
 @pytest.fixture
 def join(built: None, tmp_path: Path) -> Iterator[Join]:  # noqa: ARG001 - the board comes first
-    """Starts a board with the firmware for one speed, and a host that opens the port at any."""
+    """Starts a board with the firmware for one baud, and a host with the same or another one."""
     with ExitStack() as boards:
 
         def make(board_baud: int, host_baud: int) -> Host:

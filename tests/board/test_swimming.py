@@ -130,7 +130,7 @@ def test_a_requested_bus_error_reaches_the_firmware(
 
 
 def is_wet(board: EmulatorClient) -> bool:
-    """True if another connection is the water."""
+    """True if another connection supplies the water."""
     try:
         board.sense(STILL_WATER)
     except BoardError:

@@ -1,4 +1,4 @@
-"""The lockstep between the board and the water, and the commands on the socket."""
+"""The lockstep of board and water, and the commands on the socket."""
 
 import contextlib
 import socket

@@ -6,7 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 PACKAGES = ("robot_runtime", "server", "migrations")
-RIDDLES = frozenset({"What", "Whatever", "Who", "Whoever", "Whom", "Whose", "Whether", "How", "Let", "That"})
+DOCUMENTED = (*PACKAGES, "bench", "tests")
+"""Packages whose docstrings are checked; class and variable names only in the product's."""
+RIDDLES = frozenset(
+    {"What", "Whatever", "When", "Where", "Whether", "Which", "Who", "Whoever", "Whom", "Whose", "Why"}
+    | {"How", "Let", "That"}
+)
 """Words that begin a clause without a subject."""
 DIALECT = frozenset({"befall", "felt", "kept", "lent", "told", "wanted"})
 """Participles of the project's old private English: say set point, requested, reported, override, backlog."""
@@ -26,12 +31,12 @@ Modules = dict[str, ast.Module]
 
 def find_bad_names(root: Path) -> list[str]:
     """One line for each name or docstring against the rules: place, name and what to do."""
-    modules = _parse(root)
-    return [*_repeated_classes(modules), *_riddles(modules), *_dialect(modules)]
+    modules = _parse(root, PACKAGES)
+    return [*_repeated_classes(modules), *_riddles(_parse(root, DOCUMENTED)), *_dialect(modules)]
 
 
-def _parse(root: Path) -> Modules:
-    files = sorted(file for package in PACKAGES for file in (root / package).rglob("*.py"))
+def _parse(root: Path, packages: tuple[str, ...]) -> Modules:
+    files = sorted(file for package in packages for file in (root / package).rglob("*.py"))
     return {file.relative_to(root).as_posix(): ast.parse(file.read_text(encoding="utf-8")) for file in files}
 
 

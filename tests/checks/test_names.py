@@ -20,15 +20,16 @@ def test_a_public_class_that_exists_twice_is_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "word", ["What", "Whatever", "Who", "Whom", "Whose", "Whether", "How", "Let", "That"]
+    "word", ["What", "Whatever", "When", "Where", "Which", "Who", "Whose", "Whether", "How", "Let", "That"]
 )
+@pytest.mark.parametrize("place", ["server/one.py", "tests/one.py"])
 @pytest.mark.parametrize(
     "source", ['"""{} it is."""', 'class A:\n    """{} it is."""', 'async def a():\n    """{} it is."""']
 )
-def test_a_docstring_that_is_a_riddle_is_found(tmp_path: Path, word: str, source: str) -> None:
-    write_module(tmp_path, "server/one.py", source.format(word))
+def test_a_docstring_that_is_a_riddle_is_found(tmp_path: Path, place: str, word: str, source: str) -> None:
+    write_module(tmp_path, place, source.format(word))
     assert find_bad_names(tmp_path) == [
-        f"server/one.py:1: the docstring begins with {word}; say what it is or does"
+        f"{place}:1: the docstring begins with {word}; say what it is or does"
     ]
 
 

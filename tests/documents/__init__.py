@@ -1,1 +1,1 @@
-"""The documents' own commands and code, run."""
+"""Tests of the documents' own commands and code."""

@@ -1,4 +1,4 @@
-"""Code blocks of a page, and the changes to files that they describe.
+"""Code blocks of a page, and their changes to files.
 
 A block with a title is a new file, or what is added at the end of a file. A `diff` block with a title changes
 a file: its lines without `+` are searched for, and replaced by its lines without `-`.

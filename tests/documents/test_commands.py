@@ -1,4 +1,4 @@
-"""The commands of the tutorial and of the pages of tasks, run one after the other as a reader runs them."""
+"""The commands of the tutorial and the task pages, run in a reader's order."""
 
 import os
 import shlex
@@ -47,7 +47,7 @@ def run(commands: list[str], folder: Path) -> list[str]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which the tutorial was followed."""
+    """A folder in which the tutorial's commands have run."""
     path = tmp_path_factory.mktemp("reader")
     (path / "robot.toml").write_text((ROOT / "robot.toml").read_text())
     (path / "server").symlink_to(ROOT / "server")

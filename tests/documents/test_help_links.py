@@ -1,4 +1,4 @@
-"""The page's links into the help: each leads to a chapter, and to a heading that is there."""
+"""The page's links into the help: each leads to an existing chapter and heading."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The pages "add a ...": each step is applied to a copy of the tree, each command is run there."""
+"""The pages "add a ...": each step is applied to a copy of the tree, each command is run in it."""
 
 import shutil
 import subprocess
@@ -15,7 +15,7 @@ LINKED = (".venv", "build", "frontend/node_modules")
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """A copy of the files under version control, with what is built beside them."""
+    """A copy of the files under version control, with the build products."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True)
     copy = tmp_path / "tree"
     for name in filter(None, listed.stdout.split("\0")):
@@ -28,7 +28,7 @@ def tree(tmp_path: Path) -> Path:
 
 
 def follow(page: str, tree: Path) -> None:
-    """Do what the page says, from its first block to its last."""
+    """Apply the page's blocks from first to last."""
     for block in read_blocks(page):
         if block.title:
             apply(block, tree)
@@ -39,7 +39,7 @@ def follow(page: str, tree: Path) -> None:
 
 
 def changed_modules(page: str) -> list[str]:
-    """The modules of the product that the page has somebody write or change."""
+    """The modules of the product that the page creates or changes."""
     titles = dict.fromkeys(block.title for block in read_blocks(page) if block.title)
     return [title for title in titles if title.startswith(("robot_runtime/", "server/", "frontend/"))]
 

@@ -53,7 +53,7 @@ class PressureSensor:
         return b""
 
     def show(self, pressure: float) -> None:
-        """Set the raw counts so that they mean this pressure (Pa), at the temperature of the example."""
+        """Set the raw counts for this pressure (Pa), at the temperature of the example."""
         low, high = 0, 1 << 24
         while high - low > 1:
             middle = (low + high) // 2
@@ -112,7 +112,7 @@ class Bridge:
 
     @property
     def drive(self) -> int:
-        """-63 to 63; 0 where it coasts."""
+        """The drive, -63 to 63; 0 where it coasts."""
         size = self.control >> 2
         return {FORWARD: size, REVERSE: -size}.get(self.control & 3, 0)
 

@@ -95,12 +95,12 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
 
 
 def build() -> None:
-    """Compile the library, or fail with what make says."""
+    """Compile the library, or fail with make's output."""
     rig.build(ROOT / "firmware", "host")
 
 
 def load() -> ctypes.CDLL:
-    """The library, its names typed."""
+    """The library with typed names."""
     library = ctypes.CDLL(str(PATH))
     for name, (result, *arguments) in _SIGNATURES.items():
         function = getattr(library, name)

@@ -43,7 +43,7 @@ def navigation(
 
 
 class Robot:
-    """Switched on at its creation; leaving the context ends it."""
+    """A robot that is switched on at its creation; leaving the context ends it."""
 
     def __init__(self, firmware: ctypes.CDLL) -> None:
         self.firmware = firmware
@@ -71,7 +71,7 @@ class Robot:
         self.firmware.robot_destroy(self._robot)
 
     def reset(self, cause: ResetCause) -> None:
-        """Start again, as the chip does after a reset."""
+        """Restart, as the chip does after a reset."""
         self.firmware.robot_destroy(self._robot)
         self._boot(cause)
 
@@ -102,7 +102,7 @@ class Robot:
 
     @property
     def now(self) -> int:
-        """ms since the board was made."""
+        """ms since the board's creation."""
         return int(self.firmware.board_now_us()) // 1000
 
     @property
@@ -111,14 +111,14 @@ class Robot:
         return bool(self.firmware.board_motor_power())
 
     def say(self, *packets: Packet) -> None:
-        """Send these to the board; they arrive with the next time that passes."""
+        """Send these packets to the board; they arrive when time advances."""
         self.send(self._end.say(packets, self.now / 1000))
 
     def send(self, data: bytes) -> None:
         self.firmware.board_receive(data, len(data))
 
     def run(self, milliseconds: int) -> list[Packet]:
-        """Lets time pass; returns the packets that the board sent."""
+        """Run for this time; returns the packets that the board sent."""
         heard: list[Packet] = []
         while milliseconds > 0:
             part = min(milliseconds, TICK - self.now % TICK)
@@ -139,46 +139,46 @@ class Robot:
         return heard
 
     def last(self, kind: type[P]) -> P:
-        """The newest packet of this kind."""
+        """The newest packet of this type."""
         return next(packet for packet in reversed(self.received) if isinstance(packet, kind))
 
     def status(self) -> Status:
-        """The board's state now: the next status."""
+        """The board's state, from its next status."""
         while not any(isinstance(packet, Status) for packet in self.run(TICK)):
             pass
         return self.last(Status)
 
     @property
     def epoch(self) -> int:
-        """The board's epoch, as its newest greeting says."""
+        """The board's epoch, from its newest greeting."""
         return self.last(Hello).epoch
 
     @property
     def texts(self) -> list[str]:
-        """The board's lines of text."""
+        """The board's debug lines."""
         return [line.text for line in self.lines]
 
     def beat(self, milliseconds: int, every: int = 100) -> None:
-        """Lets time pass with a heartbeat at its start and periodically."""
+        """Run for this time with a heartbeat at its start and periodically."""
         for _ in range(milliseconds // every):
             self.say(Heartbeat(time=self.now))
             self.run(every)
 
     def greet(self) -> None:
-        """Greet the board, and let 600 ms of steady traffic pass."""
+        """Greet the board, and send 600 ms of steady traffic."""
         self.say(hello())
         self.run(50)
         self.beat(600, every=50)
 
     def arm(self) -> None:
-        """Greet, and arm."""
+        """Greet and arm."""
         self.greet()
         self.say(Start(epoch=self.epoch))
         self.run(2 * TICK)
         assert self.texts[-1] == "armed"
 
     def swim(self, milliseconds: int, command: Navigation) -> None:
-        """Lets time pass with a command at its start and every 50 ms."""
+        """Run for this time with a command at its start and every 50 ms."""
         while milliseconds > 0:
             self.say(command)
             self.run(min(50, milliseconds))

@@ -64,7 +64,7 @@ def test_library_is_one_for_the_arduino_ide() -> None:
 
 @pytest.mark.parametrize("baud", [1200, 9600, 57600, 115200, 250000, 500000])
 def test_every_usual_baud_compiles(baud: int, tmp_path: Path) -> None:
-    """The rate's error and the telemetry's divider are checked where the code is compiled."""
+    """The error of the baud and the divider of telemetry are checked at compile time."""
     compile_line(baud, tmp_path)
 
 

@@ -19,7 +19,7 @@ fins = st.integers(0, 3)
 
 
 def between(angle: float, other: float) -> float:
-    """The angle from one to the other, the shortest way."""
+    """The shortest angle from one to the other."""
     return abs(math.remainder(angle - other, math.tau))
 
 

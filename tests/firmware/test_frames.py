@@ -63,7 +63,7 @@ keys = st.integers(0, 0xFFFFFFFF)
 
 
 def raw_frame(content: bytes) -> bytes:
-    """A frame around any control and messages, with a right checksum; 0 as number, where it has one."""
+    """A frame of any control and messages with a valid checksum; 0 as number, where it has one."""
     first = packets.PACKETS.get(content[1]) if len(content) > 1 else None
     if first is None or not first.reliable:
         content += b"\0"
@@ -269,7 +269,7 @@ def queue(firmware: ctypes.CDLL) -> Iterator[int]:
 
 
 def popped(firmware: ctypes.CDLL, queue: int, most: int) -> list[bytes]:
-    """The oldest messages, up to that many, taken."""
+    """Take up to this many of the oldest messages."""
     room = ctypes.create_string_buffer(64)
     sizes = (firmware.queue_pop(queue, room) for _ in range(most))
     return [room.raw[:size] for size in sizes if size]

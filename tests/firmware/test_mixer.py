@@ -23,7 +23,7 @@ angles = st.tuples(*[st.floats(-3.125, 3.125, width=32)] * 4)
 def mix(
     firmware: ctypes.CDLL, command: tuple[int, ...], directions: tuple[float, ...] = (0.0,) * 4
 ) -> list[Fin]:
-    """Direction and amplitude of each fin, rad, which pointed at `directions` before."""
+    """Direction and amplitude of each fin, rad; before, the fins pointed to `directions`."""
     room = (ctypes.c_float * 4)(*directions)
     amplitudes = (ctypes.c_float * 4)()
     firmware.firmware_mix(bytes(count & 0xFF for count in command), room, amplitudes)
@@ -31,7 +31,7 @@ def mix(
 
 
 def wrench(fins: list[Fin]) -> list[float]:
-    """x, y, z, roll, pitch, yaw of what the fins give, in units of one fin's most."""
+    """x, y, z, roll, pitch, yaw of the fins' forces, in units of one fin's maximum."""
     total = [0.0] * 6
     for (direction, amplitude), (x, y), (along_x, along_y) in zip(fins, POSITIONS, ALONG, strict=True):
         # Published: a fin's mean thrust goes with 1 - cos(amplitude).
@@ -91,7 +91,7 @@ def test_no_fin_exceeds_full_command(firmware: ctypes.CDLL, command: tuple[int, 
 
 @given(command=commands)
 def test_excessive_commands_are_scaled_in_proportion(firmware: ctypes.CDLL, command: tuple[int, ...]) -> None:
-    """Each fin pushes the sum of what the axes ask; all are scaled alike where one would push too much."""
+    """Each fin adds what the axes demand; all are scaled alike where one would exceed its maximum."""
     x, y, z, roll, pitch, yaw = (count / 127 for count in command)
     wanted: list[tuple[float, float]] = []
     for (px, py), (ax, ay) in zip(POSITIONS, ALONG, strict=True):

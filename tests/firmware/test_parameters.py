@@ -1,4 +1,4 @@
-"""Parameters on the chip: limited, always answered, lost at a reset."""
+"""Parameters on the chip: limited, always confirmed, lost at a reset."""
 
 import math
 from itertools import pairwise
@@ -28,7 +28,7 @@ RESTING = 0.02
 
 
 def tune(robot: Robot, name: str, value: float) -> float:
-    """The value in force, as the board answers."""
+    """The value in force, from the board's answer."""
     robot.say(Parameter(number=NUMBERS[name], value=value))
     answers = [packet for packet in robot.run(50) if isinstance(packet, Parameter)]
     assert [answer.number for answer in answers] == [NUMBERS[name]]
@@ -36,7 +36,7 @@ def tune(robot: Robot, name: str, value: float) -> float:
 
 
 def wanted_swing(packets: list[Packet]) -> float:
-    """rad; how far the first fin is wanted to swing, peak to peak."""
+    """Commanded swing of the first fin, rad, peak to peak."""
     wanted = [packet.wanted[0] for packet in packets if isinstance(packet, Motor)]
     return max(wanted) - min(wanted)
 
@@ -94,7 +94,7 @@ def test_host_of_other_definitions_changes_nothing(robot: Robot) -> None:
 
 
 def test_every_answer_comes_though_the_queue_is_full(robot: Robot) -> None:
-    """After a start the board's words fill its queue; each answer waits for its room."""
+    """After a start debug lines fill the board's queue; each answer waits for room."""
     robot.say(hello())
     robot.run(20)
     robot.say(*(Parameter(number=number, value=one.maximum) for number, one in enumerate(CHIP_PARAMETERS)))
@@ -115,7 +115,7 @@ def test_amplitude_is_that_of_full_command(robot: Robot) -> None:
 
 
 def strokes(robot: Robot, milliseconds: int) -> int:
-    """Count of the first fin's strokes, by its set point."""
+    """Count of the first fin's strokes, from its set point."""
     robot.received.clear()
     robot.swim(milliseconds, navigation(x=1))
     wanted = [packet.wanted[0] for packet in robot.received if isinstance(packet, Motor)]

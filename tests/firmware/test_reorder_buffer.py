@@ -1,4 +1,4 @@
-"""The firmware's link stores frames that arrive out of order, reports them, and accepts them in order."""
+"""The firmware's reorder buffer: early frames are stored, acknowledged, and delivered in order."""
 
 import ctypes
 
@@ -15,7 +15,7 @@ NUMBERS_IN_A_FRAME = 19
 
 
 class Host:
-    """A host that has greeted and says which frame it likes."""
+    """A host after its greeting, which sends frames of any number."""
 
     def __init__(self, robot: Robot) -> None:
         robot.say(hello(epoch=HOST_EPOCH))
@@ -28,7 +28,7 @@ class Host:
         self._robot.send(assemble(b"".join(map(encode, packets)), True, number, 0, self._key))
 
     def told(self) -> tuple[int, int]:
-        """The frame that the board waits for, and bits of those it has behind it, after a few ticks."""
+        """The number that the board waits for, and bits of the frames held after it, after a few ticks."""
         firmware = self._robot.firmware
         room = ctypes.create_string_buffer(1 << 16)
         firmware.board_take(room, len(room))

@@ -1,4 +1,4 @@
-"""The robot as a whole: telemetry and its rates, devices that fail, surface, battery, LED, lines of text."""
+"""The whole robot: telemetry and its rates, failing devices, surface, battery, LED, debug lines."""
 
 from collections import Counter
 from itertools import pairwise
@@ -281,7 +281,7 @@ def test_battery_that_is_not_connected_is_no_alarm(robot: Robot) -> None:
 
 
 def lit_share(robot: Robot) -> tuple[float, int]:
-    """The share of a second in which the LED is lit, and how often it goes on."""
+    """The share of a second in which the LED is lit, and the number of flashes."""
     seen = []
     for _ in range(100):
         robot.say(Heartbeat(time=0))
@@ -329,7 +329,7 @@ def test_flood_of_bytes_does_not_stop_the_ticks(robot: Robot) -> None:
 
 
 def test_flood_of_frames_is_taken_one_a_pass(robot: Robot) -> None:
-    """So that a chip that takes long for each still does its ticks; a pass here is a millisecond."""
+    """A chip that takes long for each frame still does its ticks; a pass here is a millisecond."""
     robot.run(500)
     robot.send(b"\x01\x02\0" * 1000)
     start = robot.now

@@ -72,7 +72,7 @@ def test_board_answers_each_hello(robot: Robot) -> None:
 
 
 def refused(robot: Robot, reason: str, *packets: Packet) -> None:
-    """Checks that these packets are refused for this reason, and that nothing arms."""
+    """Check that these packets are refused for this reason, and that nothing arms."""
     robot.say(*packets)
     robot.run(30)
     assert robot.texts[-1] == f"START refused: {reason}"
@@ -168,7 +168,7 @@ def test_forward_flaps_the_front_fins(robot: Robot) -> None:
 
 @pytest.mark.parametrize("late", [0, 7, 190, 385, 620])
 def test_fins_rest_half_a_second_after_the_last_command(robot: Robot, late: int) -> None:
-    """Holds for any phase of the stroke when the commands end; the host is still there."""
+    """Holds for any phase of the stroke at the end of the commands; the host is still alive."""
     robot.arm()
     robot.swim(1000 + late, FORWARD)
     robot.say(FORWARD)
@@ -188,7 +188,7 @@ def test_fins_rest_half_a_second_after_the_last_command(robot: Robot, late: int)
 
 @pytest.mark.parametrize("turned", [20, 150, 400])
 def test_fins_that_are_turning_round_rest_too(robot: Robot, turned: int) -> None:
-    """Half a turn takes 0.64 s; who lets go meanwhile waits no longer for rest than anybody else."""
+    """Half a turn takes 0.64 s; the end of commands during it delays the rest no further."""
     robot.arm()
     robot.swim(1000, navigation(z=1))
     robot.swim(turned, navigation(z=-1))

@@ -1,4 +1,4 @@
-"""The host's session and the firmware's link against each other, on a line that damages what it carries."""
+"""The host's session and the firmware's link against each other, on a line with errors."""
 
 import ctypes
 import random
@@ -18,7 +18,7 @@ RESTARTS = 300
 
 
 class Pair:
-    """A session of the host's and the firmware on a board in memory, and what the host was told."""
+    """A session of the host and the firmware on a board in memory, with the packets that arrived."""
 
     def __init__(self, robot: Robot, seed: int) -> None:
         self.robot = robot
@@ -76,7 +76,7 @@ class Pair:
                 self.imus += message.type == Imu.type
 
     def check_lines(self) -> None:
-        """None came twice, and all in order. What is said at one moment differs in its words."""
+        """Check that no line came twice, and all in order; lines of one moment have distinct texts."""
         assert all(earlier.time <= later.time for earlier, later in pairwise(self.lines))
         assert len({(line.time, line.text) for line in self.lines}) == len(self.lines)
 

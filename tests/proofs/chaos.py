@@ -1,4 +1,4 @@
-"""All faults in turn, while the robot records: `python -m tests.proofs.chaos 3600`; status 1 for losses.
+"""Cycle through all faults while the robot records: `python -m tests.proofs.chaos 3600`; status 1 for losses.
 
 Noise and cuts on the serial line, processes killed and stopped, pages that read slowly or not at all, a disk
 that fills up, a wall clock that jumps, one after the other at random. Afterwards what was counted must be
@@ -82,7 +82,7 @@ class Report:
 
 
 class Storm:
-    """A robot, and what befalls it."""
+    """A running robot under faults."""
 
     def __init__(self, data: Path, clock: Path, seed: int, *, small_disk: bool) -> None:
         self.report = Report()
@@ -98,13 +98,13 @@ class Storm:
             self._gentle.append(self._fill_disk)
 
     def close(self) -> None:
-        """End everything."""
+        """End all processes."""
         for page in self._pages:
             page.close()
         self._world.close()
 
     def rage(self, seconds: float) -> None:
-        """Injects faults for this time, the second half without kills, and counts afterwards."""
+        """Inject faults for this time, the second half without kills, and count the losses."""
         session = self._stack.api.post("/sessions", json={"name": "chaos"}).json()["id"]
         began = time.monotonic()
         for gentle in (False, True):
@@ -130,7 +130,7 @@ class Storm:
         self._count(session)
 
     def _require_recording(self, session: int) -> None:
-        """Nothing here may end a session: neither a hole that is not filled, nor the disk."""
+        """Check that no fault has ended a session."""
         found = self._ask(lambda: self._stack.api.get(f"/sessions/{session}"))
         if found.is_error or found.json()["state"] != "recording":
             said = self._stack.log.read_text()[-2000:]
@@ -215,7 +215,7 @@ class Storm:
     # In between
 
     def _swim(self) -> None:
-        """Armed again, where it was stopped; a refusal is not what is tested here."""
+        """Arm again where the robot was stopped; a refusal is not tested here."""
         with suppress(httpx.TransportError):
             self._stack.api.post("/robot/commands/acknowledge")
             self._stack.api.post("/robot/commands/arm")
@@ -302,7 +302,7 @@ class Storm:
 
 
 def storm(folder: Path, seconds: float, seed: int, *, small_disk: bool) -> Report:
-    """In this folder, on a disk of its own where it is a small one."""
+    """Run all faults in this folder; `small_disk`: it is a small disk of its own."""
     library, clock = folder / "wall_clock.so", folder / "wall_clock"
     clock.write_bytes(struct.pack("<q", 0))
     source = Path(__file__).with_name("wall_clock.c")
@@ -328,7 +328,7 @@ def storm(folder: Path, seconds: float, seed: int, *, small_disk: bool) -> Repor
 
 
 def run(seconds: float, seed: int, folder: Path) -> str:
-    """A storm in a process of its own, on a small disk where the system lets us; its report as JSON."""
+    """Run in another process, on a small disk where the system permits; returns its report as JSON."""
     command = [sys.executable, "-m", "tests.proofs.chaos", str(seconds), str(seed), str(folder)]
     mount = f'mount -t tmpfs -o size={DISK} tmpfs "{folder}" && exec "$@"'
     namespace = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", mount, "sh"]

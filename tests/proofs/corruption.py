@@ -21,7 +21,7 @@ BATCH = 2000
 
 
 class Model(NamedTuple):
-    """A kind of damage: its number in corruption.h, and the rate of bit errors."""
+    """A kind of corruption: its number in corruption.h, and the rate of bit errors."""
 
     damage: int
     rate: float = 0.0
@@ -48,7 +48,7 @@ MODELS = {
 
 @dataclass
 class Counts:
-    """Damaged frames, accepted frames that were sent, and accepted frames that were never sent."""
+    """Corrupted frames, accepted frames that were sent, and accepted frames that were never sent."""
 
     corrupted: int = 0
     accepted: int = 0
@@ -117,7 +117,7 @@ class DamagingLine:
 
 
 def prepare() -> None:
-    """Compiles the lines."""
+    """Compile the lines."""
     build(ROOT / "firmware", "proofs")
 
 

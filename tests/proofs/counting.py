@@ -1,4 +1,4 @@
-"""Frames of the serial line damaged one by one: does each end count exactly those that were damaged?
+"""Counts of damaged frames on the serial line: each end counts exactly the damaged ones.
 
 The emulated chip and the runtime's end of the line, in simulated time. In each chosen frame one bit is
 changed, but never so that a byte becomes the zero that ends a frame: then one damaged frame is one, and every
@@ -48,7 +48,7 @@ class Wire(EmulatedBoard):
         super().__init__(BUILD / "board", firmware_path(BUILD, LinkConfig().baud, ".elf"), water)
 
     def run(self, periods: int) -> bytes:
-        """Lets time pass; returns the bytes for the host, some of them damaged."""
+        """Run for this time; returns the bytes for the host, some of them damaged."""
         *frames, self._partial = (self._partial + super().run(periods)).split(b"\0")
         return b"".join(self._pass(frame, self.to_host) + b"\0" for frame in frames)
 
@@ -71,7 +71,7 @@ class Wire(EmulatedBoard):
 
 
 def count(seconds: float, seed: int) -> tuple[Counts, Counts]:
-    """Swim for so long on such a line; the counts of what goes to the host, and to the board."""
+    """Run for this time on such a line; returns the counts of both directions."""
     wires: list[Wire] = []
 
     def make(water: Water) -> Wire:

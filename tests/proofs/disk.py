@@ -1,4 +1,4 @@
-"""A program's file operations, step by step, and the disks that a power cut may leave.
+"""A program's file operations, step by step, and the possible disks after a power cut.
 
 `tests/proofs/disk_log.c`, preloaded, writes the steps down. Synced bytes and names stay. Of what was not
 synced anything may be there or not, in any order: whole writes, or only some of their sectors; a name without
@@ -28,14 +28,14 @@ it; some of its sectors; the same, and some of the sectors that were to be writt
 
 
 def build(folder: Path) -> Path:
-    """Compile the library that is preloaded."""
+    """Compile the preloaded library."""
     library = folder / "disk_log.so"
     subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-o", str(library), str(SOURCE), "-ldl"], check=True)
     return library
 
 
 def logging(library: Path, folder: Path, log: Path) -> dict[str, str]:
-    """The environment in which a program's steps below `folder` are written down."""
+    """The environment that records a program's file operations below `folder`."""
     names = {"LD_PRELOAD": str(library), "DISK_LOG_FOLDER": str(folder), "DISK_LOG": str(log)}
     return os.environ | names
 
@@ -56,7 +56,7 @@ class Step:
 
 
 def note(log: Path, demands: dict[str, list[Any] | None]) -> None:
-    """Write down what must be on the disk from now on: of each thing, what may be there; None: anything."""
+    """Record the facts that must be on the disk from now on, each with its allowed values; None: any."""
     data = json.dumps(demands).encode()
     head = HEAD.pack(HEAD.size - SIZE_BYTES + len(data), os.getpid(), -1, 0, 0, 0, b"a")
     handle = os.open(log, os.O_WRONLY | os.O_APPEND)
@@ -65,7 +65,7 @@ def note(log: Path, demands: dict[str, list[Any] | None]) -> None:
 
 
 def read(log: Path) -> Iterator[Step]:
-    """All that was written down, in order."""
+    """All records, in order."""
     text = log.read_bytes()
     at = 0
     while at < len(text):
@@ -90,7 +90,7 @@ class File:
 
 
 class Disk:
-    """The files below a folder as far as the steps have come."""
+    """The files below a folder after some of the steps."""
 
     def __init__(self, folder: Path) -> None:
         self.files: list[File] = []
@@ -101,7 +101,7 @@ class Disk:
         self._now: dict[str, int | None] = dict(self._synced)
 
     def take(self, step: Step) -> None:
-        """Go on by a step."""
+        """Apply a step."""
         if step.kind == "w":
             self._file(step).pending.append((step.offset, step.data))
         elif step.kind == "t":
@@ -177,7 +177,7 @@ def _some(all_: list[T], cut: Cut, chance: random.Random) -> list[T]:
 
 
 def _is_there(name: str, names: dict[str, int | None]) -> bool:
-    """True if all its folders exist; the first always does."""
+    """True if all its folders exist; the first always exists."""
     folder = os.path.dirname(name)  # noqa: PTH120 - a text
     first = next(iter(names))
     while len(folder) > len(first):
@@ -211,7 +211,7 @@ def _tear(content: bytearray, offset: int, data: bytes | None, sector: int, chan
 def _spoil(
     content: bytearray, pending: list[tuple[int, bytes | None]], sector: int, chance: random.Random
 ) -> None:
-    """Each sector that was to be written may hold anything, also where it held something before."""
+    """Each sector being written may hold anything, even where it held data before."""
     for offset, data in pending:
         for at in range(offset // sector * sector, offset + len(data or b""), sector):
             if at < len(content) and chance.random() < 0.25:

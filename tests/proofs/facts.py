@@ -20,7 +20,7 @@ FACTS = {
 
 
 class DamagedDataError(Exception):
-    """SQLite finds the database damaged."""
+    """The database is damaged, according to SQLite."""
 
 
 def read_facts(database: Path, mode: Literal["ro", "rw"]) -> dict[str, Any]:
@@ -47,5 +47,5 @@ def read_facts(database: Path, mode: Literal["ro", "rw"]) -> dict[str, Any]:
 
 
 def holds(fact: Any, allowed: list[Any], *, grows: bool) -> bool:
-    """True if a fact is one of those allowed, or larger if it only grows."""
+    """True if a fact has an allowed value, or a larger one if it only grows."""
     return fact in allowed or (grows and isinstance(fact, int) and fact >= min(allowed))

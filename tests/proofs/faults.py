@@ -50,7 +50,7 @@ _TOP_HEAVY = _TRIM | {"buoyancy": 1.003, "above": -0.03}
 
 
 class Swim(Flight):
-    """A flight on the emulated chip; the fins are looked at every 5 ms."""
+    """A flight on the emulated board; the fins are read every 5 ms."""
 
     def __init__(self, elf: str = "robot", more: str = "") -> None:
         self.moved = self.powered = self.switched_on = -inf
@@ -70,12 +70,12 @@ class Swim(Flight):
         return None
 
     def tilt(self) -> float:
-        """rad, of the simulated hull."""
+        """Tilt of the simulated hull, rad."""
         _, x, y, _ = self.stage.simulator.truth().attitude
         return acos(max(1 - 2 * (x * x + y * y), -1.0))
 
     def calm(self, mode: Mode) -> None:
-        """Waits until all is well, then swims."""
+        """Wait until all is well, then arm."""
         self.supervisor.stop("The next one.")
         self.until(lambda: not any(alarm.active for alarm in self.supervisor.alarms), CALM)
         self.supervisor.acknowledge()
@@ -182,7 +182,7 @@ def _empty(swim: Swim) -> Wrong:
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """A fault, and the s within which it must be told, the fins be at rest, and the motors without power."""
+    """A fault with its limits in s: until the alarm, until the fins rest, until the motors lose power."""
 
     name: str
     wrong: Callable[[Swim], Wrong]
@@ -247,7 +247,7 @@ BY_ROW = {row.name: row for row in ROWS}
 
 @dataclass
 class Measured:
-    """A row's times of each injection, s after it, and what must not be."""
+    """The times of each injection of a fault, in s after it, and the problems."""
 
     told: list[float] = field(default_factory=list)
     rest: list[float] = field(default_factory=list)
@@ -256,7 +256,7 @@ class Measured:
 
 
 def measure(row: Row, times: int, seed: int) -> Measured:
-    """Inject the fault so many times, each at a random moment of swimming."""
+    """Inject the fault repeatedly, each time at a random moment of swimming."""
     chance = random.Random(f"{row.name} {seed}")
     measured = Measured()
     while len(measured.told) < times:
@@ -268,19 +268,19 @@ def measure(row: Row, times: int, seed: int) -> Measured:
 
 
 def measure_all(times: int, seed: int, rows: Sequence[Row] = ROWS, processes: int = 2) -> dict[str, Measured]:
-    """All rows, some beside each other."""
+    """Measure all faults, some in parallel."""
     with ProcessPoolExecutor(processes) as pool:
         parts = {row.name: pool.submit(measure_named, row.name, times, seed) for row in rows}
         return {name: part.result() for name, part in parts.items()}
 
 
 def measure_named(name: str, times: int, seed: int) -> Measured:
-    """`measure` of the row of this name."""
+    """Measure the fault of this name."""
     return measure(BY_ROW[name], times, seed)
 
 
 def table(measured: dict[str, Measured]) -> str:
-    """For a person, in ms."""
+    """Describe the times in ms, for a person."""
     lines = [
         f"{'fault':<18}{'n':>5}{'told':>9}{'limit':>7}{'at rest':>9}{'limit':>7}{'no power':>10}{'limit':>7}"
     ]

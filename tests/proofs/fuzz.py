@@ -42,13 +42,13 @@ class FuzzError(Exception):
 
 
 def raw(packets: Sequence[Packet], number: int, key: int = _KEY) -> bytes:
-    """A deed: this very frame, as the host encodes it."""
+    """An action of the fuzzer's input: this frame, as the host encodes it."""
     frame = build_frame(packets, number, 0, key)
     return _RAW + bytes([len(frame)]) + frame
 
 
 def seeds() -> dict[str, bytes]:
-    """Inputs by name: what hosts say, in real bytes and in the fuzzer's own words."""
+    """Seed inputs by name: packets of hosts, as real bytes and as actions of the fuzzer."""
     beats = b"".join(raw([Heartbeat(time=100 * i)], i) + _WAIT + bytes([99]) for i in range(7))
     greeted = raw([_GREETING], 0, 0) + beats
     armed = greeted + raw([Start(epoch=BOARD)], 0) + _WAIT + bytes([20])
@@ -73,7 +73,7 @@ def seeds() -> dict[str, bytes]:
 
 
 def prepare(folder: Path) -> None:
-    """Compile the fuzzer, and put the seeds there."""
+    """Compile the fuzzer, and write the seeds."""
     build(ROOT / "firmware", "fuzz")
     folder.mkdir(parents=True, exist_ok=True)
     for name, seed in seeds().items():
@@ -81,7 +81,7 @@ def prepare(folder: Path) -> None:
 
 
 def run(corpus: Path, *limits: str) -> int:
-    """Fuzz within these limits of libFuzzer's; the number of executions. Raises FuzzError at a finding."""
+    """Fuzz within these limits of libFuzzer; returns the executions. Raises FuzzError at a finding."""
     command = [
         str(PROGRAM),
         f"-max_len={INPUT_BYTES_MAX}",
@@ -97,7 +97,7 @@ def run(corpus: Path, *limits: str) -> int:
 
 
 def main() -> None:
-    """Fuzz for so many seconds."""
+    """Fuzz for this many seconds."""
     seconds = sys.argv[1] if len(sys.argv) == 2 else "60"
     prepare(CORPUS / "corpus")
     try:

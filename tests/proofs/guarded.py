@@ -1,4 +1,4 @@
-"""Everything that must have an entry in `guards.toml`, read from the tables of the code itself.
+"""The subjects that must have an entry in `guards.toml`, read from the tables of the code itself.
 
 A test fails where one of these is new and has no entry: a fault, a reason of the board to refuse or to
 disarm, a security header, a flag of a cookie, an operation that needs control, a module that asks for room

@@ -25,12 +25,12 @@ TEST_SECONDS = 240
 
 
 class GuardError(Exception):
-    """The proof cannot be made; the text says why."""
+    """The proof cannot be made; the text gives the reason."""
 
 
 @dataclass(frozen=True)
 class Guard:
-    """A text that guards, what stands there `without` it, and the tests that must see it."""
+    """A guarding text, its replacement `without` it, and the tests that must fail then."""
 
     name: str
     file: str
@@ -55,7 +55,7 @@ class Guard:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of the tests: those that failed, and those that could not start."""
+    """Result of the tests: the failed ones, and those that could not start."""
 
     failed: tuple[str, ...]
     broken: tuple[str, ...]
@@ -64,13 +64,13 @@ class Outcome:
 
 
 class Tree:
-    """A copy of the source tree, whose guards can be taken away."""
+    """A copy of the source tree from which guards are removed."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
 
     def run(self, tests: Iterable[str]) -> Outcome:
-        """Run these tests there, up to the first that fails."""
+        """Run these tests in the copy, up to the first that fails."""
         report, started = self.root / "report.xml", time.monotonic()
         # Nobody reads why a test fails here, so its assertions need not be rewritten.
         options = ["-q", "-x", "-p", "no:cacheprovider", "--assert=plain"]
@@ -96,7 +96,7 @@ class Tree:
         return Outcome(tuple(found["failure"]), tuple(found["error"]), seconds, words)
 
     def run_without(self, guard: Guard) -> Outcome:
-        """Run a guard's tests without it. Raises GuardError where it is not there."""
+        """Run a guard's tests without it. Raises GuardError where it cannot be removed."""
         if problem := guard.problem(self.root):
             raise GuardError(problem)
         path = self.root / guard.file
@@ -117,7 +117,7 @@ def read_guards(path: Path = LIST) -> list[Guard]:
 
 @contextmanager
 def copy_tree() -> Iterator[Tree]:
-    """A copy of what is under version control, or would be, as it lies there now."""
+    """Copy the files that are or would be under version control, as they are now."""
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     names = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\0")
     with TemporaryDirectory(prefix="mucat-guards-") as folder:
@@ -130,7 +130,7 @@ def copy_tree() -> Iterator[Tree]:
 
 
 def prove(guards: list[Guard]) -> int:
-    """Print how each guard is missed; the number of those that are not. Raises GuardError."""
+    """Print the test that detects the removal of each guard; returns the number of undetected ones."""
     with copy_tree() as tree:
         build(tree.root / "firmware/emulator")
         whole = tree.run(sorted({test for guard in guards for test in guard.tests}))

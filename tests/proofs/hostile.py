@@ -1,4 +1,4 @@
-"""Hostile inputs to everything that leads to a build, an upload, a file name or a path.
+"""Hostile inputs to every way to a build, an upload, a file name or a path.
 
 A canary is a file that a command in one of them would make, a secret a file that a path would lead to.
 `python -m tests.proofs.hostile TIMES` takes that many words to each entrance; it fails where one gets in.
@@ -65,12 +65,12 @@ class Field:
         return answer
 
     def look(self, status: int, text: str) -> None:
-        """Nothing has come out that must not."""
+        """Check that an answer holds no secret and no internal error."""
         assert status < 500, (status, text)
         assert SECRET not in text, text
 
     def survey(self) -> None:
-        """Nothing has been made or changed that must not be."""
+        """Check that no file was created or changed by a hostile word."""
         assert not self.canary.exists(), "a command was carried out"
         assert self.secret.read_text(encoding="utf-8") == SECRET
         assert sorted(one.name for one in self.folder.iterdir()) == AROUND
@@ -79,7 +79,7 @@ class Field:
 
 
 def entrance(name: str) -> Callable[[Callable[[Field], object]], Callable[[Field], object]]:
-    """One way in; what it decorates takes one hostile word there."""
+    """Register a function that sends a hostile word to one input."""
 
     def add(way: Callable[[Field], object]) -> Callable[[Field], object]:
         ENTRANCES[name] = way
@@ -89,7 +89,7 @@ def entrance(name: str) -> Callable[[Callable[[Field], object]], Callable[[Field
 
 
 def document(words: Words) -> list[dict[str, object]]:
-    """A communication test of one hostile field, or of none but its name."""
+    """A communication test with one hostile field, or with a hostile name only."""
     test: dict[str, object] = {
         "id": 1,
         "name": words.word() or "-",
@@ -113,7 +113,7 @@ def document(words: Words) -> list[dict[str, object]]:
 
 
 def scenario(words: Words) -> str:
-    """A scenario that could be run, but for one or two hostile words."""
+    """A valid scenario, but for one or two hostile words."""
     fields = {"name": "mine", "title": "Mine", "kind": "pool", "controller": "pid", "do": "arm"}
     for _ in range(2):
         fields[words.choose(tuple(fields))] = words.word()
@@ -128,7 +128,7 @@ def scenario(words: Words) -> str:
 
 @entrance("compiler")
 def compile_arguments(field: Field) -> None:
-    """A document that is accepted makes arguments of letters and digits alone."""
+    """An accepted document yields arguments of letters and digits only."""
     with suppress(ConfigError):
         for test in read_document(json.dumps(document(field.words))):
             for cell in test.cells:
@@ -138,7 +138,7 @@ def compile_arguments(field: Field) -> None:
 
 @entrance("document over HTTP")
 def check_document(field: Field) -> None:
-    """It is looked at, and told what is wrong."""
+    """A document is checked and its errors are reported."""
     assert field.ask("POST", "comm-tests/check", {"text": json.dumps(document(field.words))}).ok
 
 
@@ -152,28 +152,28 @@ def start_run(field: Field) -> None:
 
 @entrance("number of a run")
 def run_number(field: Field) -> None:
-    """Numbers are numbers."""
+    """The number of a run is parsed as a number."""
     ending = field.words.choose(("", "/csv", "/json"))
     field.ask("GET", f"comm-tests/runs/{escape(field.words.word())}{ending}")
 
 
 @entrance("scenario's file")
 def scenario_file(field: Field) -> None:
-    """It is kept under a name of its own kind, or not at all."""
+    """A document is stored under a valid name, or not at all."""
     with suppress(ConfigError, RefusedError):
         keep_scenario(field.data.scenarios, scenario(field.words))
 
 
 @entrance("scenario over HTTP")
 def scenario_over_http(field: Field) -> None:
-    """Looked at, or kept."""
+    """A scenario is checked, or stored."""
     text = scenario(field.words)
     field.ask("POST", field.words.choose(("scenarios/check", "scenarios")), {"text": text})
 
 
 @entrance("scenario to run")
 def scenario_to_run(field: Field) -> None:
-    """Refused; nothing of it is run live where there is no simulator."""
+    """A scenario is refused; none runs live where there is no simulator."""
     wanted = {"text": scenario(field.words), "place": "live", "board": field.words.value()}
     assert field.ask("POST", "scenarios/runs", wanted).status_code in (409, 422)
 
@@ -205,7 +205,7 @@ def configuration(field: Field) -> None:
 
 @entrance("session's name")
 def session_name(field: Field) -> None:
-    """It names files in their headers, by letters and digits."""
+    """Names in the headers of files have letters and digits only."""
     answer = field.ask("POST", "sessions", {"name": field.words.word()[:100], "note": field.words.word()})
     if answer.ok:
         number = answer.json()["id"]
@@ -218,39 +218,39 @@ def session_name(field: Field) -> None:
 
 @entrance("session's words")
 def session_words(field: Field) -> None:
-    """Names, notes and tags are words."""
+    """Names, notes and tags of a session are plain text."""
     wanted = {field.words.choose(("name", "note")): field.words.value(), "tags": [field.words.value()]}
     field.ask("PATCH", "sessions/1", wanted)
 
 
 @entrance("search")
 def search(field: Field) -> None:
-    """Words to search for are no language."""
+    """A search's words are plain text, no query language."""
     field.ask("GET", f"sessions?search={escape(field.words.word())}&tag={escape(field.words.word())}")
 
 
 @entrance("mark")
 def mark(field: Field) -> None:
-    """Its text is text."""
+    """The text of a bookmark is plain text."""
     field.ask("POST", "sessions/1/markers", {"time": field.words.value(), "text": field.words.word()})
 
 
 @entrance("number of a session")
 def session_number(field: Field) -> None:
-    """Numbers are numbers."""
+    """The number of a session is parsed as a number."""
     ending = field.words.choose(("", "/timeline", "/signals", "/thumbnail?time=0", "/restore"))
     field.ask("GET", f"sessions/{escape(field.words.word())}{ending}")
 
 
 @entrance("thumbnail's time")
 def thumbnail(field: Field) -> None:
-    """A time is a time."""
+    """The time of a thumbnail is parsed as a number."""
     field.ask("GET", f"sessions/1/thumbnail?time={escape(str(field.words.value()))}")
 
 
 @entrance("stretch")
 def stretch(field: Field) -> None:
-    """So are these."""
+    """Start and end of a range are parsed as numbers."""
     start, end = (escape(str(field.words.value())) for _ in range(2))
     field.ask("GET", f"sessions/1/blocks?start={start}&end={end}")
 
@@ -267,7 +267,7 @@ def report(field: Field) -> None:
 
 @entrance("export")
 def export(field: Field) -> None:
-    """Formats are an enumeration, topics names of what there is."""
+    """Formats are an enumeration, topics are known names."""
     words = field.words
     wanted = {"session": 1, "format": words.choose(("csv", words.word())), "topics": [words.word()]}
     assert not field.ask("POST", "exports", wanted | {"start": words.value()}).ok
@@ -275,7 +275,7 @@ def export(field: Field) -> None:
 
 @entrance("export's name")
 def export_name(field: Field) -> None:
-    """Names are the server's own."""
+    """Names of export files are the server's own."""
     method, ending = field.words.choose((("GET", ""), ("GET", "/file"), ("DELETE", "")))
     answer = field.ask(method, f"exports/{escape(field.words.word())}{ending}")
     assert not answer.ok or answer.url.endswith("/exports/")
@@ -283,7 +283,7 @@ def export_name(field: Field) -> None:
 
 @entrance("archive's members")
 def archive(field: Field) -> None:
-    """None is unpacked anywhere, and one of a strange name refuses the whole."""
+    """No member of an archive is unpacked to a path, and an unknown name refuses the archive."""
     with tempfile.NamedTemporaryFile() as file:
         name = field.words.word().encode(errors="replace").decode().lstrip("\0") or "x"
         with zipfile.ZipFile(file, "w") as zipped:
@@ -304,7 +304,7 @@ def page_path(field: Field) -> None:
 
 @entrance("path over HTTP")
 def path_over_http(field: Field) -> None:
-    """As it is on the line, with no client that tidies it up."""
+    """Send a path unchanged, without a client that normalises it."""
     word = field.words.word().encode(errors="replace").decode()
     path = field.words.choose(
         (escape(word), quote(word, safe="/.%;\\"), quote(word, safe="/."), f"assets/{escape(word)}")
@@ -321,7 +321,7 @@ def path_over_http(field: Field) -> None:
 
 @entrance("words to the robot")
 def robot_words(field: Field) -> None:
-    """Checked before the runtime hears of them."""
+    """Commands are checked before they reach the runtime."""
     words = field.words
     path, body = words.choose(
         (
@@ -336,7 +336,7 @@ def robot_words(field: Field) -> None:
 
 @entrance("words on the live socket")
 def live_words(field: Field) -> None:
-    """Understood, or told that they are not; the socket stays open."""
+    """Messages are executed or refused; the socket stays open."""
     words = field.words
     message = {"op": words.choose(("ping", "watch", words.word())), "id": words.value()}
     text = json.dumps(message | {"pictures": [words.value()]})
@@ -348,7 +348,7 @@ def live_words(field: Field) -> None:
 
 
 def escape(word: str) -> str:
-    """As one piece of a path or a query."""
+    """Escape a word as one piece of a path or a query."""
     return quote(word.encode(errors="replace"), safe="")
 
 

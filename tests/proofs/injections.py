@@ -1,4 +1,4 @@
-"""`python -m tests.proofs.injections 100`: injects every fault so often; status 1 if the robot is too late.
+"""`python -m tests.proofs.injections 100`: injects every fault repeatedly; status 1 beyond a limit.
 
 First the faults of robot and chip, in simulated time, then those of the processes, in real time, for which
 the computer should have nothing else to do. The figures go to build/faults.json.
@@ -17,7 +17,7 @@ PROCESSES = 2
 
 
 def figures(measured: dict[str, faults.Measured], outcomes: Sequence[outages.Outcome]) -> dict[str, float]:
-    """The longest times, ms: until a fault was told, until the fins were at rest, until they had no power.
+    """The longest times in ms: until the alarm, until the fins rested, until the motors lost power.
 
     Of processes, instead of the first, it is the time until all was well again; and of those that were
     killed, s of the slowest.

@@ -1,4 +1,4 @@
-"""Every operation of the interface asked with what schemathesis makes of its description, good and bad.
+"""Requests to every operation, valid and invalid, that schemathesis makes from its description.
 
 A whole server answers, over HTTP, with the runtime's end of the tests; there is no simulator and no scene. No
 answer is a 5xx, but for what is documented where a part is truly silent; every answer is as described.
@@ -48,7 +48,7 @@ PATIENCE = 60.0
 
 
 class Surface:
-    """A server that is asked; `operations` are those of its own description, by operation_id."""
+    """A server under test; `operations` are those of its own description, by operation_id."""
 
     def __init__(self, served: Served) -> None:
         self.served = served
@@ -63,7 +63,7 @@ class Surface:
         }
 
     def take_control(self) -> None:
-        """Have what only the control's holder may ask let through."""
+        """Take control, for operations that need it."""
         self.session.post(f"{self.url}/api/control/take?over=true").raise_for_status()
 
     def connect(self) -> ClientConnection:
@@ -73,7 +73,7 @@ class Surface:
         return connect(address, origin=Origin(self.url), additional_headers=headers, max_size=None)
 
     def prove(self, name: str, examples: int) -> None:
-        """Ask one operation so often. Raises what schemathesis finds."""
+        """Send this many requests to one operation. Raises the failures that schemathesis finds."""
         operation = self.operations[name]
         good = operation.as_strategy(generation_mode=GenerationMode.POSITIVE)
         bad = operation.as_strategy(generation_mode=GenerationMode.NEGATIVE)
@@ -98,14 +98,14 @@ class Surface:
 
 
 def is_no_fault(_: CheckContext, response: Response, case: AnyCase) -> None:
-    """No 5xx, but where a part is truly silent."""
+    """Check that there is no 5xx, except for processes that are absent here."""
     name = case.operation.definition.raw["operationId"]
     assert response.status_code < 500 or response.status_code in SILENT.get(name, ()), response.text
 
 
 @schemathesis.serializer("application/zip")
 def as_it_is(_: object, value: object) -> bytes:
-    """Archives are sent as they are."""
+    """Send archives unchanged."""
     return value if isinstance(value, bytes) else str(value).encode(errors="replace")
 
 
@@ -120,7 +120,7 @@ CHECKS = [
 
 @contextmanager
 def run_surface() -> Iterator[Surface]:
-    """A server in a thread of its own, with a short recording and a mark, until the context is left."""
+    """A server in its own thread, with a short recording and a bookmark, until the context is left."""
     ready, leave = threading.Event(), threading.Event()
     found: list[Surface] = []
 

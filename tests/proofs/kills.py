@@ -33,7 +33,7 @@ PARTS = ("board", "runtime", "simulator")
 
 
 class StateSilence(NamedTuple):
-    """Samples of a topic that are not there, and for how long."""
+    """Missing samples of a topic, and the duration of the gap."""
 
     topic: str
     samples: int
@@ -76,7 +76,7 @@ class Report:
         return found
 
     def table(self) -> str:
-        """For a person."""
+        """Describe the result for a person."""
         away = sorted(self.away)
         longest = max((hole.seconds for hole in self.holes), default=0.0)
         lines = [
@@ -91,7 +91,7 @@ class Report:
 
 
 def measure(kills: int, seed: int, tell: Callable[[str], None] = lambda _: None) -> Report:
-    """Record, kill, start again, so many times; then look at what is stored."""
+    """Record, kill and restart repeatedly; then check the stored samples."""
     chance = random.Random(seed)
     report = Report()
     with TemporaryDirectory(prefix="mucat-") as name:
@@ -120,7 +120,7 @@ def measure(kills: int, seed: int, tell: Callable[[str], None] = lambda _: None)
 
 
 def _arm(stack: Stack) -> None:
-    """So that it swims; a refusal only means that it has to be asked again after the next kill."""
+    """Arm, so that samples flow; after a refusal, the next round tries again."""
     stack.api.post("/robot/commands/arm")
 
 

@@ -1,4 +1,4 @@
-"""Kills or stops processes of a swimming or waiting robot: the fins must stop, and all must recover.
+"""Kills or stops processes of an armed or disarmed robot: the fins must stop, and all must recover.
 
 The whole robot as a person starts it, in real time; the fins are watched from outside, at the board.
 """
@@ -56,7 +56,7 @@ class Outage:
 
     @property
     def name(self) -> str:
-        """One word."""
+        """The outage as one word."""
         words = {"kill": "killed", "stop": "hung", "hang": "hung_for_good"}
         return f"{self.victim}_{words[self.blow]}"
 
@@ -99,7 +99,7 @@ class Outcome:
 
 
 class World:
-    """A running robot, and those who watch it."""
+    """A running robot and its observers."""
 
     def __init__(self, data: Path, chance: random.Random) -> None:
         self.stack = Stack(data)
@@ -115,13 +115,13 @@ class World:
         self.viewer = Viewer(self.stack)
 
     def close(self) -> None:
-        """End everything."""
+        """End all processes."""
         self.viewer.close()
         self.fins.close()
         self.stack.stop()
 
     def inject(self, outage: Outage, armed: bool) -> Outcome:
-        """Wait until all is well, arm where wanted, hit, and see what comes of it."""
+        """Wait until all is well, arm if `armed`, cause the outage, and measure its effects."""
         self.calm()
         if armed:
             self.arm()
@@ -173,19 +173,19 @@ class World:
             problems.append(f"the motors had power for {outcome.off:.2f} s")
 
     def calm(self) -> None:
-        """Disarmed, nothing to acknowledge, everything well."""
+        """Disarm, acknowledge, and wait until all is well."""
         self.wait_well()
         self.stack.api.post("/robot/stop").raise_for_status()
         self.stack.api.post("/robot/commands/acknowledge").raise_for_status()
         wait(lambda: not self.viewer.alarms and not self.viewer.state["armed"], "no alarm")
 
     def wait_well(self) -> None:
-        """Everything is well, by what comes from now on."""
+        """Wait until all is well, by data from now on."""
         since = time.monotonic()
         wait(lambda: self.well(since), "all to be well")
 
     def arm(self) -> None:
-        """Swim: with power, and fins that move."""
+        """Arm, and wait for power and moving fins."""
         wait(lambda: self.stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
         try:
             wait(lambda: self.fins.seen[-1].powered and self.fins.seen[-1].moving, "the fins to move")
@@ -193,7 +193,7 @@ class World:
             raise AssertionError(f"{problem}: {self.viewer.state}; {self.fins.seen[-1]}") from problem
 
     def find(self, name: str) -> psutil.Process:
-        """The process that is called so here."""
+        """The process of this name."""
         if name == "server":
             return self.stack.server
         if name == "runner":
@@ -221,7 +221,7 @@ class World:
 def measure(
     times: int, seed: int, tell: Callable[[str], None] = lambda _: None, outages: tuple[Outage, ...] = OUTAGES
 ) -> list[Outcome]:
-    """Each outage so many times, in any order, every other one while the robot swims."""
+    """Run each outage repeatedly, in any order, every other one while the robot is armed."""
     chance = random.Random(seed)
     plan = [(outage, number % 2 == 0) for outage in outages for number in range(times)]
     chance.shuffle(plan)
@@ -243,7 +243,7 @@ def measure(
 
 
 def table(outcomes: Sequence[Outcome]) -> str:
-    """For a person: the longest of each, in s."""
+    """Describe the longest times, in s, for a person."""
     lines = [
         f"{'outage':<18}{'n':>5}{'told':>7}{'at rest':>9}{'no power':>10}{'again':>7}{'median':>8}{'slow':>6}"
     ]

@@ -1,4 +1,4 @@
-"""Cuts the power while the server stores, and looks for acknowledged data that is lost.
+"""Cuts the power while the server stores, and finds losses of acknowledged data.
 
 `python -m tests.proofs.power 10000` writes down what the server's own parts do to their files
 (`power_work.py`, `disk_log.c`), cuts the power at so many moments, builds what the disk may then hold
@@ -47,11 +47,11 @@ class Report:
 
     @property
     def bad(self) -> int:
-        """Cuts after which something was wrong."""
+        """Cuts with a problem."""
         return self.damaged.total() + self.lossy.total()
 
     def row(self, name: str) -> str:
-        """For people."""
+        """Describe the result for a person."""
         kinds = ", ".join(f"{cut} {self.damaged[cut] + self.lossy[cut]}" for cut in CUTS)
         return (
             f"{name:<22}{self.cuts.total():>8}{self.damaged.total():>9}{self.lossy.total():>8}{self.lost:>9}"
@@ -63,7 +63,7 @@ HEADER = f"{'':<22}{'states':>8}{'damaged':>9}{'lossy':>8}{'lost':>9}   bad stat
 
 
 def record(folder: Path, library: Path, *weaker: str) -> tuple[Path, Disk, list[Step]]:
-    """Does the work in `folder`; returns its data folder, the disk before it, and its steps."""
+    """Run the work in `folder`; returns its data folder, the disk before it, and its steps."""
     log = folder / "steps"
     work = folder / "work"
     work.mkdir()
@@ -75,7 +75,7 @@ def record(folder: Path, library: Path, *weaker: str) -> tuple[Path, Disk, list[
 
 
 def replay(data: Path, at: Disk, steps: list[Step], states: int, seed: int) -> Report:
-    """Cut the power at so many moments, as many of each kind, and look."""
+    """Cut the power at this many moments, as many of each kind, and check the data."""
     chance = random.Random(seed)
     kinds = cycle(CUTS)
     moments = Counter(chance.randrange(1, len(steps) + 1) for _ in range(states))

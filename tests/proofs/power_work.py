@@ -1,4 +1,4 @@
-"""`python -m tests.proofs.power_work FOLDER LOG [SYNCHRONOUS PSOW]`: what a server stores, in a few seconds.
+"""`python -m tests.proofs.power_work FOLDER LOG [SYNCHRONOUS PSOW]`: a few seconds of a server's writes.
 
 The server's own parts, on a disk whose steps are written down: a database of an older version is upgraded;
 sessions are recorded, marked, renamed, tagged, deleted and removed; a communication test, exports and a
@@ -48,7 +48,7 @@ DOCUMENT = Path(__file__).parents[2] / "firmware/examples/comm_test/figure10.jso
 
 
 class Work:
-    """The server's parts, and what of their work has been acknowledged."""
+    """The server's parts, with the acknowledged part of their work."""
 
     def __init__(self, settings: Settings, log: Path) -> None:
         self.settings = settings
@@ -58,7 +58,7 @@ class Work:
         self._first = 0
 
     def acknowledged(self) -> None:
-        """All that is stored now has been acknowledged."""
+        """Record that all stored facts are acknowledged."""
         facts = read_facts(self.settings.data.database, "ro")
         changed: dict[str, list[Any] | None] = {
             name: [value] for name, value in facts.items() if self._told.get(name) != value
@@ -68,18 +68,18 @@ class Work:
         self._told = facts
 
     def doubtful(self, prefix: str) -> None:
-        """Facts that begin with this are about to change: old and new values are right."""
+        """Record that facts with this prefix are about to change: old and new values are right."""
         note(self._log, {name: None for name in self._told if name.startswith(prefix)})
         self._told = {name: value for name, value in self._told.items() if not name.startswith(prefix)}
 
     def file(self, path: Path, *older: str) -> str:
-        """A file has been acknowledged; `older` are checksums that may be found as well."""
+        """Record that a file is acknowledged; `older` are checksums of permitted older content."""
         checksum = hashlib.sha256(path.read_bytes()).hexdigest()
         note(self._log, {f"file/{path.relative_to(self.settings.data.path)}": [checksum, *older]})
         return checksum
 
     def noise(self) -> Block:
-        """Rows that no compression makes small."""
+        """Rows that compression cannot shrink."""
         size = len(depth_record(0).to_bytes())
         rows = b"".join(
             row(100.0 + (self._first + place) * 0.002, self._chance.randbytes(size)) for place in range(ROWS)
@@ -88,7 +88,7 @@ class Work:
         return Block.of(BY_NAME["depth"], ROWS, self._first - ROWS, rows)
 
     async def run(self) -> None:
-        """All of it."""
+        """Do all of the work."""
         store = Store(self.settings.data.database)
         clock = SimulatedClock(100.0)
         recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
@@ -203,7 +203,7 @@ COUNTS = (
 
 
 def weaken(synchronous: str, overwrite: str) -> None:
-    """Have the database written in another way than the product does: that must be noticed."""
+    """Weaken the durability of the database, which the proof must detect."""
     make_durable, engine = store_module._make_durable, store_module._engine
 
     def make_weaker(connection: sqlite3.Connection, record: object) -> None:
@@ -217,7 +217,7 @@ def weaken(synchronous: str, overwrite: str) -> None:
 
 
 def work() -> None:
-    """A folder that is empty, and the log."""
+    """Run in an empty folder, with this log."""
     folder, log = Path(sys.argv[1]), Path(sys.argv[2])
     if len(sys.argv) > 3:
         weaken(*sys.argv[3:])

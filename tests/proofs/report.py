@@ -23,7 +23,7 @@ LINES = 30
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """A target of the Makefile, and the statement that it puts to the test."""
+    """A target of the Makefile, and the statement that it proves."""
 
     target: str
     statement: str
@@ -112,7 +112,7 @@ def _read(file: Path) -> dict[str, Outcome]:
 
 
 def _run(proof: Proof, now: str) -> Outcome:
-    """Runs a proof; what it says is seen at once, and is in a log."""
+    """Run a proof; its output is printed at once, and stored in a log."""
     print(f"\n== {proof.target}: {proof.statement}", flush=True)
     began, started = datetime.now(UTC).isoformat(timespec="seconds"), time.monotonic()
     log = FOLDER / f"{proof.target}.log"
@@ -142,7 +142,7 @@ def _run(proof: Proof, now: str) -> Outcome:
 
 
 def _environment() -> dict[str, str]:
-    """The environment without what a make around this one says to its own children."""
+    """The environment without make's own variables for child processes."""
     return {
         name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")
     }

@@ -1,4 +1,4 @@
-"""Resets of either side at random moments: the firmware on the emulated board, and the host's session.
+"""Resets of either end at random moments: the firmware on the emulated board, and the host's session.
 
 Time is the board's. Telemetry flows all the while, the host says START and NAVIGATION, and the board
 answers each START with a line of text: that it armed, or why not. One START in each session is meant for
@@ -53,7 +53,7 @@ _SWIM = Navigation(x=0.5, y=0.0, z=0.5, roll=0.0, pitch=0.0, yaw=0.0)
 
 
 class Return(NamedTuple):
-    """A session that came back: after which reset, on what line, and how long it took (emulated s)."""
+    """A recovered session: the reset, the line, and the duration (emulated s)."""
 
     reset: Reset
     noisy: bool
@@ -90,7 +90,7 @@ class Report:
         return [one.seconds for one in self.returns if (one.reset, one.noisy) == (reset, noisy)]
 
     def table(self) -> str:
-        """For people."""
+        """Describe the result for a person."""
         lines = [f"{'':<24}{'returns':>8}{'median s':>10}{'longest s':>10}"]
         for reset in RESETS:
             for noisy in (False, True):
@@ -108,7 +108,7 @@ class Report:
 
 
 class World:
-    """The board with a program, a host that speaks with it, and what both may not do."""
+    """The board with a program, its host, and the invariants of both."""
 
     def __init__(self, folder: Path, program: str, seed: int) -> None:
         self.report = Report()
@@ -135,12 +135,12 @@ class World:
         self._rig.__exit__()
 
     def join(self) -> None:
-        """The first session begins."""
+        """Begin the first session."""
         if not self._until(lambda: self.joined, PATIENCE):
             raise LookupError("the board does not answer")
 
     def case(self, kinds: Sequence[Reset]) -> None:
-        """A session that works, and at a random moment a reset, or several in a row."""
+        """Run a session, and reset at a random moment, once or several times in a row."""
         self._set_noise(self._chance.random() < 0.5)
         if self._chance.random() < 0.5:
             self._run(STEADY)
@@ -162,7 +162,7 @@ class World:
     # What the host does
 
     def _converse(self) -> None:
-        """Three STARTs, of which one is meant for this boot, and the answers to them."""
+        """Send three STARTs, one of which is for this boot; returns the answers."""
         epochs = [self._wrong(), self._boot or 0, self._wrong()]
         self._chance.shuffle(epochs)
         for epoch in epochs:
@@ -223,7 +223,7 @@ class World:
         self._forget()
 
     def _await_watchdog(self) -> None:
-        """The program hangs 2 s after it was armed; arm it, where that was too early before."""
+        """Run the program that hangs 2 s after arming; arm it where it is not armed yet."""
         before = self._rig.board.stats()["watchdog_resets"]
         said = self.now - ASKING
         while self._rig.board.stats()["watchdog_resets"] == before:
@@ -319,7 +319,7 @@ class World:
         self._dropped = self._dropped_before = 0
 
     def _check_answers(self) -> None:
-        """Those that came are to those asked, in order; lines that found no room are left out."""
+        """Check that the answers match the requests in order; dropped lines are left out."""
         asked = iter(self._asked)
         for answer in self._answers:
             if not any((epoch >= _NO_SUCH_BOOT) == (answer == _OTHER_BOOT) for epoch in asked):
@@ -339,7 +339,7 @@ def prepare() -> None:
 
 
 def measure(program: str, kinds: Sequence[Reset], resets: int, seed: int) -> Report:
-    """At least so many resets of these kinds; the same for the same seed."""
+    """Run at least this many resets of these kinds; the same for the same seed."""
     with TemporaryDirectory() as folder, World(Path(folder), program, seed) as world:
         world.join()
         while world.report.resets.total() < resets:
@@ -348,7 +348,7 @@ def measure(program: str, kinds: Sequence[Reset], resets: int, seed: int) -> Rep
 
 
 def measure_all(resets: int, seed: int = 0) -> Report:
-    """At least so many resets, in two processes."""
+    """Run at least this many resets, in two processes."""
     prepare()
     hangs = resets // 8
     half = -(-(resets - hangs) // 2)

@@ -25,7 +25,7 @@ STALL = 30.0
 
 
 class SlowPage:
-    """Reads slowly; `stalled` not at all. Comes back whenever it is sent away."""
+    """Reads slowly; if `stalled` not at all. Reconnects whenever it is disconnected."""
 
     def __init__(self, stack: Stack, *, stalled: bool) -> None:
         self.told: Counter[str] = Counter()
@@ -39,7 +39,7 @@ class SlowPage:
         self._thread.start()
 
     def close(self) -> None:
-        """Go away."""
+        """Disconnect for good."""
         self._ending.set()
         self._thread.join()
 

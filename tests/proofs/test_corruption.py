@@ -1,4 +1,4 @@
-"""A short version of the corrupted frames of `make soak`, and a check that weaker checksums would fail it."""
+"""A short version of the corrupted frames of `make soak`; weaker checksums fail it."""
 
 from functools import reduce
 from operator import xor

@@ -1,4 +1,4 @@
-"""A short version of `make fuzz`, and the same for the host: right checksums around any content."""
+"""A short version of `make fuzz`, and the same for the host: valid checksums around any content."""
 
 import ctypes
 import zlib
@@ -29,7 +29,7 @@ def framed(content: bytes, key: int) -> bytes:
 
 @st.composite
 def contents(draw: st.DrawFn) -> bytes:
-    """Control, messages of known and other types, now and then too short or too long, and a number."""
+    """Control, messages of known and other types, sometimes too short or too long, and a number."""
     content = draw(st.binary(min_size=1, max_size=1))
     for type_ in draw(st.lists(st.sampled_from([*PACKETS, 7, 0xFF]), max_size=5)):
         cls = PACKETS.get(type_)

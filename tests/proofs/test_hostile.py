@@ -57,7 +57,7 @@ def test_no_code_calls_a_shell() -> None:
 
 
 def test_a_shell_runs_hostile_documents_as_they_are(tmp_path: Path) -> None:
-    """By `mucat commtest`, down to the compiler and the boards."""
+    """Runs by `mucat commtest`, down to the compiler and the boards."""
     canary = tmp_path / "canary"
     named = [one.format(canary=canary, secret=ROOT / "README.md", name="x") for one in SHELL[:TESTS_RUN]]
     test: dict[str, object] = {"ino_path": SKETCH, "delay": [0.0], "baud_rate": [115200]}

@@ -1,4 +1,4 @@
-"""A short look with schemathesis at every operation; `make interface` looks longer."""
+"""A short version of `make interface`: requests by schemathesis to every operation."""
 
 import warnings
 from collections.abc import Iterator

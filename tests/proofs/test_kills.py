@@ -1,4 +1,4 @@
-"""A short version of `make kills`, and the parts killed one by one."""
+"""A short version of `make kills`, and kills of the other processes, one by one."""
 
 import json
 import sqlite3

@@ -47,7 +47,7 @@ def test_weaker_settings_lose_data(name: str, library: Path, folder: Path) -> No
 
 
 def test_one_connection_writes_the_database(recorded: Recorded) -> None:
-    """Beside an export, and a shell that lists and makes a backup."""
+    """Only one connection writes, during an export and beside shell commands that list and back up."""
     data, _, steps = recorded
     prepared = [place for place, step in enumerate(steps) if step.kind == "a"][1]
     nodes: dict[int, str] = {}

@@ -1,4 +1,4 @@
-"""The report of the long proofs: what ran, what it found, and where it goes on."""
+"""The report of the long proofs: their results, and their resumption."""
 
 import json
 import sys

@@ -50,7 +50,7 @@ class Seen(NamedTuple):
 
 
 class Motion:
-    """Tells from one look at the fins to the next whether any moves."""
+    """Detects from one reading to the next if any fin moves."""
 
     def __init__(self) -> None:
         self._looks: deque[tuple[float, tuple[float, ...]]] = deque()
@@ -69,7 +69,7 @@ class Motion:
 
 
 class Fins:
-    """Looks at the fins all the time, whatever becomes of the other processes; no board, no motion."""
+    """Reads the fins continuously, whatever happens to other processes; no board, no motion."""
 
     def __init__(self, socket: Path) -> None:
         self.seen: list[Seen] = []
@@ -79,7 +79,7 @@ class Fins:
         self._thread.start()
 
     def close(self) -> None:
-        """Ends the observation."""
+        """End the observation."""
         self._ending.set()
         self._thread.join()
 
@@ -118,7 +118,7 @@ class Fins:
 
 
 class Viewer:
-    """A page that only looks, and comes back whenever its connection ends."""
+    """A page that only receives, and reconnects whenever its connection ends."""
 
     def __init__(self, stack: Stack) -> None:
         self.newest: dict[str, float] = {}
@@ -135,7 +135,7 @@ class Viewer:
         self._thread.start()
 
     def close(self) -> None:
-        """Go away."""
+        """Disconnect for good."""
         self._ending = True
         self._thread.join()
 
@@ -187,7 +187,7 @@ class Viewer:
 
 
 def wait(condition: Callable[[], object], what: str, patience: float = 30.0) -> float:
-    """Wait until that holds; the time then. Fails where it never does."""
+    """Wait until the condition holds; returns the time. Fails where it never does."""
     end = time.monotonic() + patience
     while not condition():
         assert time.monotonic() < end, f"waited {patience:g} s in vain for {what}"

@@ -139,7 +139,7 @@ NUMBERS: tuple[object, ...] = (
 
 
 class Words:
-    """An endless supply; a command in one would make `canary`, a path would lead to `secret`."""
+    """Hostile words without end; a command in one would create `canary`, a path would lead to `secret`."""
 
     def __init__(self, canary: Path, secret: Path, seed: int) -> None:
         self._names = {"canary": str(canary), "secret": str(secret), "name": secret.name}
@@ -148,7 +148,7 @@ class Words:
         self._plain += STRANGE
 
     def word(self) -> str:
-        """One, plain or made worse."""
+        """A hostile word, plain or mutated."""
         chance, word = self._chance, self._chance.choice(self._plain)
         match chance.randrange(8):
             case 0:
@@ -165,9 +165,9 @@ class Words:
                 return word
 
     def choose(self, among: tuple[T, ...]) -> T:
-        """One of these."""
+        """One of these choices."""
         return self._chance.choice(among)
 
     def value(self) -> object:
-        """A word, or what stands where a number is expected."""
+        """A hostile word, or an odd value in place of a number."""
         return self.word() if self._chance.random() < 0.6 else self._chance.choice(NUMBERS)

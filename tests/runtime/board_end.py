@@ -57,7 +57,7 @@ class BoardEnd:
         return self._end.urgent
 
     def hear_until(self, condition: Callable[[], bool]) -> None:
-        """Listen until that holds."""
+        """Receive until the condition holds."""
         end = time.monotonic() + DEADLINE
         while not condition():
             assert time.monotonic() < end

@@ -1,4 +1,4 @@
-"""robot.toml: the shipped file holds the defaults, and what is wrong is named."""
+"""robot.toml: the shipped file holds the defaults, and errors are named."""
 
 from pathlib import Path
 

@@ -48,7 +48,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 class Board:
-    """A board that sends telemetry at 50 Hz, arms and stops as told, and notes what it hears."""
+    """A board that sends telemetry at 50 Hz, executes START and STOP, and records received packets."""
 
     def __init__(self, path: Path, *, deaf_to_parameters: bool = False) -> None:
         self.path = path
@@ -131,7 +131,7 @@ class Board:
 
 
 class Listener:
-    """Everything that the runtime publishes."""
+    """Subscribes to everything that the runtime publishes."""
 
     def __init__(self, messages: ZenohTransport) -> None:
         self.documents: list[tuple[str, dict[str, Any]]] = []
@@ -185,7 +185,7 @@ class Rig:
 
     @contextmanager
     def saying(self, name: str, axes: list[float] | None = None) -> Iterator[None]:
-        """Meanwhile say this ten times a second, as a server does; to steer, with axes."""
+        """Send this ten times a second meanwhile, as a server does; with axes, as driving commands."""
         ending = threading.Event()
 
         def say() -> None:

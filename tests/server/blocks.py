@@ -1,4 +1,4 @@
-"""Blocks as the runtime writes them, with contents that tests can tell apart."""
+"""Blocks as the runtime sends them, with contents that tests can distinguish."""
 
 import json
 from typing import Any

@@ -1,4 +1,4 @@
-"""`python -m tests.server.full_disk FOLDER`: record on a disk that fills up, and gets room again.
+"""`python -m tests.server.full_disk FOLDER`: record on a disk that fills up and is freed again.
 
 FOLDER is on a disk of its own. Tells in JSON what came of it.
 """
@@ -39,14 +39,14 @@ LONG = {**LOST.values, "explanation": "why " * 50_000}
 
 
 def noisy_block(first: int, chance: random.Random) -> Block:
-    """Rows that no compression makes small."""
+    """Rows that compression cannot shrink."""
     size = len(depth_record(0).to_bytes())
     rows = b"".join(row(first + place, chance.randbytes(size)) for place in range(COUNT))
     return Block.of(BY_NAME["depth"], COUNT, first, rows)
 
 
 async def record(data: DataFolder, config: Path) -> dict[str, Any]:
-    """Record until the disk has been full for a while, make room, and record on."""
+    """Record until the disk has been full for a while, free space, and record on."""
     settings, clock, chance = Settings(data=data, config=config), SimulatedClock(), random.Random(1)
     store = Store(data.database)
     recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
@@ -100,7 +100,7 @@ def beside(data: DataFolder, runs: CommTestStore, run: int) -> list[Callable[[],
 
 
 async def refusal(work: Callable[[], Awaitable[object]]) -> str:
-    """In which words it is refused; "" where it is not."""
+    """The text of the refusal; "" without one."""
     try:
         await work()
     except (StoreError, RefusedError, SetupError) as problem:

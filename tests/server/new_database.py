@@ -1,4 +1,4 @@
-"""The database of a server's first start, made once and copied: a start makes it in a quarter of a second."""
+"""The database of a server's first start, created once and copied: creation takes a quarter of a second."""
 
 import atexit
 import shutil
@@ -24,7 +24,7 @@ def place_empty(data: DataFolder) -> None:
 
 
 async def place_with_samples(data: DataFolder) -> None:
-    """Give a new data folder its tables, and the communication tests that ship."""
+    """Give a new data folder its tables, and the shipped communication tests."""
     if "samples" not in _made:
         folder = _new_folder()
         prepare(folder)

@@ -32,7 +32,7 @@ def upgrade_to(settings: Settings, revision: str) -> None:
 
 
 def make_session(database: sqlite3.Connection) -> None:
-    """Store session 1 as 0.0.9 did, complete, with ROWS of depth; committed."""
+    """Store session 1 as version 0.0.9 did, complete, with ROWS of depth; committed."""
     data, first, last = encode_rows([ROWS], BY_NAME["depth"].row_bytes)
     topics = {name: one for name, one in describe_topics().items() if name != "thumbnail"}
     session = (1, "old", "cold", "complete", "turtle", "0.0.9", "00c0ffee", 1e9, 100.0, 1e9 + 1, 1.0, 10)
@@ -51,7 +51,7 @@ def make_session(database: sqlite3.Connection) -> None:
 
 
 def fill_tables(database: sqlite3.Connection) -> None:
-    """Put a row into every table that has none, with something in each of its columns; committed."""
+    """Add a row to every empty table, with a value in each of its columns; committed."""
     for table, rows in read_tables(database).items():
         if not rows:
             columns = [(name, kind) for _, name, kind, *_ in database.execute(f"PRAGMA table_info({table})")]

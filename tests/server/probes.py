@@ -1,4 +1,4 @@
-"""A request to each route, and the answer that it gives to whom it lets in.
+"""A request to each route, and its answer for a permitted requester.
 
 Most requests are valid, and about something that is there: their answer is the route's success. The others
 are exceptions, each with its reason in `because` and its own words, which no router and no guard says.
@@ -44,7 +44,7 @@ THERE |= {"export": "0" * 16, "path": "index.html"}
 
 
 def absent(thing: str, words: str, because: str, **more: Any) -> Probe:
-    """A request about what is not there."""
+    """A request about something that does not exist."""
     return Probe(NOT_THERE, words=words, because=because, named={thing: "999"}, **more)
 
 
@@ -158,7 +158,7 @@ PROBES: dict[tuple[str, str], Probe] = {
 
 
 def place_things(settings: Settings) -> None:
-    """Put a page, a help page, a panel into their folders."""
+    """Write a page, a help page and a panel into their folders."""
     for folder, name in ((settings.page, "index.html"), (settings.help_pages, "index.html")):
         folder.mkdir(exist_ok=True)
         (folder / name).write_text("<!doctype html>")

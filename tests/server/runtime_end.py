@@ -1,4 +1,4 @@
-"""The runtime's end of Zenoh, for tests: publishes what it is told to, and answers every command."""
+"""The runtime's end of Zenoh, for tests: publishes on request, and answers every command."""
 
 import json
 import threading
@@ -18,7 +18,7 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 
 class RuntimeEnd:
-    """Joins the server's conversation as the runtime does.
+    """A Zenoh peer in place of the runtime.
 
     `asked` holds every command that came, but for the control's epochs, which are in `epochs`; each is
     answered once its gate is open. `driven` holds what the driver sends.
@@ -61,7 +61,7 @@ class RuntimeEnd:
         self._messages.close()
 
     def publish(self, *blocks: Block) -> None:
-        """Send blocks, each as one publication."""
+        """Publish blocks, each on its own."""
         for block in blocks:
             name = block.topic.name if block.topic.kind is Kind.PICTURE else STREAM
             if name == STREAM:
@@ -69,7 +69,7 @@ class RuntimeEnd:
             self._messages.publish(name, block.data)
 
     def publish_bytes(self, data: bytes) -> None:
-        """Send anything."""
+        """Publish any bytes."""
         self._messages.publish(STREAM, data)
 
     def is_heard(self, topic: str) -> bool:

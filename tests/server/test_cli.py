@@ -38,7 +38,7 @@ def mucat(*arguments: str, **environment: str) -> subprocess.CompletedProcess[st
 
 @contextmanager
 def running(settings: Settings, port: int) -> Iterator[subprocess.Popen[str]]:
-    """`mucat run` for a robot without any hardware: its runtime finds no port, and the server serves."""
+    """`mucat run` for a robot without hardware: its runtime finds no port, and the server serves."""
     settings.config.write_text('[robot]\nname = "tested"\nmode = "robot"\n[link]\nport = "/nowhere"\n')
     command = [sys.executable, "-m", "server.cli", "run", "--port", str(port)]
     command += ["--config", str(settings.config), "--data", str(settings.data.path)]
@@ -279,7 +279,7 @@ def test_it_prints_the_completion_of_a_shell(shell: str, capsys: pytest.CaptureF
 
 
 def test_importing_the_server_starts_no_thread() -> None:
-    """The runner forks itself after it has loaded all that, which only a process without threads may."""
+    """The runner forks after it has loaded these modules, which requires a process without threads."""
     program = "import os, server.app, server.http.serving; print(*os.listdir('/proc/self/task'), os.getpid())"
     assert len(set(printed(program).split())) == 1
 

@@ -1,4 +1,4 @@
-"""Every route and every message of the live socket, asked by everybody from everywhere, against one table.
+"""Every route and message of the live socket, sent by every role from every origin, against one table.
 
 Whoever is let in gets exactly the answer of `probes.py`; who is not, exactly the status of the refusal.
 The table is written here by hand, and knows nothing of the server's own: what is not in it fails.
@@ -155,7 +155,7 @@ NEAR, FAR = "127.0.0.1", "192.0.2.7"
 
 
 def expected(who: Who, least: Least, *, safe: bool, host: Where, origin: Where) -> int | None:
-    """The status with which this is refused; None where it is let through."""
+    """The status with which this is refused; None where it is accepted."""
     browser = who in ("viewer", "operator", "control")
     if host != "right" or origin == "wrong":
         return 403
@@ -176,7 +176,7 @@ class Somebody:
 
 
 class House:
-    """The whole application in this event loop, with the runtime's end, and everybody who asks."""
+    """The whole application in this event loop, with the runtime's end and all requesters."""
 
     def __init__(self, app: FastAPI, settings: Settings, runtime: RuntimeEnd) -> None:
         self.app = app
@@ -187,7 +187,7 @@ class House:
         self.shell = Somebody(shell_headers(settings.data))
 
     def places(self, host: Where, origin: Where) -> dict[str, str]:
-        """The headers that say from where something is asked."""
+        """The headers that name the origin of a request."""
         names = {"right": self.own, "wrong": "evil.example:8000"}
         said = {} if host == "missing" else {"host": names[host]}
         return said if origin == "missing" else said | {"origin": f"http://{names[origin]}"}
@@ -224,12 +224,12 @@ class House:
         return sent[0]["status"], named, b"".join(part.get("body", b"") for part in sent[1:])
 
     async def enter(self, who: Who) -> Somebody:
-        """Somebody who has just signed in."""
+        """A requester that has just signed in."""
         role = "viewer" if "viewer" in who else "operator"
         return await (self._program(role) if who.startswith("program") else self._pair(role))
 
     async def fill(self, body: dict[str, Any]) -> dict[str, Any]:
-        """The body, with a new code of the shell's where there is to be one."""
+        """The body of a request, with a new code of the shell where it needs one."""
         if body.get("code") != CODE:
             return body
         return body | {"code": await self._code("viewer")}
@@ -256,7 +256,7 @@ class House:
     async def socket(
         self, who: Somebody, places: dict[str, str], address: str = NEAR
     ) -> AsyncIterator["LiveSocket"]:
-        """A live socket, let in or not."""
+        """A live socket, accepted or not."""
         socket = LiveSocket()
         scope = self._scope("websocket", "/api/live", places | who.headers, address) | {"scheme": "ws"}
         running = asyncio.create_task(self.app(scope | {"subprotocols": []}, socket.receive, socket.send))
@@ -308,7 +308,7 @@ class LiveSocket:
         return self.told[0]
 
     async def say(self, message: dict[str, Any]) -> list[str]:
-        """Say this; the errors that are told of it."""
+        """Send a message; returns the errors in answer."""
         before = len(self.told)
         for one in (message, {"op": "ping", "id": before}):
             self.to_server.put_nowait({"type": "websocket.receive", "text": json.dumps(one)})
@@ -318,7 +318,7 @@ class LiveSocket:
 
 @asynccontextmanager
 async def open_house(settings: Settings) -> AsyncIterator[House]:
-    """A running application, and everybody signed in; the browsers of operators have a live page."""
+    """A running application with signed-in requesters; operators' browsers have a live page."""
     await place_with_samples(settings.data)
     settings = replace(settings, help_pages=settings.data.path / "help")
     place_things(settings)
@@ -342,7 +342,7 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
 
 
 async def place_things_to_ask_for(house: House) -> None:
-    """A session with a bookmark that is being recorded, a profile and a layout: the first of each."""
+    """Create a recording session with a bookmark, a profile and a layout."""
     right, one = house.places("right", "right"), house.people["control"]
     for path, body in (
         ("/api/sessions", {"name": "Dive"}),
@@ -395,7 +395,7 @@ def test_every_route_admits_exactly_the_roles_of_the_table(settings: Settings, w
 
 
 async def ask_everything(house: House, who: Who) -> list[tuple[object, ...]]:
-    """Everything that is not as the table says."""
+    """All deviations from the table."""
     surprises: list[tuple[object, ...]] = []
     right = house.places("right", "right")
     for (method, template), least in ROUTES.items():
@@ -435,7 +435,7 @@ def test_every_message_is_accepted_from_exactly_the_roles_of_the_table(settings:
 
 
 async def say_everything(house: House, who: Who, socket: LiveSocket) -> None:
-    """Each message that there is, and one that there is not."""
+    """Each message of the socket, and one that does not exist."""
     hello = await socket.hello()
     assert await socket.say({"op": "nothing"}) != []
     assert await socket.say({"op": "watch", "pictures": []}) == []

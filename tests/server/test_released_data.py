@@ -1,4 +1,4 @@
-"""A data folder that version 0.1.0 has left: its database opens, and what it holds is read as it was then.
+"""A data folder of version 0.1.0: its database opens, and its contents are read as they were.
 
 `expected.json` is what 0.1.0 itself answered: SHA-256 of every exported CSV, timelines, figures and lines.
 """
@@ -46,7 +46,7 @@ def read_csv(settings: Settings, session: str, folder: Path) -> dict[str, bytes]
 
 
 def ask(settings: Settings, method: str, path: str, **options: Any) -> Any:
-    """The answer of a server that works on this folder."""
+    """The answer of a server that serves this folder."""
 
     async def run() -> Any:
         async with serve(settings) as served:

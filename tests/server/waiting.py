@@ -1,4 +1,4 @@
-"""Waiting for what must come soon."""
+"""Waiting for conditions with a deadline."""
 
 import asyncio
 import time

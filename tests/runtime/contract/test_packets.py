@@ -1,4 +1,4 @@
-"""Packets: bytes there and back, limits, and what is refused."""
+"""Packets: encoding and decoding, limits, refusals."""
 
 import math
 from functools import partial

@@ -1,4 +1,4 @@
-"""Blocks: bytes there and back, and what is refused."""
+"""Blocks: encoding and decoding, refusals."""
 
 import json
 

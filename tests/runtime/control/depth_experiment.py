@@ -95,7 +95,7 @@ class _TruthRecorder:
         self._sensor = sensor
 
     def blocks(self, data: bytes) -> None:
-        """Stores the truth."""
+        """Store the truth."""
         for block in read_blocks(data):
             if block.topic.name == "truth":
                 for time, truth in read_rows(block):
@@ -104,7 +104,7 @@ class _TruthRecorder:
                     self.samples.append(Sample(time, truth.position[2] + above, truth.fins))
 
     def event(self, event: str, **more: Any) -> None:
-        """Ignores it."""
+        """Ignore the message."""
 
 
 def experiment(

@@ -21,7 +21,7 @@ PUSH_EVERY = 0.05
 
 
 class Flight:
-    """From the moment at which everything is well; `sticks` are sent every 0.05 s where there are some."""
+    """A flight that begins when all is well; `sticks`, if any, are sent every 0.05 s."""
 
     def __init__(self, board: str | MakeBoard = "host", more: str = "") -> None:
         make = boards()[board] if isinstance(board, str) else board
@@ -54,7 +54,7 @@ class Flight:
         return self.clock.now()
 
     def run(self, seconds: float) -> None:
-        """Lets time pass."""
+        """Run for this time."""
         end = self.now + seconds
         while self.now < end - 1e-6:
             if self.server:
@@ -64,7 +64,7 @@ class Flight:
             self._performance._until(min(self.now + STEP, end))
 
     def until(self, holds: Callable[[], bool], limit: float) -> float:
-        """s until that holds. Fails beyond the limit."""
+        """Run until the condition holds; returns the s that it took. Fails beyond the limit."""
         began = self.now
         while not holds():
             assert self.now - began <= limit + 1e-6, f"not within {limit} s: {self.supervisor.mode}"
@@ -72,7 +72,7 @@ class Flight:
         return self.now - began
 
     def push(self, axes: list[float], **more: Any) -> None:
-        """An input of the pilot's, as the server passes it on."""
+        """A pilot's input, as the server passes it on."""
         self._sequence = int(self.now / PUSH_EVERY) + 1
         words = {"lease": 0, "sequence": self._sequence, "taken": self.now, "axes": axes} | more
         self.robot.take_pilot(json.dumps(words).encode())

@@ -21,7 +21,7 @@ from robot_runtime.control.supervisor import Supervisor
 
 
 class Board:
-    """A board that obeys, unless the test changes that."""
+    """A board that executes commands, unless the test changes that."""
 
     def __init__(self, baud: int) -> None:
         self.connected = True

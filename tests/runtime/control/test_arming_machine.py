@@ -20,7 +20,7 @@ _WAYS = {(one.before, one.after) for one in TRANSITIONS}
 
 
 class Arming(RuleBasedStateMachine):
-    """One supervisor whose board obeys or not; what happened is compared with what may."""
+    """One supervisor, with a board that executes commands or not; its states are compared with a model."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -70,7 +70,7 @@ class Arming(RuleBasedStateMachine):
             self.without[name] = 0.0 if alive else self.without[name] + seconds
 
     def _look(self) -> None:
-        """Every change of state is a way in the table, and none leads past the acknowledgement."""
+        """Check that each change of state is in the table, and none bypasses the acknowledgement."""
         now = self.supervisor.mode
         if now != self.mode:
             assert (self.mode, now) in _WAYS
@@ -82,7 +82,7 @@ class Arming(RuleBasedStateMachine):
 
     @rule(mode=st.sampled_from(["automatic", "manual", "test"]), alone=st.sampled_from([0.0, 8.0]))
     def arm(self, mode: Any, alone: float) -> None:
-        """Try to; whether it is refused depends on everything else."""
+        """Request arming; a refusal is possible."""
         reasons, armed = self.supervisor.refusals(), self.supervisor.armed
         before = sum(isinstance(one, Start) for one in self.board.sent)
         try:
@@ -96,7 +96,7 @@ class Arming(RuleBasedStateMachine):
 
     @rule(mode=st.sampled_from(["automatic", "manual"]))
     def change(self, mode: Any) -> None:
-        """Hand over, where there is something to."""
+        """Switch between automatic and manual, where possible."""
         armed = self.supervisor.mode in ("automatic", "manual")
         try:
             self.supervisor.change_mode(mode)
@@ -107,7 +107,7 @@ class Arming(RuleBasedStateMachine):
 
     @rule()
     def stop(self) -> None:
-        """It ends whatever it was, at once, and goes out each time."""
+        """Stop: it ends every state at once, and STOP is sent each time."""
         failsafe = self.supervisor.mode == "failsafe"
         sent = len(self.board.sent)
         self.supervisor.stop("Stopped.")
@@ -117,7 +117,7 @@ class Arming(RuleBasedStateMachine):
 
     @rule()
     def acknowledge(self) -> None:
-        """The only way out of failsafe."""
+        """Acknowledge: the only way out of failsafe."""
         armed = self.supervisor.armed
         self.supervisor.acknowledge()
         assert self.supervisor.mode != "failsafe"
@@ -127,32 +127,32 @@ class Arming(RuleBasedStateMachine):
 
     @rule(seconds=st.sampled_from([0.05, 0.3, 0.6, 2.0, 5.0]))
     def pass_time(self, seconds: float) -> None:
-        """Everything goes on as it is."""
+        """Pass time without a change."""
         self._live(seconds)
 
     @rule(what=st.sampled_from(["depth", "imu", "server", "pilot", "speaks"]))
     def fall_silent(self, what: str) -> None:
-        """Something says nothing from now on."""
+        """Silence a source of data from now on."""
         setattr(self, what, False)
 
     @rule()
     def freeze(self) -> None:
-        """The pressure sensor hangs."""
+        """Freeze the pressure sensor."""
         self.frozen = True
 
     @rule()
     def unplug(self) -> None:
-        """The cable."""
+        """Cut the cable."""
         self.board.connected = False
 
     @rule(obeys=st.booleans())
     def will(self, obeys: bool) -> None:
-        """True if the board obeys a START."""
+        """Set the board's reaction to START."""
         self.board.obeys = obeys
 
     @rule()
     def mend(self) -> None:
-        """Everything is well again, and has been so for long enough to be seen."""
+        """Repair everything, and wait until that is detected."""
         self.depth = self.imu = self.server = self.pilot = self.speaks = True
         self.board.connected = self.board.obeys = True
         self.frozen = False
@@ -160,7 +160,7 @@ class Arming(RuleBasedStateMachine):
 
     @rule(mode=st.sampled_from(["automatic", "manual", "test"]))
     def begin_well(self, mode: Any) -> None:
-        """Armed, whatever was: chance alone seldom brings it so far."""
+        """Arm from any state, which random steps seldom reach."""
         self.mend()
         self.acknowledge()
         self.supervisor.stop("Stopped.")
@@ -173,20 +173,20 @@ class Arming(RuleBasedStateMachine):
         seconds=st.floats(0.1, 6.0),
     )
     def lose_one_thing_under_way(self, mode: Any, what: str, seconds: float) -> None:
-        """And nothing else."""
+        """Silence one source of data while armed, with all else well."""
         self.begin_well(mode)
         self.fall_silent(what)
         self._live(seconds)
 
     @rule()
     def restart(self) -> None:
-        """The board's watchdog."""
+        """Restart the board, as by its watchdog."""
         self.board.epoch += 1
         self.board.flags &= ~StatusFlag.ARMED
 
     @rule()
     def disarm_by_itself(self) -> None:
-        """The board heard nothing."""
+        """Disarm the board, as after silence of the host."""
         self.board.flags &= ~StatusFlag.ARMED
 
     @invariant()
@@ -197,7 +197,7 @@ class Arming(RuleBasedStateMachine):
 
     @invariant()
     def limits_are_kept(self) -> None:
-        """Nothing steers for longer than allowed without what it steers by."""
+        """No state that steers outlasts the limits of its inputs."""
         mode = self.supervisor.mode
         if mode == "automatic":
             assert self.without["depth"] <= ALL_STOP
@@ -210,7 +210,7 @@ class Arming(RuleBasedStateMachine):
 
     @invariant()
     def an_all_stop_is_an_alarm(self) -> None:
-        """Nobody is left to wonder."""
+        """In failsafe there is an alarm."""
         if self.supervisor.mode == "failsafe":
             assert any(alarm.severity == "alarm" for alarm in self.supervisor.alarms)
 

@@ -1,4 +1,4 @@
-"""Experiments on the depth: a step and a relay, on a robot in simulated water, and what ends them."""
+"""Experiments on the depth: a step and a relay, on a robot in simulated water, and their ends."""
 
 from typing import Any
 
@@ -43,7 +43,7 @@ def begin(flight: Flight, wanted: dict[str, Any]) -> None:
 
 
 class Lab:
-    """A flight whose experiments are told."""
+    """A flight with its published experiments."""
 
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
@@ -135,7 +135,7 @@ def test_a_relay_finds_the_load_and_a_steady_cycle() -> None:
 
 @pytest.mark.parametrize("load", [-0.2, 0.0, 0.15])
 def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
-    """On an integrator with friction and a constant load, where the answer is known."""
+    """An integrator with friction and a constant load, with a known solution."""
     wanted = RelayExperimentCommand(
         number=1,
         loop="depth",

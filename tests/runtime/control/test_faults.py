@@ -18,7 +18,7 @@ MS = 0.001
 
 
 def live(rig: Rig, seconds: float, sense: Callable[[], None]) -> None:
-    """Lets time pass in steps of 20 ms, with data of the board in each."""
+    """Run in steps of 20 ms, with data of the board in each."""
     for _ in range(round(seconds / 0.02)):
         rig.clock.forward(0.02)
         sense()
@@ -29,7 +29,7 @@ def wrong(rig: Rig, mode: Mode = "automatic") -> set[str]:
 
 
 def all_but(rig: Rig, missing: str) -> Callable[[], None]:
-    """Sends the data of a board with one silent sensor."""
+    """Send the data of a board with one silent sensor."""
 
     def sense() -> None:
         rig.report()

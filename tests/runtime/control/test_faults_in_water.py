@@ -50,7 +50,7 @@ def test_faults_stop_the_robot_on_the_emulated_board_too(name: str, break_: Brea
 
 
 def check_all_stop(flight: Flight, name: str, break_: Break) -> None:
-    """The robot is armed, breaks, is stopped in time, and wants to be acknowledged."""
+    """The armed robot is stopped in time after the fault, and demands an acknowledgement."""
     flight.arm()
     flight.supervisor.detector.server_patience = 4.0
     flight.run(3.0)

@@ -1,4 +1,4 @@
-"""The control loops: steering, holding while driving by hand, and refusals."""
+"""The control loops: steering, holds in manual, and refusals."""
 
 import json
 from math import isnan, pi
@@ -19,7 +19,7 @@ from tests.runtime.control.attitudes import quaternion
 
 
 class Rig:
-    """A control node with a pilot, and everything it sent."""
+    """A control node with a pilot, and its sent commands."""
 
     def __init__(self, mode: Mode) -> None:
         self.clock, self.bus = SimulatedClock(100.0), Bus()
@@ -50,14 +50,14 @@ class Rig:
         self.bus.publish_row("imu", self.clock.now(), record.to_bytes())
 
     def push(self, **axes: float) -> None:
-        """Moves the sticks to this position."""
+        """Move the sticks to this position."""
         self._sequence += 1
         sticks = [axes.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]
         words = {"lease": 0, "sequence": self._sequence, "taken": self.clock.now(), "axes": sticks}
         assert self.pilot.take(json.dumps(words).encode())
 
     def tick(self) -> Navigation | None:
-        """One tick on; what it sent."""
+        """Run one tick; returns its command."""
         self.clock.forward(0.1)
         self.push(**self._sticks)
         before = len(self.commands)
@@ -65,7 +65,7 @@ class Rig:
         return self.commands[-1] if len(self.commands) > before else None
 
     def hold(self, **sticks: float) -> None:
-        """Holds the sticks there from now on."""
+        """Hold the sticks in this position from now on."""
         self._sticks = sticks
 
 

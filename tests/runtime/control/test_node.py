@@ -12,7 +12,7 @@ from robot_runtime.transport.bus import Bus
 
 
 class Rig:
-    """A control node with its bus, clock and everything it sent."""
+    """A control node with its bus, clock and sent commands."""
 
     def __init__(self) -> None:
         self.clock, self.bus = SimulatedClock(100.0), Bus()

@@ -1,4 +1,4 @@
-"""Pilot's inputs: which are accepted, and which are dropped and counted."""
+"""Pilot's inputs: accepted, or dropped and counted."""
 
 import json
 from typing import Any

@@ -1,4 +1,4 @@
-"""The model-based depth controller: its model, its parts, and what it reaches in the simulated water."""
+"""The model-based depth controller: its model, its parts, and its results in simulated water."""
 
 from math import cos, pi, sin
 from random import Random
@@ -64,7 +64,7 @@ def test_a_coasting_hull_goes_less_far_against_its_drift() -> None:
 @pytest.mark.parametrize("part", ["strength", "hull", "drift"])
 @pytest.mark.parametrize("factor", [0.75, 1.25])
 def test_the_craft_is_identified_from_its_motion(part: str, factor: float) -> None:
-    """It dives, coasts and swims back up without noise; the model's other numbers are right."""
+    """The hull dives, coasts and swims back up without noise; the model's other values are right."""
     usual = {"strength": 1.0, "hull": 1.0, "drift": -0.01}
     water = heave(**usual | {part: usual[part] * factor})
     observer = HeaveObserver(heave(drift=-0.01))
@@ -118,7 +118,7 @@ def test_after_a_gap_acceleration_is_used_from_the_second_sample_on() -> None:
 
 @pytest.mark.parametrize(("drift", "within"), [(-0.012, 0.01), (0.0, 0.04), (0.012, 0.01)])
 def test_it_rests_at_the_set_point_in_the_water_of_its_model(drift: float, within: float) -> None:
-    """Also a hull that sinks by itself, whose home is the other side.
+    """Holds also for a hull that sinks by itself, whose home is the other side.
 
     Neutral it rests up to 4 cm off, as docs/reference/control.md says: for less the fins do not turn round.
     """
@@ -144,7 +144,7 @@ def test_after_a_pause_the_controller_starts_anew() -> None:
 
 @pytest.mark.parametrize("craft", ["nominal", "thrust +30 %", "mass +30 %"])
 def test_in_simulated_water_it_rests_where_the_thesis_controller_oscillates(craft: str) -> None:
-    """The nominal craft, and two of the worst of docs/develop/proofs/control.md's table."""
+    """The nominal craft, and two of the worst in docs/develop/proofs/control.md."""
     robot = variants()[craft]
     found = perform(BEST, robot, sine=False)
     assert found.steady <= 0.02

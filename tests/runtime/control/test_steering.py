@@ -1,4 +1,4 @@
-"""Steering by two detectors that each only say whether they see a light."""
+"""Steering by two detectors that report only if they see a light."""
 
 from robot_runtime.control.steering import SEARCH_SECONDS, BeaconSteering
 

@@ -1,4 +1,4 @@
-"""Arming and disarming in simulated time, with a line to the board that the test holds."""
+"""Arming and disarming in simulated time, with a link to the board that the test plays."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The heading by tilted fins: what it asks of them, and what it reaches in the simulated water."""
+"""Heading control by tilted fins: its commands, and its results in simulated water."""
 
 from math import degrees, pi, radians, tan
 from typing import Any

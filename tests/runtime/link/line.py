@@ -1,4 +1,4 @@
-"""A serial line in simulated time, which does to bytes what bad lines do, and two channels at its ends."""
+"""A serial line in simulated time with faults, and a channel at each end."""
 
 import random
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ PACKETS |= {cls.type: cls for cls in (Acknowledge, Heartbeat)}
 
 @dataclass(frozen=True)
 class Noise:
-    """Shares of bits that flip and of bytes that vanish, come twice, come from nowhere or begin a burst."""
+    """Rates of flipped bits and of lost, doubled and inserted bytes, and of bursts."""
 
     bits: float = 0.0
     drops: float = 0.0
@@ -46,7 +46,7 @@ class Noise:
 
 
 class Wire:
-    """One direction: frames go in, and bytes come out when their time has come."""
+    """One direction: frames are sent, and their bytes arrive after their time on the line."""
 
     def __init__(self, baud: int, noise: Noise, chance: random.Random) -> None:
         self.sent = 0
@@ -58,7 +58,7 @@ class Wire:
         self._arrivals: list[tuple[float, bytes]] = []
 
     def send(self, frame: bytes, now: float) -> None:
-        """Put a frame on the line behind whatever is on it; nothing is no frame."""
+        """Append a frame to the line's traffic; an empty one is ignored."""
         if not frame:
             return
         self._free = max(self._free, now) + len(frame) * self._byte_time
@@ -90,7 +90,7 @@ class Wire:
         return self._arrivals[0][0] if self._arrivals else float("inf")
 
     def _flip(self, frame: bytes) -> bytes:
-        """Bit errors at exponential distances: as many as a share of all bits makes."""
+        """Flip bits at exponential distances, by the rate of bit errors."""
         if not self._noise.bits:
             return frame
         damaged = bytearray(frame)
@@ -103,7 +103,7 @@ class Wire:
 
 
 class End:
-    """One end: a channel that has always something to say, or what it was given."""
+    """One end: a channel that always has a message to send, or the given ones."""
 
     def __init__(self, baud: int, credit: int) -> None:
         self.channel = Channel(baud, credit, KEY, packets=PACKETS)
@@ -112,14 +112,14 @@ class End:
         self.decoder.key = KEY
 
     def take(self, data: bytes, now: float) -> None:
-        """Take in what the line brought."""
+        """Take received bytes."""
         for frame in self.decoder.feed(data):
             if not frame.open:
                 self.heard += self.channel.receive(frame, now)
 
 
 class Line:
-    """Two ends and a wire each way; time goes from one event to the next."""
+    """Two ends and a wire each way; time advances from event to event."""
 
     def __init__(self, baud: int, noise: Noise | None = None, credit: int = 4096) -> None:
         noise = noise or Noise()
@@ -140,13 +140,13 @@ class Line:
 
 
 def numbered(size: int, count: int) -> list[bytes]:
-    """Messages of that payload that differ, zeros among their bytes."""
+    """Distinct messages of this payload size, with zeros among their bytes."""
     head = bytes([PAYLOADS[size].type])
     return [head + number.to_bytes(2, "big") + bytes(range(size - 2)) for number in range(count)]
 
 
 def goodput(baud: int, size: int, bit_errors: float = 0.0) -> float:
-    """Share of baud/10 that the slower direction carries while both have always something to say."""
+    """Share of baud/10 that the slower direction carries while both always have messages."""
     line = Line(baud, Noise(bits=bit_errors))
     messages = numbered(size, MESSAGES)
     for end in line.ends:

@@ -1,4 +1,4 @@
-"""Two channels against each other on a simulated line: how much they carry, and that they lose nothing."""
+"""Two channels on a simulated line: their throughput, and that they lose nothing."""
 
 from itertools import pairwise
 

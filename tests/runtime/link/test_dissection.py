@@ -1,4 +1,4 @@
-"""Kept frames in words: what they hold, and why some were thrown away."""
+"""Stored frames as text: their contents, and the reasons of dropped ones."""
 
 import pytest
 

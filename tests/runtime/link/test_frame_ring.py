@@ -1,4 +1,4 @@
-"""The last frames each way."""
+"""The last frames in each direction."""
 
 from robot_runtime.link.frame_ring import FrameRing
 

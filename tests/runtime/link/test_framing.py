@@ -1,4 +1,4 @@
-"""Frames: whole, in pieces, several at once, damaged in every way."""
+"""Frames: complete, in pieces, several at once, damaged in every way."""
 
 import zlib
 
@@ -33,7 +33,7 @@ def frames(data: bytes) -> list[Frame]:
 
 
 def raw(content: bytes) -> bytes:
-    """A frame of any content, with a right checksum; 0 as number, where it has one."""
+    """A frame of any content with a valid checksum; 0 as number, where it has one."""
     if content[1:2] != bytes([Debug.type]):
         content += b"\0"
     return cobs.encode(content + zlib.crc32(content).to_bytes(4, "little")) + b"\0"  # type: ignore[no-any-return]

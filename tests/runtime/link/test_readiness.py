@@ -1,4 +1,4 @@
-"""A receiver that has no room says so: the sender waits, asks now and then, and goes on when it may."""
+"""Flow control: a receiver without room reports it, and the sender waits, probes and continues."""
 
 from robot_runtime.contract.packets import NOT_READY, Acknowledge
 from robot_runtime.link.channel import Channel
@@ -13,7 +13,7 @@ def told(acknowledged: int, held: int) -> Frame:
 
 
 class Sender:
-    """A channel that has eight frames full to say, and what it sent, frame by frame."""
+    """A channel with eight full frames to send, and its sent frames."""
 
     def __init__(self) -> None:
         self.channel = Channel(115_200, 4096, KEY, packets=PACKETS)
@@ -24,7 +24,7 @@ class Sender:
             self.channel.queue(message)
 
     def run(self, until: float) -> list[tuple[float, int, Messages]]:
-        """Time, number and messages of what goes out until then; it is asked only when it wants to be."""
+        """Time, number and messages of the frames sent until then; polled only when due."""
         sent = []
         asked = 0
         while self.now < until:

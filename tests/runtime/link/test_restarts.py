@@ -1,4 +1,4 @@
-"""Restarts of either side on a bad line, in simulated time: nothing twice, nothing out of order or lost."""
+"""Restarts of either end on a bad line, in simulated time: no duplicate, no reordering, no loss."""
 
 import random
 from itertools import pairwise
@@ -21,7 +21,7 @@ RESTARTS = 1000
 
 
 class World:
-    """A host and a board; each sends the other numbers, and keeps those that it was sent."""
+    """A host and a board; each sends the other numbers, and stores the received ones."""
 
     def __init__(self, seed: int) -> None:
         self.chance = random.Random(seed)
@@ -59,13 +59,13 @@ class World:
         self._forget()
 
     def replay(self, count: int) -> None:
-        """Frames of earlier sessions come once more, in any order, between those of this one."""
+        """Deliver frames of earlier sessions again, in any order, among those of the present one."""
         for old, wire in ((self._old_to_board, self._to_board), (self._old_to_host, self._to_host)):
             for frame in self.chance.sample(old, min(count, len(old))):
                 wire.send(frame, self.now)
 
     def send(self) -> None:
-        """Both send a number each; where they are joined it is owed to the other."""
+        """Send a number from each end; where both have joined, it must arrive."""
         if not self.joined:
             return
         self.number += 1
@@ -97,7 +97,7 @@ class World:
         self._set_line(NOISE)
 
     def check(self) -> None:
-        """Nothing came twice, and all in order."""
+        """Check that no number came twice, and all in order."""
         for heard in (self.at_board, self.at_host):
             assert all(earlier < later for earlier, later in pairwise(heard))
 
@@ -144,7 +144,7 @@ def test_a_thousand_restarts_lose_nothing_and_repeat_nothing() -> None:
 
 
 class Restarts(RuleBasedStateMachine):
-    """Any order of sending, waiting, restarting and frames that come again."""
+    """Any order of sending, waiting, restarting and repeated old frames."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""The connection over a real pseudo-terminal, with the board's end in the test's hand."""
+"""The serial link over a real pseudo-terminal, whose far end the test plays."""
 
 import os
 import threading
@@ -18,7 +18,7 @@ from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 
 class Host:
-    """A connection and what it reported."""
+    """A serial link and its reports."""
 
     def __init__(self, path: Path) -> None:
         self.changes = 0

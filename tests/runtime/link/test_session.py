@@ -49,7 +49,7 @@ def established(now: float = 0.0) -> LinkSession:
 
 
 def greet(session: LinkSession, now: float) -> None:
-    """The board says HELLO by itself; the host greets it."""
+    """Greeting of a board that sends HELLO by itself."""
     session.receive(build([hello()], 15, 0), now)
     assert said(session.poll(now)) == [Hello.type]
 

@@ -1,4 +1,4 @@
-"""The registry: what is refused, all or none, and never half of a change at a control tick."""
+"""The registry: refusals, changes as a whole, and never half of a change at a control tick."""
 
 import math
 import threading
@@ -14,7 +14,7 @@ from robot_runtime.parameters.registry import Registry
 
 
 class Box:
-    """Something with parameters."""
+    """An object with parameters."""
 
     def __init__(self) -> None:
         self.armed = False

@@ -24,7 +24,7 @@ CHANGES: dict[str, dict[str, Any]] = {
 
 
 class Swimmer(Core):
-    """It steers itself at a depth of 1 m, whatever may be wrong."""
+    """A robot that steers at a depth of 1 m, despite any fault."""
 
     def __init__(self) -> None:
         clock = SimulatedClock()
@@ -38,7 +38,7 @@ class Swimmer(Core):
         self.bus.publish_row("depth", clock.now(), depth.to_bytes())
 
     def check_faults(self) -> None:
-        """Nothing is wrong."""
+        """Report no fault."""
 
 
 @pytest.mark.parametrize("name", CHANGES)

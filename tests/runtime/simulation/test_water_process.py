@@ -1,4 +1,4 @@
-"""The process of the water: with a board that a test plays, and with Zenoh as it is."""
+"""The process of the water, with a board that the test plays and the real Zenoh."""
 
 import fcntl
 import logging
@@ -47,7 +47,7 @@ class Board:
         self._listener.settimeout(DEADLINE)
 
     def accept(self) -> str:
-        """Wait for the water to come, or to come anew; the first line that it says."""
+        """Wait for a connection of the water; returns its first line."""
         self.hang_up()
         self.line, _ = self._listener.accept()
         self.line.settimeout(DEADLINE)
@@ -58,7 +58,7 @@ class Board:
         return self._reader.readline().strip()
 
     def exchange(self, fins: bytes = RESTING) -> list[float]:
-        """The numbers with which the water answers a line."""
+        """The numbers in the water's answer to a line."""
         self.line.sendall(fins)
         word, *numbers = self.hear().split()
         assert word == "sense"
@@ -77,7 +77,7 @@ class Board:
 
 @pytest.fixture
 def folder() -> Iterator[Path]:
-    """Short enough for the name of a Unix socket."""
+    """A folder with a path short enough for a Unix socket."""
     with tempfile.TemporaryDirectory() as name:
         yield Path(name)
 

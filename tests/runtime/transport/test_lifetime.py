@@ -13,7 +13,7 @@ DEADLINE = 10.0
 
 
 class Clock:
-    """Stands still, and knows how often it was looked at."""
+    """A clock that the test sets, with a count of its readings."""
 
     def __init__(self) -> None:
         self.time = 100.0

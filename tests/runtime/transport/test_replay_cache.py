@@ -16,7 +16,7 @@ from tests.server.blocks import debug_block, depth_block, depth_record
 
 
 class Writer:
-    """An outbox whose messages are all kept here as well."""
+    """An outbox that also stores all its messages."""
 
     def __init__(self) -> None:
         self.clock = SimulatedClock(1000.0)

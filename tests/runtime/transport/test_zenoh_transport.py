@@ -22,7 +22,7 @@ def ends() -> Iterator[tuple[ZenohTransport, ZenohTransport]]:
 
 
 def heard(by: ZenohTransport, of: ZenohTransport) -> float:
-    """s until a message of the one reaches the other."""
+    """s until a message of one peer reaches the other."""
     arrived, began = threading.Event(), time.monotonic()
     subscription = by.subscribe("word", lambda *_: arrived.set())
     while not arrived.wait(0.01):
@@ -54,7 +54,7 @@ def test_a_peer_reconnects_soon() -> None:
 
 
 def ask(asking: ZenohTransport, name: str, payload: bytes) -> bytes:
-    """Zenoh tells of new answerers in its own time."""
+    """Ask, and repeat until Zenoh has announced the answering peer."""
     while True:
         try:
             return asking.query_bytes(name, payload)

@@ -1,4 +1,4 @@
-"""Pictures and cameras to look at."""
+"""Pictures and cameras for the vision tests."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -40,7 +40,7 @@ def drawn(time: float, card: str | None, width: int = 320, height: int = 240) ->
 
 
 class ShakyCamera(Camera):
-    """Shows one picture, or fails with what `failure` holds, as long as it does."""
+    """Shows one picture; raises `failure` as long as it is set."""
 
     def __init__(self, picture: Picture, clock: SimulatedClock) -> None:
         self.picture = picture

@@ -1,4 +1,4 @@
-"""A colour from a place in the picture: on cards, round the circle of hues, and where there is none."""
+"""Picking a colour in the picture: on cards, at any hue, and without a colour."""
 
 import numpy as np
 import pytest

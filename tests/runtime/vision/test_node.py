@@ -1,4 +1,4 @@
-"""The vision node: what it tells, when, and that no camera ends it."""
+"""The vision node: its detections, their times, and its recovery from failing cameras."""
 
 import threading
 import time
@@ -26,7 +26,7 @@ DEADLINE = 10.0
 
 @dataclass
 class Listener:
-    """Keeps what the node tells."""
+    """Stores the node's publications."""
 
     watching: set[str] = field(default_factory=set)
     detections: list[Detection] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""The settings: what colour ranges hold, what is refused, and that they are kept."""
+"""The settings: colour ranges, refusals, and the saved file."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ GOOD = {"hue": [20, 35], "saturation": [100, 255], "value": [70, 255]}
 
 
 def every_hue() -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
-    """A picture one pixel high that holds each hue once."""
+    """A picture one pixel high with each hue once."""
     return np.array([[(hue, 200, 200) for hue in range(180)]], np.uint8)
 
 

@@ -12,7 +12,7 @@ from tests.server.blocks import link_block, state_block, truth_block
 
 
 class MonitorRig:
-    """A watch with parts whose state is set by hand."""
+    """A health monitor, and processes with a settable state."""
 
     def __init__(self, settings: Settings, store: Store, *names: str) -> None:
         self.clock = SimulatedClock(1000.0)
@@ -33,7 +33,7 @@ class MonitorRig:
             part._set("running")
 
     def receive(self, number: int, **state: Any) -> None:
-        """Everything that comes while all is well."""
+        """Feed everything that arrives while all is well."""
         for block in (
             state_block(number, **state),
             link_block(number, 100 * number + 1),

@@ -25,7 +25,7 @@ class TeapotError(ApiError):
 
 
 def ask(problem: Exception) -> httpx.Response:
-    """The answer of an application whose route raises this."""
+    """The answer of an application whose route raises this error."""
     app = FastAPI()
     add_error_handlers(app)
 

@@ -10,7 +10,7 @@ from server.http.page import Page, make_router
 
 
 class Client:
-    """A browser that asks the page's routes."""
+    """A client of the page's routes."""
 
     def __init__(self, folder: Path) -> None:
         self._app = FastAPI()

@@ -11,7 +11,7 @@ OWN = "http://localhost:8000"
 
 
 def ask(kind: str = "http", method: str = "GET", *, port: int = 8000, **headers: Any) -> int:
-    """The status of a request with these headers; 101 where a WebSocket is let through."""
+    """The status of a request with these headers; 101 where a WebSocket is accepted."""
     sent: list[Message] = []
 
     async def inner(scope: Scope, _receive: Receive, send: Send) -> None:

@@ -47,7 +47,7 @@ def wait_for(stack: Stack, holds: Any) -> None:
 
 
 def wait_for_depth(stack: Stack) -> None:
-    """Wait until the robot's own sensor says that it is deep."""
+    """Wait until the robot's own sensor shows this depth."""
     depths: list[float] = []
 
     def take(_: str, data: bytes) -> None:
@@ -65,7 +65,7 @@ def wait_for_depth(stack: Stack) -> None:
 
 
 def wait_for_navigation(stack: Stack) -> Any:
-    """The last frames, once there is a navigation command among them that the board has."""
+    """The last frames, once an acknowledged navigation command is among them."""
     end = time.monotonic() + PATIENCE
     while True:
         frames = stack.api.get("/link/frames").json()

@@ -23,7 +23,7 @@ from tests.server.waiting import alive, until
 
 
 class Crew:
-    """Parts made of small Python programs."""
+    """A supervisor of processes that are small Python programs."""
 
     def __init__(self, folder: Path, *commands: ProcessCommand) -> None:
         self.told: list[tuple[str, str]] = []
@@ -239,7 +239,7 @@ def test_a_paused_process_does_not_run_until_it_is_resumed(tmp_path: Path) -> No
 
 
 class Left:
-    """A part that a killed server has left: started, and no longer anybody's in particular."""
+    """A process that a killed server has left."""
 
     def __init__(self, folder: Path, command: ProcessCommand) -> None:
         self.command = command

@@ -27,13 +27,13 @@ def wait(condition: Callable[[], object], what: str) -> None:
 
 
 def kill(process: psutil.Process) -> None:
-    """With -9, and see it end: on a busy computer a process that was killed is there for a moment yet."""
+    """Send SIGKILL, and wait for the end: on a busy computer a killed process stays for a moment."""
     process.kill()
     wait(lambda: not alive(process.pid), "the end of what was killed")
 
 
 class Family:
-    """A runner with the server that it has forked: a group of processes of its own."""
+    """A runner and the server that it has forked, in a process group of their own."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -43,7 +43,7 @@ class Family:
 
     @property
     def servers(self) -> list[tuple[int, str]]:
-        """Those that have served: their processes, and what they were told of the one before."""
+        """Process numbers of the servers so far, each with the end of the server before it."""
         log = self.folder / "servers"
         lines = log.read_text().splitlines() if log.exists() else []
         return [(int(pid), ended) for pid, _, ended in (line.partition(" ") for line in lines)]
@@ -57,7 +57,7 @@ class Family:
         return [process for process in found if alive(process.pid)]
 
     def whole(self) -> bool:
-        """One of each, and the server serves."""
+        """Check that there is one runner and one server, and that it serves."""
         everybody = [self.find(name) for name in NAMES]
         if [len(one) for one in everybody] != [1, 1]:
             return False

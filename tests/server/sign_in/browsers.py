@@ -1,4 +1,4 @@
-"""Browsers as the server sees them: a cookie, the page's header, and the page's origin."""
+"""Browsers as the server sees them: a cookie, the page's header and its origin."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -12,7 +12,7 @@ from tests.server.serving import Served
 
 
 class Browser:
-    """One that is not signed in yet."""
+    """A browser that is not signed in yet."""
 
     def __init__(self, served: Served, name: str) -> None:
         self.name = name
@@ -33,13 +33,13 @@ class Browser:
         return "; ".join(f"{name}={value}" for name, value in self.api.cookies.items())
 
     def connect(self, **options: Any) -> connect:
-        """Its live socket."""
+        """Open the browser's live socket."""
         return self._served.connect(additional_headers={"cookie": self.cookie}, **options)
 
 
 @asynccontextmanager
 async def browser(served: Served, role: Role | None, name: str = "tablet") -> AsyncIterator[Browser]:
-    """A browser, paired in this role by the shell; None: nobody yet."""
+    """A browser, paired in this role by the shell; None: not paired."""
     one = Browser(served, name)
     async with one.api:
         if role is not None:

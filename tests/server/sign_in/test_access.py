@@ -1,4 +1,4 @@
-"""Signing in, roles and their end, through the served interface."""
+"""Sign-in, roles and revocation over HTTP."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""Uploads and builds wait until the robot rests."""
+"""Uploads and builds are refused while the robot is armed."""
 
 import asyncio
 import json
@@ -24,7 +24,7 @@ ENDLESS: dict[str, Any] = {
 
 
 async def answers(served: Served) -> list[tuple[int, str]]:
-    """To an upload that is no archive, and to a communication test that is no document."""
+    """Statuses of an invalid upload and an invalid communication test."""
     given = [
         await served.api.post("/imports", content=b"no archive", timeout=60),
         await served.api.post("/comm-tests/runs", json={"text": "no document", "place": "emulated"}),

@@ -1,4 +1,4 @@
-"""Signing in, in any order: codes, roles, tokens, revocation and restarts, against a model of a few lines."""
+"""Sign-in under any sequence of codes, roles, tokens, revocations and restarts, against a small model."""
 
 import asyncio
 import tempfile
@@ -29,7 +29,7 @@ ROLES = st.sampled_from(["viewer", "operator"])
 
 @dataclass
 class Code:
-    """As it was made; `void` once it was used or forgotten."""
+    """A code of the model; `void` once it was used or dropped."""
 
     text: str
     role: Role
@@ -39,7 +39,7 @@ class Code:
 
 @dataclass
 class Member:
-    """Somebody who was let in, and whose secret proves that unless they are `out`."""
+    """A paired device of the model, whose secret is valid unless it is `out`."""
 
     identity: Identity
     secret: str
@@ -47,7 +47,7 @@ class Member:
 
 
 class SigningIn(RuleBasedStateMachine):
-    """One robot, whose server is started again now and then."""
+    """One robot, whose server is restarted now and then."""
 
     codes: Bundle[Code] = Bundle("codes")
     members: Bundle[Member] = Bundle("members")
@@ -81,7 +81,7 @@ class SigningIn(RuleBasedStateMachine):
         self.access.open()
 
     def run(self, coroutine: Coroutine[Any, Any, T]) -> T:
-        """Its result."""
+        """Run a coroutine; returns its result."""
         return self.runner.run(coroutine)
 
     def end(self) -> None:
@@ -107,7 +107,7 @@ class SigningIn(RuleBasedStateMachine):
         self.clock.forward(seconds)
 
     def valid(self) -> list[Code]:
-        """Those that open something."""
+        """The codes that are still valid."""
         return [code for code in self.made if not code.void and self.clock.now() < code.until]
 
     def waits(self) -> bool:
@@ -132,7 +132,7 @@ class SigningIn(RuleBasedStateMachine):
         return self.try_to_pair(code, member)
 
     def try_to_pair(self, code: Code, known: Member | None) -> Any:
-        """The member that came of it; or the one that there was."""
+        """The member of a sign-in: a new one, or the one of a paired browser."""
         browser = known is not None and not known.out and known.identity.kind == "browser"
         asking = self.access.pair(code.text, "tablet", known.identity if known and not known.out else None)
         if self.waits():
@@ -158,11 +158,11 @@ class SigningIn(RuleBasedStateMachine):
         return self.let_in(identity, secret)
 
     def nobody(self) -> Any:
-        """A member that is none."""
+        """A member with an invalid secret."""
         return Member(Identity(10**6, "", "viewer", "browser"), "no secret", out=True)
 
     def let_in(self, identity: Identity, secret: str) -> Member:
-        """One more; numbers and secrets are never given twice."""
+        """Add a member; numbers and secrets are never reused."""
         assert identity.device not in {one.identity.device for one in self.everybody if not one.out}
         assert secret not in {one.secret for one in self.everybody}
         member = Member(identity, secret)
@@ -186,7 +186,7 @@ class SigningIn(RuleBasedStateMachine):
         return self.let_in(device.identity, token)
 
     def operators(self) -> list[Member]:
-        """Browsers that may let others in."""
+        """Browsers of operators."""
         return [
             one
             for one in self.everybody
@@ -232,7 +232,7 @@ class SigningIn(RuleBasedStateMachine):
             assert self.closed == [member.identity.device]
 
     async def seen(self, kind: Kind, secret: str) -> Identity | None:
-        """Whom the server takes a request with this for."""
+        """The identity that the server finds for a request with this secret."""
         header = (b"authorization", f"Bearer {secret}".encode())
         if kind == "browser":
             header = (b"cookie", f"{self.access.cookie}={secret}".encode())

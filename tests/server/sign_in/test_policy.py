@@ -1,4 +1,4 @@
-"""Every operation declares its need, and what declares none is refused."""
+"""Every operation declares its need, and an operation without one is refused."""
 
 import asyncio
 from pathlib import Path

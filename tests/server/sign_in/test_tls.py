@@ -1,4 +1,4 @@
-"""A server with a certificate of its own, and what talks to it."""
+"""TLS: a server with its own certificate, and its clients."""
 
 import asyncio
 import hashlib

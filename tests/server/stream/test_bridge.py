@@ -13,7 +13,7 @@ ANSWER = BacklogReply("0123456789abcdef", {}, [])
 
 
 class Process:
-    """A process that does not hear the first questions, and takes `needs` s to answer one."""
+    """A process that drops the first requests, and takes `needs` s to answer one."""
 
     def __init__(self, lost: int = 0, needs: float = 0.0) -> None:
         self.asked: list[float] = []

@@ -18,7 +18,7 @@ TOPICS = (BY_NAME["depth"], BY_NAME["debug"])
 
 
 class Sender:
-    """One run of a process: numbers blocks of depths and keeps them."""
+    """One run of a process: numbers blocks of depths and stores them in a replay cache."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -33,7 +33,7 @@ class Sender:
 
 
 class Receiver:
-    """A source, and what came out of it. It can ask whichever sender lives, once the gate is open."""
+    """A gap filler and its output. It asks the living sender once the gate is open."""
 
     def __init__(self) -> None:
         self.alive: Sender | None = None

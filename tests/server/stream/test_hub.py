@@ -14,7 +14,7 @@ from tests.server.waiting import until
 
 
 class Page:
-    """A page's end of a socket, whose reading can be held up."""
+    """A page's end of a socket, whose reading can be paused."""
 
     def __init__(self, hub: Hub) -> None:
         self.received: list[bytes | str] = []

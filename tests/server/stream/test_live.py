@@ -22,7 +22,7 @@ from tests.shell import shell_headers
 
 
 async def read_until(socket: ClientConnection, condition: Callable[[list[Block]], object]) -> list[Block]:
-    """All blocks up to where the condition holds."""
+    """All blocks until the condition holds."""
     blocks: list[Block] = []
     async with asyncio.timeout(10):
         while not condition(blocks):

@@ -1,4 +1,4 @@
-"""A builder with a folder that lasts, and boards in emulated time."""
+"""A builder with a lasting folder, and boards in emulated time."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -45,5 +45,5 @@ def program() -> Path:
 
 @pytest.fixture
 def run(builder: Builder, program: Path) -> Run:
-    """Runs the cells of a test that differs in this from one cell of the thesis's grid."""
+    """Run the cells of a test that differs in these entries from one cell of the thesis's grid."""
     return lambda **changes: list(Runner(builder, program, 2).run(make_test(**changes)))

@@ -1,4 +1,4 @@
-"""A GPIO chip for other processes, made of a library that they load: see gpio_chip.c."""
+"""A fake GPIO chip for other processes, by a library that they load: see gpio_chip.c."""
 
 import fcntl
 import subprocess
@@ -26,14 +26,14 @@ class GpioChip:
         environment.setenv("MUCAT_GPIO_LINES", str(self._lines))
 
     def levels(self, line: int) -> list[Level]:
-        """What was done with a line, in order, and when (s, steady clock)."""
+        """The changes of a line, in order, with their times (s, steady clock)."""
         file = self._lines / str(line)
         words = [row.split() for row in file.read_text().splitlines()] if file.exists() else []
         return [(what, int(time) / 1e9) for what, time in words]
 
     @contextmanager
     def hold(self, line: int) -> Iterator[None]:
-        """Another program has requested this line."""
+        """Mark this line as requested by another program."""
         with (self._lines / str(line)).open("w") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
             yield

@@ -24,7 +24,7 @@ def write_document(*tests: CommTest) -> bytes:
 
 @contextmanager
 def lab(document: bytes, *options: str) -> Iterator[subprocess.Popen[bytes]]:
-    """It runs, has read the document, and is killed at the end if it still runs."""
+    """A running lab that has read the document; it is killed at the end if it still runs."""
     command = [*COMMAND, *options]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT
@@ -52,13 +52,13 @@ def read_until(output: IO[bytes] | None, **wanted: Any) -> list[Event]:
 
 
 def run_lab(document: bytes, *options: str) -> tuple[int, list[Event]]:
-    """Its exit status and all that it told."""
+    """The exit status and all events."""
     with lab(document, *options) as process:
         return _rest(process)
 
 
 def cancel(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
-    """SIGTERM: its exit status and what it tells from then on."""
+    """Send SIGTERM; returns the exit status and the events after it."""
     # The end of a parent with threads sends several.
     for _ in range(20):
         process.send_signal(signal.SIGTERM)

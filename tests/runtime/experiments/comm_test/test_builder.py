@@ -1,4 +1,4 @@
-"""The sketch is compiled as the firmware is, once for each set of inputs."""
+"""Compilation of the sketch, with the firmware's flags, once for each set of inputs."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""The test document: the thesis's own runs, and every mistake is told where it is."""
+"""The test document: the thesis's own runs, and errors with their places."""
 
 import json
 from dataclasses import asdict

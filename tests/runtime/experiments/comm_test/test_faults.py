@@ -1,4 +1,4 @@
-"""Faults on the line of a cell: when they come, what they do, and that they come again in the same way."""
+"""Faults on the line of a cell: their times, their effects, and their repeatability."""
 
 from itertools import islice
 

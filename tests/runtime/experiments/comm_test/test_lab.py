@@ -1,4 +1,4 @@
-"""The lab process: what it reads and what it tells."""
+"""The lab process: its input and its events."""
 
 import platform
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Cells over the robot's own link: every number arrives, once and in order, whatever the line does."""
+"""Cells over the robot's own link: under any faults every number arrives once and in order."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -21,7 +21,7 @@ RunHarmed = Callable[..., CellResult]
 
 
 class HarmedLine(EmulatedLine):
-    """A line to which something happens at a moment of emulated time, in s."""
+    """A line with a fault at a moment of emulated time, in s."""
 
     harm: Harm | None = None
     harm_at = 0.0
@@ -35,7 +35,7 @@ class HarmedLine(EmulatedLine):
 
 @pytest.fixture
 def run_harmed(builder: Builder, program: Path, tmp_path: Path) -> RunHarmed:
-    """Runs one cell over the robot's link; `harm` happens to the board at `harm_at`."""
+    """Run one cell over the robot's link; `harm` is applied to the board at `harm_at`."""
 
     def run(harm: Harm, harm_at: float, baud_of_sketch: int = 115200, **changes: Any) -> CellResult:
         test = make_test(framing="robot", **changes)
@@ -77,7 +77,7 @@ def test_every_number_arrives_at_every_baud(run: Run, direction: str, baud: int)
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_a_slow_sketch_loses_nothing(run: Run, direction: str) -> None:
-    """The thesis's framing brings 8 % of this: what there is no room for waits at the host."""
+    """With the thesis's framing 8 % of these numbers arrive; here numbers without room wait at the host."""
     (result,) = run(framing="robot", direction=direction, arduinodelay=(0.1,))
     check_all_arrived(result)
     assert result.seconds == pytest.approx(10, abs=0.5)

@@ -1,4 +1,4 @@
-"""The reset pin through the real libgpiod: on a chip of the tests' own, and on the kernel's gpio-sim."""
+"""The reset pin through the real libgpiod: on a fake chip, and on the kernel's gpio-sim."""
 
 import os
 import shutil
@@ -37,7 +37,7 @@ def chip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> GpioChip:
 
 
 def pull(spec: str) -> str:
-    """What a process that pulls the pin says of it: nothing where all went well."""
+    """The error of a process that pulls the pin; empty without one."""
     done = subprocess.run([sys.executable, "-c", PULL, spec], cwd=ROOT, capture_output=True, text=True)
     return done.stderr.strip()
 
@@ -102,7 +102,7 @@ def test_an_upload_resets_the_board_before_avrdude_begins(
 
 
 def put_before_avrdude(folder: Path, command: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A shell command that runs whenever avrdude is started, before it."""
+    """Make a shell command run before each start of avrdude."""
     real = shutil.which("avrdude")
     assert real is not None
     wrapper = folder / "avrdude"
@@ -113,7 +113,7 @@ def put_before_avrdude(folder: Path, command: str, monkeypatch: pytest.MonkeyPat
 
 @contextmanager
 def kernel_chip() -> Iterator[tuple[Path, Path]]:
-    """A chip of gpio-sim's: its device, and the file that shows the level of its line."""
+    """A chip of gpio-sim: its device, and the file with the level of its line."""
     device = GPIO_SIM / f"mucat-{os.getpid()}"
     bank = device / "bank"
     bank.mkdir(parents=True)

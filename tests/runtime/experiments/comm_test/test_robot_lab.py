@@ -1,4 +1,4 @@
-"""The lab on the robot's own board, in real time; an emulated board at 1x plays the Arduino."""
+"""The lab on the robot's own board, in real time; an emulated board at 1x stands in for the real one."""
 
 import signal
 from collections.abc import Iterator
@@ -31,7 +31,7 @@ def arduino(program: Path, tmp_path: Path) -> Iterator[EmulatorProcess]:
 
 @pytest.fixture
 def bare_arduino(program: Path, tmp_path: Path) -> Iterator[EmulatorProcess]:
-    """The same, whose reset pin has to be pulled, as on the robot."""
+    """A board as on the robot, whose reset pin must be pulled."""
     with start_board(program, tmp_path) as process:
         yield process
 
@@ -49,7 +49,7 @@ def place(arduino: EmulatorProcess, reset: str = "dtr") -> tuple[str, ...]:
 
 
 def check_restored(arduino: EmulatorProcess, reset: str = "dtr") -> None:
-    """The robot's firmware is uploaded, and answers a greeting once the boot loader has waited in vain."""
+    """Restore the robot's firmware, and check that it answers a greeting after the boot loader's wait."""
     assert run_lab(b"", "--restore", str(ROBOT), *place(arduino, reset)) == (0, [])
     session = LinkSession(1, BAUD)
     with Port(str(arduino.tty), BAUD) as port:

@@ -1,4 +1,4 @@
-"""Cells on the emulated board: what arrives, what does not, and why."""
+"""Cells on the emulated board: arrivals, losses and their causes."""
 
 import time
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Uploads through the boot loader of a paused board: by the real avrdude, in whatever time it takes."""
+"""Uploads through the boot loader of a paused board by the real avrdude, at any speed of the host."""
 
 import os
 import shutil
@@ -23,7 +23,7 @@ Empty = tuple[EmulatorProcess, EmulatorClient]
 
 @pytest.fixture
 def empty(program: Path, tmp_path: Path) -> Iterator[Empty]:
-    """A board with nothing but its boot loader, and no time that passes."""
+    """A paused board with nothing but its boot loader."""
     options = ("--bootloader", str(program.parent / BOOTLOADER), "--paused")
     with (
         EmulatorProcess(program, None, tmp_path / "tty", tmp_path / "socket", *options) as process,

@@ -1,4 +1,4 @@
-"""Faults in front of a real port: what they do to bytes, that they are counted, and can be repeated."""
+"""The proxy with faults in front of a real port: effects on bytes, counts, repeatability."""
 
 import os
 import random
@@ -165,7 +165,7 @@ def test_an_invalid_rate_is_refused(rate: float) -> None:
 
 
 class Ends:
-    """A fault line, the host's end of it, and the far end of the port behind it."""
+    """A proxy, the host's end of it, and the far end of the port behind it."""
 
     def __init__(self, folder: Path) -> None:
         self.far = BoardEnd(folder / "port")
@@ -177,7 +177,7 @@ class Ends:
         os.write(self.host.fileno() if direction == "to_board" else self.far.master, data)
 
     def receive(self, direction: Direction, count: int, limit: float = DEADLINE) -> bytes:
-        """That many bytes, or what has come within the limit (s)."""
+        """Read this many bytes, or those that arrive within the limit (s)."""
         file = self.far.master if direction == "to_board" else self.host.fileno()
         data, end = b"", time.monotonic() + limit
         while len(data) < count and select.select([file], [], [], max(end - time.monotonic(), 0))[0]:

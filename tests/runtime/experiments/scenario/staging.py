@@ -1,4 +1,4 @@
-"""A scenario as a test writes it, run in simulated time, and what it told."""
+"""Scenarios written by a test, run in simulated time, and their output."""
 
 import json
 from collections.abc import Callable
@@ -16,7 +16,7 @@ POOL = 'kind = "pool"\ndepth = 3.0\nlength = 10.0\nwidth = 5.0'
 
 
 def document(seconds: float, *events: str, seed: int = 7, scene: str = POOL, more: str = "") -> str:
-    """A scenario of so many seconds; each event is the inside of an inline table."""
+    """A scenario of this duration in s; each event is the content of an inline table."""
     happens = "".join(f"\n[[events]]\n{event.replace('; ', chr(10))}\n" for event in events)
     head = f'name = "test"\ntitle = "Test"\nduration = {seconds}\nseed = {seed}\n'
     control = '[control]\ncontroller = "pid"\nset_point = 0.6\n'
@@ -24,7 +24,7 @@ def document(seconds: float, *events: str, seed: int = 7, scene: str = POOL, mor
 
 
 class Told:
-    """All that a run told."""
+    """The complete output of a run."""
 
     def __init__(self) -> None:
         self.on_event: Callable[[dict[str, Any]], None] = lambda _: None
@@ -34,7 +34,7 @@ class Told:
         self.bytes = b""
 
     def blocks(self, data: bytes) -> None:
-        """Take blocks apart."""
+        """Decode and store blocks."""
         self.bytes += data
         for block in read_blocks(data):
             if block.topic.kind is Kind.ROWS:
@@ -43,12 +43,12 @@ class Told:
                 self.documents.setdefault(block.topic.name, []).extend(json.loads(block.payload))
 
     def event(self, event: str, **more: Any) -> None:
-        """Keep it."""
+        """Store an event."""
         self.events.append({"event": event, **more})
         self.on_event(self.events[-1])
 
     def texts(self, topic: str) -> list[str]:
-        """The words of all the topic's documents."""
+        """The texts of all the topic's documents."""
         return [document["text"] for document in self.documents.get(topic, [])]
 
     def time_of(self, topic: str, words: str) -> float:
@@ -57,22 +57,22 @@ class Told:
 
     @property
     def markers(self) -> list[tuple[float, str]]:
-        """Times and words of what was pointed out."""
+        """Times and texts of the bookmarks."""
         return [(one["time"], one["text"]) for one in self.events if one["event"] == "marker"]
 
     @property
     def ended(self) -> dict[str, Any]:
-        """The event that ended it."""
+        """The event of its end."""
         assert self.events[-1]["event"] == "ended"
         return self.events[-1]
 
     def between(self, topic: str, start: float, end: float) -> list[Any]:
-        """The topic's records of this time."""
+        """The topic's records in this range of time."""
         return [record for time, record in self.rows[topic] if start <= time < end]
 
 
 def perform(scenario: str | Scenario, board: str = "host", told: Told | None = None) -> Told:
-    """Run it to its end."""
+    """Run a scenario to its end."""
     told = told or Told()
     read = read_scenario(scenario) if isinstance(scenario, str) else scenario
     ScenarioRun(read, boards()[board], told).perform(lambda firmware: {"firmware": str(len(firmware))})

@@ -1,4 +1,4 @@
-"""The scenario's document: what is shipped can be run, and everything that is wrong is told at once."""
+"""The scenario's document: the shipped ones are valid, and all errors are reported at once."""
 
 from importlib.resources import files
 

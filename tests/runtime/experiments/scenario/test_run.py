@@ -1,4 +1,4 @@
-"""Scenarios in simulated time, with the firmware that the robot has."""
+"""Scenarios in simulated time, with the robot's own firmware."""
 
 import json
 import os
@@ -26,7 +26,7 @@ HEADER = Struct("<IB")
 
 
 def run_process(text: str, *options: str, hashes: str = "0") -> tuple[int, bytes]:
-    """The exit status and what the process wrote."""
+    """The exit status and the output of the process."""
     command = [sys.executable, "-m", "robot_runtime.experiments.scenario", *options]
     environment = {**os.environ, "PYTHONHASHSEED": hashes}
     done = subprocess.run(command, cwd=ROOT, input=text.encode(), stdout=subprocess.PIPE, env=environment)

@@ -1,4 +1,4 @@
-"""The lines between water and board: whole, split, malformed."""
+"""The lines between water and board: complete, split, malformed."""
 
 from math import nan
 

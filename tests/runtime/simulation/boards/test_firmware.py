@@ -1,4 +1,4 @@
-"""The firmware for each speed of the line: a place of its own, and built where it is missing."""
+"""The firmware for each baud: its own path, and its build where it is missing."""
 
 from pathlib import Path
 

@@ -27,7 +27,7 @@ LIBRARY = BUILD / "libhost_board.so"
 
 
 class Rig:
-    """A board with nobody greeting it, and the water in the test's hand."""
+    """A board without a host, with readings that the test sets."""
 
     def __init__(self) -> None:
         self.reading = STILL_WATER

@@ -1,4 +1,4 @@
-"""Scenes that are rendered, where this computer can."""
+"""Scenes rendered on this computer, where that is possible."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -18,7 +18,7 @@ Make = Callable[[Contents], "SceneRenderer"]
 
 @pytest.fixture
 def scene() -> Iterator[Make]:
-    """Makes scenes, which are closed with the test."""
+    """Creates scenes, and closes them with the test."""
     problem = missing()
     if problem:
         pytest.skip(problem)

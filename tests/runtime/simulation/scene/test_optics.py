@@ -1,4 +1,4 @@
-"""The formula of light in water, without anything rendered."""
+"""The formula of light in water, without rendering."""
 
 import numpy as np
 import pytest

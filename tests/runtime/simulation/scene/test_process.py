@@ -1,4 +1,4 @@
-"""The scene's process: asked over Zenoh as it is, rendering in a thread of its own."""
+"""The scene's process: requests over the real Zenoh, rendering in a thread of its own."""
 
 import tempfile
 import threading
@@ -42,14 +42,14 @@ SLOW = 30.0
 
 
 class Ends:
-    """The scene's process, and the other end of its conversation."""
+    """The scene's process and its Zenoh peer."""
 
     def __init__(self, process: SceneProcess, other: ZenohTransport) -> None:
         self.process = process
         self.other = other
 
     def ask(self, name: str, question: dict[str, Any]) -> dict[str, Any]:
-        """Zenoh tells of new answerers in its own time."""
+        """Ask, and repeat until Zenoh has announced the process."""
         answer: dict[str, Any] = patiently(lambda: self.other.query(f"scene/{name}", question))
         return answer
 
@@ -58,7 +58,7 @@ class Ends:
         return read_picture(patiently(lambda: self.other.query_bytes("scene/picture", request, SLOW)))
 
     def tell(self, seconds: float, where: Truth) -> None:
-        """Say where the robot is, until the scene knows."""
+        """Publish the robot's pose until the scene has received it."""
         block = Block.of(BY_NAME["truth"], 1, 0, row(seconds, where.to_bytes()))
         end = time.monotonic() + SLOW
         while self.process._truth is None or self.process._truth[0] != seconds:

@@ -1,4 +1,4 @@
-"""Bodies for experiments: pushed by a steady force, in deep water, with parts of the physics taken away."""
+"""Bodies for experiments: pushed by a steady force, in deep water, with parts of the physics removed."""
 
 from dataclasses import replace
 from math import cos, pi, sin
@@ -26,7 +26,7 @@ UNDAMPED = replace(NEUTRAL, damping_linear=(0.0,) * 6, damping_quadratic=(0.0,) 
 
 
 class SteadyPush(Fins):
-    """Fins that push with the same wrench whatever they do."""
+    """Fins with a constant wrench."""
 
     def __init__(self, wrench: Six = (0.0,) * 6) -> None:
         super().__init__(NEUTRAL)
@@ -59,7 +59,7 @@ def drift(body: Body, seconds: float, duration: float = 0.002) -> BodyState:
 
 
 class Flapping:
-    """Fins that swing as the firmware lets them, zero + A/2 · sin(2πft + phase); the others rest."""
+    """Fins that flap as the firmware moves them, zero + A/2 · sin(2πft + phase); the others rest."""
 
     def __init__(
         self,

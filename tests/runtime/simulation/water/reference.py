@@ -1,4 +1,4 @@
-"""The same equations of motion a second time, with full matrices as in the textbook, to compare with."""
+"""A second implementation of the equations of motion, with full matrices as in the textbook."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -168,7 +168,7 @@ def test_hull_drifts_with_the_current() -> None:
 
 
 def test_a_current_carries_every_motion_along_unchanged() -> None:
-    """Galilei: motion in a steady current, seen by who drifts with it, is the motion in still water."""
+    """Galilei: motion in a steady current, in the current's frame, equals the motion in still water."""
     current = (0.3, -0.2, 0.1)
     still, carried = tumbling(NEUTRAL), tumbling(NEUTRAL)
     carried.world.set_current(Current(*current))

@@ -1,4 +1,4 @@
-"""Floor and walls: nothing goes through them, and no energy comes out of them."""
+"""Floor and walls: the hull stays inside, and no energy is gained."""
 
 from dataclasses import replace
 from math import sqrt
@@ -27,7 +27,7 @@ def reach(state: BodyState, axis: int) -> float:
 
 
 def outside(state: BodyState, basin: Basin) -> float:
-    """m by which the hull is beyond floor or walls."""
+    """m by which the hull penetrates floor or walls."""
     north, east, down = state.position
     beyond = [down + reach(state, 2) - basin.depth]
     if basin.length is not None and basin.width is not None:
@@ -37,7 +37,7 @@ def outside(state: BodyState, basin: Basin) -> float:
 
 
 def energy(body: Body, parameters: SimulationParameters) -> float:
-    """J, kinetic with the added mass, and potential of a hull that is deep under water."""
+    """Kinetic energy with the added mass, and potential energy of a hull deep under water, in J."""
     position, attitude, velocity, rate = body.state
     kinetic = 0.5 * sum(
         mass * speed**2 for mass, speed in zip(parameters.total_mass, (*velocity, *rate), strict=True)
@@ -64,7 +64,7 @@ def thrown(random: Random, parameters: SimulationParameters) -> Body:
 @pytest.mark.parametrize("restitution", [0.0, 0.2, 1.0])
 @pytest.mark.parametrize("friction", [0.0, 0.3, 5.0])
 def test_a_thrown_hull_stays_inside_and_gains_no_energy(restitution: float, friction: float) -> None:
-    """Without damping, as that would hide it."""
+    """Without damping, which would hide a gain of energy."""
     parameters = replace(UNDAMPED, buoyancy=0.97, floor=3.0, restitution=restitution, friction=friction)
     random = Random(5)
     for _ in range(6):
@@ -85,7 +85,7 @@ def test_a_thrown_hull_stays_inside_and_gains_no_energy(restitution: float, fric
 
 
 def energy_at_rest(parameters: SimulationParameters) -> float:
-    """J, lying on the floor."""
+    """Energy in J of a hull that lies on the floor."""
     body = pushed(parameters, depth=WELL.depth - HALF[2])
     return energy(body, parameters)
 
@@ -135,7 +135,7 @@ def test_comes_back_with_its_share_of_the_speed(axis: int, side: int) -> None:
 
 
 def test_friction_takes_its_share_of_the_blow() -> None:
-    """Held from turning: Δu = -µ·(1+e)·w·m_heave / m_surge."""
+    """Without rotation: Δu = -µ·(1+e)·w·m_heave / m_surge."""
     stiff = replace(UNDAMPED, floor=3.0, inertia=(1e9, 1e9, 1e9))
     body = pushed(stiff, depth=2.95)
     body.state = body.state._replace(velocity=(0.5, 0.0, 0.1))

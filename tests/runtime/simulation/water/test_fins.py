@@ -1,4 +1,4 @@
-"""The fins: their mean thrust, and that each degree of freedom moves the way the conventions say."""
+"""The fins: their mean thrust, and the direction of each degree of freedom."""
 
 from dataclasses import replace
 from math import cos, pi
@@ -27,7 +27,7 @@ def published_thrust(drag: float, amplitude: float, frequency: float) -> float:
 
 
 def mean_push(parameters: SimulationParameters, flapping: Flapping) -> Six:
-    """Mean wrench over one period on a hull that is held."""
+    """Mean wrench over one period on a fixed hull."""
     fins, count = Fins(parameters), 2000
     times = [index * 2 * pi / flapping.omega / count for index in range(count)]
     pushes = [fins.push(flapping.at(time), flapping.speeds_at(time), *AT_REST) for time in times]
@@ -135,7 +135,7 @@ def test_a_fixed_fin_has_drag_in_cross_flow() -> None:
 
 
 def test_smaller_steps_converge() -> None:
-    """Second order: a quarter of the step, about a sixteenth of the error."""
+    """Convergence of second order: a quarter of the step, about a sixteenth of the error."""
 
     def swim(duration: float) -> float:
         return Flapping((UP, UP, UP, UP), SWIMMING).swim(finned(), 10, duration).position[2]

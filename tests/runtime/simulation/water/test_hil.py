@@ -1,4 +1,4 @@
-"""The water of a board in the loop, with Zenoh as it is and fins that the test moves."""
+"""The water of a board in the loop, with the real Zenoh and fins that the test moves."""
 
 import tempfile
 import threading
@@ -23,7 +23,7 @@ PERIOD = 0.02
 
 
 class Robot:
-    """The runtime's end: fins out, words in."""
+    """The runtime's end: sends fins, receives readings."""
 
     def __init__(self, messages: ZenohTransport) -> None:
         self.words: list[Sense] = []
@@ -38,7 +38,7 @@ class Robot:
         self._messages.publish("motor", block.data)
 
     def hear(self, count: int) -> Sense:
-        """Wait until so many words have come; the last."""
+        """Wait for this number of readings; returns the last."""
         wait_for(lambda: len(self.words) >= count, f"{count} words")
         return self.words[-1]
 

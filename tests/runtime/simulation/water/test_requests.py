@@ -112,7 +112,7 @@ def test_beacons_are_placed_moved_and_removed(simulator: Simulator, ask: Ask) ->
 def test_every_sensor_can_have_every_fault_and_only_that_one_changes(
     sensor: str, numbers: dict[str, object]
 ) -> None:
-    """The readings of all others stay the same to the last digit."""
+    """The readings of all other sensors stay the same to the last digit."""
     sound, broken = readings(None), readings({"sensor": sensor, **numbers})
     differing = {
         name for early, late in zip(sound, broken, strict=True) for name in early if early[name] != late[name]
@@ -122,7 +122,7 @@ def test_every_sensor_can_have_every_fault_and_only_that_one_changes(
 
 
 def readings(fault: Question | None) -> list[dict[str, object]]:
-    """Of the default robot, breaking after half a second; beacons come and go."""
+    """Readings of the default robot with a fault after half a second; beacons appear and disappear."""
     simulator = Simulator(SimulationParameters(), seed=3)
     known = changes(simulator)
     rest(simulator, 0.5)
@@ -136,7 +136,7 @@ def readings(fault: Question | None) -> list[dict[str, object]]:
 
 
 def split(reading: Reading) -> dict[str, object]:
-    """By the sensors' names; nan as a word, so that it equals itself."""
+    """Readings by the sensors' names; NaN as text, so that it equals itself."""
     encoders = {
         f"encoder{fin}": "holds" if isnan(error) else error for fin, error in enumerate(reading.encoders)
     }

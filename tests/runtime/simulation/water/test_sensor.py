@@ -1,4 +1,4 @@
-"""One sensor: how it spoils what it feels, and what can be wrong with it."""
+"""One sensor: its noise, offset, steps and delay, and its faults."""
 
 from itertools import pairwise
 from math import sqrt
@@ -18,12 +18,12 @@ def made(quality: SensorQuality, name: str = "pressure", axes: int = 1, seed: in
 
 
 def series(sensor: Sensor, count: int, actual: Numbers = (0.0,), first: int = 1) -> list[float]:
-    """Its first axis, asked every 5 ms."""
+    """Readings of the first axis, every 5 ms."""
     return [sensor.read((first + index) * PERIOD, actual)[0] for index in range(count)]
 
 
 def ramp(sensor: Sensor, count: int) -> list[float]:
-    """It feels the time."""
+    """Readings of a sensor whose true value is the time."""
     return [sensor.read(index * PERIOD, (index * PERIOD,))[0] for index in range(1, count + 1)]
 
 
@@ -99,7 +99,7 @@ def test_same_seed_and_name_same_readings() -> None:
 
 
 def broken(fault: SimulatedFault, count: int = 1000, quality: SensorQuality | None = None) -> list[float]:
-    """It feels the time, and breaks after 1 s."""
+    """Readings of a sensor whose true value is the time, with a fault after 1 s."""
     sensor = made(quality or SensorQuality())
     shown = []
     for index in range(1, count + 1):

@@ -1,4 +1,4 @@
-"""The simulated robot as the board meets it: fins in, readings out."""
+"""The simulated robot as the board sees it: fins in, readings out."""
 
 from itertools import pairwise
 from math import copysign, inf, nan, pi, remainder, sin, sqrt
@@ -203,7 +203,7 @@ def deviation(depths: list[float]) -> tuple[float, float, float]:
 
 
 def test_bang_bang_control_ends_in_the_limit_cycle_of_the_reference() -> None:
-    """The trial that the model was chosen by: RMSE 5 to 8 cm, 19 to 27 cm from peak to peak with ±5 cm."""
+    """The experiment that the model was fitted to: RMSE 5 to 8 cm, 19 to 27 cm peak to peak with ±5 cm."""
     rmse, span, period = deviation(controlled(BangBangDeadZone()))
     assert 0.05 < rmse < 0.08
     assert 0.19 < span < 0.27

@@ -1,4 +1,4 @@
-"""Buoyancy and trim, changed while the robot swims."""
+"""Buoyancy and trim, changed in motion."""
 
 from dataclasses import replace
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""Airy's waves: against the equations that they solve, and what they do to the hull."""
+"""Airy's waves: against their equations, and their effects on the hull."""
 
 from dataclasses import replace
 from math import cos, exp, pi, tanh
@@ -57,7 +57,7 @@ def test_length_follows_from_period_and_depth(period: float, depth: float) -> No
 @pytest.mark.parametrize("down", [0.05, 0.4, 0.9])
 @pytest.mark.parametrize("time", [0.0, 0.3, 1.1])
 def test_flow_solves_the_linear_equations(depth: float, down: float, time: float) -> None:
-    """Continuity, and Newton's law of the water: acceleration from the pressure's slope and gravity."""
+    """Continuity, and Newton's law of the water: acceleration from pressure gradient and gravity."""
     world = waving(replace(DEEP, amplitude=1e-4), depth)
     place = (0.7, -0.4, down)
     flow = world.flow(time, place)
@@ -151,7 +151,7 @@ def floating_in(body: Body, waves: Waves, seconds: float) -> list[Vector]:
 
 
 def test_neutral_hull_goes_round_with_the_water() -> None:
-    """In circles whose radius decays with depth, and on by the drift of Stokes, a²ωk·e^(-2kz)."""
+    """Circles whose radius decays with depth, and the Stokes drift, a²ωk·e^(-2kz)."""
     waves, depth = Waves(0.05, 2.0, 0.0), 1.0
     body = pushed(NEUTRAL, depth=depth)
     periods = 5

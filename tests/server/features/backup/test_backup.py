@@ -1,4 +1,4 @@
-"""The database copied while it is written, and put back."""
+"""Backup of a database in use, and its restore."""
 
 import asyncio
 import fcntl

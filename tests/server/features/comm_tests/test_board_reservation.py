@@ -1,4 +1,4 @@
-"""The robot's board between the runtime and the lab. Uploads to a real one are in test_lent_board.py."""
+"""The robot's board passed between runtime and lab. For uploads to a board see test_reserved_board.py."""
 
 import asyncio
 import sys
@@ -22,7 +22,7 @@ from tests.server.waiting import until
 
 
 class Robot:
-    """A real robot's settings, with a port that is there, and what uploads to it."""
+    """A real robot's settings, with an existing port and a stand-in for the upload."""
 
     def __init__(self, settings: Settings, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.uploads, self.started = folder / "uploads", folder / "started"
@@ -70,7 +70,7 @@ async def health(served: Served) -> dict[str, tuple[str, str]]:
 
 @asynccontextmanager
 async def reserved_reason(served: Served, name: str = "tested") -> AsyncIterator[list[str]]:
-    """The board, with a runtime that says after STOP that the robot is disarmed."""
+    """Reserve the board, with a runtime that reports after STOP that the robot is disarmed."""
     asked = len(served.runtime.asked)
 
     async def disarm() -> None:

@@ -1,4 +1,4 @@
-"""The whole stack: a test on the robot's own board, here the emulated one, cut off and carried through."""
+"""The whole stack: a test on the robot's own board, here emulated, interrupted and completed."""
 
 import json
 import tempfile

@@ -1,4 +1,4 @@
-"""The runs that ship: whole, and what docs/use/comm-tests.md says of them is what is in them."""
+"""The shipped runs: complete, and as docs/use/comm-tests.md describes them."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""The thesis's whole example, 75 cells from the shell; the browser's tests open the same run, which ships."""
+"""The thesis's whole example, 75 cells, from the shell; the browser tests use the same shipped run."""
 
 import json
 from pathlib import Path

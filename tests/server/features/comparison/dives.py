@@ -1,4 +1,4 @@
-"""A made dive whose figures are known: arming, a step to 0.5 m, another to 1 m, critically damped."""
+"""A synthetic dive with known figures: arming, steps to 0.5 m and 1 m, critically damped."""
 
 import asyncio
 from collections.abc import Callable, Mapping
@@ -30,7 +30,7 @@ FLAPS = 1.25
 
 
 def depth_at(time: float) -> float:
-    """m; each step is followed as by wn² / (s + wn)², from rest."""
+    """Depth in m; each step is followed as by wn² / (s + wn)², from rest."""
 
     def part(since: float) -> float:
         return 1 - np.exp(-WN * since) * (1 + WN * since) if since > 0 else 0.0
@@ -50,7 +50,7 @@ def dive(
     lost: int = 0,
     begin: float = START,
 ) -> list[Block]:
-    """The blocks of such a dive from `begin` on; `lost` frames are missed at its end."""
+    """The blocks of such a dive from `begin` on; `lost` frames are missing at its end."""
     blocks = [
         rows("depth", 50.0, begin, _depth if arms else lambda _: _depth(START)),
         rows("control", 10.0, begin, _control),

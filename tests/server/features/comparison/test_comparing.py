@@ -114,7 +114,7 @@ def test_sessions_are_aligned_at_the_chosen_moment(store: Store, session: int) -
 
 
 def test_a_recording_that_begins_armed(store: Store, settings: Settings) -> None:
-    """The state documents say since when, even before it; what was not recorded is not measured."""
+    """States give the time of arming even before the recording; earlier data is not measured."""
     for before, measured in ((0.2, True), (20.0, False)):
         started = ARMED + before
         one = record(store, settings, dive(begin=started), started=started)

@@ -6,7 +6,7 @@ from server.platform.models import SessionRow
 
 
 def history(*tuned: tuple[float, float], armed: tuple[Span, ...] = (Span(10, 20),)) -> ControlHistory:
-    """With these values of one parameter from these times on."""
+    """A history of one parameter with these values from these times on."""
     parameters = tuple(
         ParameterValues(time, {"depth.pid.kp": kp, "vision.colour": "red", "loud": True})
         for time, kp in tuned

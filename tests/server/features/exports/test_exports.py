@@ -1,4 +1,4 @@
-"""Each format read back, as somebody at home does."""
+"""Each export format, read back with its usual library."""
 
 import asyncio
 import base64
@@ -64,7 +64,7 @@ def control(latency: float) -> Control:
 
 @pytest.fixture
 def session(store: Store, settings: Settings) -> int:
-    """Two seconds with every kind of topic, and a marker."""
+    """Two seconds with every kind of topic, and a bookmark."""
     alarm = Event(time=100.25, kind="leak", severity="alarm", text="water in the hull")
     number = record(
         store,

@@ -1,4 +1,4 @@
-"""Archives brought back: whole ones, and all others."""
+"""Imports of valid and invalid archives."""
 
 import asyncio
 import io
@@ -63,7 +63,7 @@ def archive(store: Store, session: int, tmp_path: Path) -> Path:
 
 
 def contents(store: Reader, number: int) -> dict[str, Any]:
-    """Everything that a session is, but its number and where it came from."""
+    """All that is stored of a session, but its number and origin."""
     with store.read() as database:
         row = database.get(SessionRow, number)
         assert row is not None
@@ -106,7 +106,7 @@ def test_a_session_imported_elsewhere_is_unchanged(
 
 
 def change(path: Path, edit: Callable[[Members], None], *, summed: bool = True) -> None:
-    """Write the archive again with other members; with the checksums that they then have."""
+    """Write the archive again with other members and matching checksums."""
     with zipfile.ZipFile(path) as zipped:
         members = {name: zipped.read(name) for name in zipped.namelist() if name != CHECKSUMS}
         sums = zipped.read(CHECKSUMS)
@@ -120,7 +120,7 @@ def change(path: Path, edit: Callable[[Members], None], *, summed: bool = True) 
 
 
 def tell(**changes: Any) -> Callable[[Members], None]:
-    """Change what `session.json` says of the whole, or of the session."""
+    """Change entries of `session.json`, of the archive or of the session."""
 
     def edit(members: Members) -> None:
         told = json.loads(members[SESSION])
@@ -146,7 +146,7 @@ def cut(members: Members) -> None:
 
 
 def count(members: Members) -> None:
-    """A chunk that says that it has one sample more."""
+    """A chunk whose count is one sample too high."""
     values = list(HEAD.unpack_from(members["chunks/depth"]))
     values[4] += 1
     members["chunks/depth"] = HEAD.pack(*values) + members["chunks/depth"][HEAD.size :]

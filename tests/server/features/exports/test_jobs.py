@@ -84,7 +84,7 @@ def test_an_export_is_written_with_a_checksum_downloaded_in_ranges_and_deleted(
 
 
 def finished(settings: Settings, name: str, made: datetime) -> Job:
-    """A file that an earlier server made."""
+    """An export file of an earlier server."""
     content = name.encode()
     job = Job(
         id=name,
@@ -145,7 +145,7 @@ time.sleep(60)
 
 
 def slow(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """In place of the interpreter, one that makes half a file and then waits."""
+    """Replace the interpreter by one that writes half a file and then waits."""
     script = tmp_path / "slow"
     script.write_text(f"#!{sys.executable}\n{SLOW}")
     script.chmod(0o755)

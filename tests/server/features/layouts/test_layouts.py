@@ -1,4 +1,4 @@
-"""Layouts of panels: kept under names, and refused where they cannot be read."""
+"""Layouts of panels: stored by name, refused where invalid."""
 
 import asyncio
 from typing import Any

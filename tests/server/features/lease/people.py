@@ -1,4 +1,4 @@
-"""People who want control, with a clock that a test pushes."""
+"""People and programs that ask for control, with a simulated clock."""
 
 import json
 from typing import Any
@@ -14,7 +14,7 @@ VERA = Identity(4, "Vera", "viewer", "browser")
 
 
 class Seen:
-    """An arbiter, everything that it has told, and everything that went out to the robot."""
+    """An arbiter with its notifications and the driving commands that it passed."""
 
     def __init__(self) -> None:
         self.clock = SimulatedClock(1000.0)
@@ -27,7 +27,7 @@ class Seen:
         self.driven.append(json.loads(data))
 
     def drive(self, **changes: Any) -> DriveCommand:
-        """A command that would pass, but for the changes."""
+        """A valid driving command, but for the changes."""
         whole = {
             "lease": self.arbiter.lease.epoch,
             "sequence": 1,

@@ -1,4 +1,4 @@
-"""Driving by hand on the whole robot: from the page's socket to the board's fins, and what comes of a cut."""
+"""Driving the whole robot: from the page's socket to the board's fins, and a cut connection."""
 
 import json
 import socket as sockets
@@ -35,7 +35,7 @@ def stack() -> Iterator[Stack]:
 
 
 class Driver:
-    """A page that drives with the sticks held where they are."""
+    """A page that drives with its sticks in a fixed position."""
 
     def __init__(self, stack: Stack, socket: ClientConnection) -> None:
         self._stack = stack
@@ -48,7 +48,7 @@ class Driver:
         return self._stack.api.request(method, path, json=body, headers=self.key).raise_for_status()
 
     def drive_until(self, condition: Callable[[], object], *axes: float) -> float:
-        """Hold the sticks there until that holds; when the last command was given."""
+        """Hold the sticks in a position until the condition holds; returns the time of the last command."""
         end = time.monotonic() + 20
         while True:
             self._sequence += 1
@@ -61,7 +61,7 @@ class Driver:
             time.sleep(TICK)
 
     def cut(self) -> None:
-        """As if it were out of reach: not even the socket is closed in order."""
+        """Drop the connection without closing the socket, as out of reach."""
         self._socket.socket.shutdown(sockets.SHUT_RDWR)
 
     def _next(self, op: str) -> dict[str, Any]:

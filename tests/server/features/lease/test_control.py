@@ -1,4 +1,4 @@
-"""Control over HTTP and the live socket: who may what, who is told, what reaches the runtime."""
+"""Control over HTTP and the live socket: permissions, notifications, commands to the runtime."""
 
 import json
 

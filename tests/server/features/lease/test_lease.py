@@ -4,7 +4,7 @@ ANNA, BEN = 1, 2
 
 
 class Recorded:
-    """A lease, and the changes that it has reported."""
+    """A lease and its reported changes."""
 
     def __init__(self) -> None:
         self.changes: list[tuple[Change, int | None, int | None]] = []

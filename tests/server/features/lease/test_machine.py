@@ -1,4 +1,4 @@
-"""Any sequence of what people, programs and time can do to the control lease, and what must always hold."""
+"""The control lease under any sequence of events of people, programs and time, against its invariants."""
 
 from contextlib import AbstractContextManager
 
@@ -27,7 +27,7 @@ PROGRAMS = 10
 
 
 class Contest(RuleBasedStateMachine):
-    """Remembers who took and lost control, and compares."""
+    """A model of the lease: remembers the holder, and compares."""
 
     clients = Bundle("clients")
 
@@ -43,7 +43,7 @@ class Contest(RuleBasedStateMachine):
         self.arbiter.lease._changed = self.note
 
     def note(self, change: Change, client: int | None, holder: int | None) -> None:
-        """Each note begins where the last one has ended."""
+        """Check that each note begins where the last one has ended."""
         assert holder == self.noted
         assert (change == "taken over") is (client is not None and holder is not None)
         self.noted = client
@@ -56,7 +56,7 @@ class Contest(RuleBasedStateMachine):
 
     @initialize(target=clients)
     def begin(self) -> MultipleResults[ControlClient]:
-        """Everybody has a page open, and the last one control."""
+        """Every person has a page open, and the last one control."""
         here = [self.open(device, False) for device in range(PEOPLE)]
         self.arbiter.take(here[-1])
         return multiple(*here)
@@ -78,7 +78,7 @@ class Contest(RuleBasedStateMachine):
 
     @rule(client=consumes(clients))
     def go(self, client: ControlClient) -> None:
-        """A page is closed; a program is silent from now on."""
+        """A page is closed; a program sends nothing from now on."""
         if client.until is None:
             self.pages.pop(client.number).__exit__(None, None, None)
             assert self.arbiter.clients.get(client.number) is None

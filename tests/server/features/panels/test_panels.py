@@ -1,4 +1,4 @@
-"""One's own panels: which files of the data folder are panels, and the frame that shuts them in."""
+"""Own panels: the files that count as panels, and the frame that isolates them."""
 
 import asyncio
 import re

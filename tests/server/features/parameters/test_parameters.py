@@ -1,4 +1,4 @@
-"""Parameters over HTTP: changes, who did, undo, profiles and their files."""
+"""Parameters over HTTP: changes with their authors, undo, profiles and their files."""
 
 import asyncio
 import json

@@ -93,7 +93,7 @@ colour = "red"
 
 
 class DirectBridge:
-    """Asks a simulator at hand in place of one over Zenoh, and keeps what the runtime was told."""
+    """Passes requests to a simulator in this process, and records commands to the runtime."""
 
     def __init__(self, simulator: Simulator) -> None:
         self.commands: list[tuple[str, Mapping[str, Any]]] = []

@@ -1,4 +1,4 @@
-"""Scenarios on the whole stack: a short one live, what ends it, what refuses it, what it leaves behind."""
+"""Scenarios on the whole stack: a short live run, its ends, refusals and undoing."""
 
 import sqlite3
 import tempfile

@@ -52,7 +52,7 @@ class RecorderRig:
             ]
 
     def fail(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Makes every write from here on end as on a full disk."""
+        """Make every write fail from here on, as on a full disk."""
         problem = sqlite3.OperationalError("database or disk is full")
 
         def refuse(*_: object) -> None:
@@ -61,7 +61,7 @@ class RecorderRig:
         monkeypatch.setattr(recorder_module, "_insert", refuse)
 
     def record_notices(self) -> None:
-        """Record what is told, as the server does."""
+        """Record notices, as the server does."""
         self._with_notices = True
 
     def _hear(self, arrival: Block) -> None:

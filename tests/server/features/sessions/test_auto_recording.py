@@ -1,4 +1,4 @@
-"""A session that begins when the robot is armed."""
+"""Automatic recording while the robot is armed."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -15,7 +15,7 @@ from tests.server.blocks import state_block
 
 
 class _ProcessGroup:
-    """A recorder, and what watches the robot's state for it."""
+    """A recorder with the automatic recording on the robot's state."""
 
     def __init__(self, store: Store, settings: Settings) -> None:
         self.clock = SimulatedClock(50.0)

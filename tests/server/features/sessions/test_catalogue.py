@@ -1,4 +1,4 @@
-"""Sessions found, written about, marked, deleted and taken back, over HTTP as the page does it."""
+"""Sessions over HTTP: search, notes, bookmarks, deletion and its undoing."""
 
 from typing import Any
 

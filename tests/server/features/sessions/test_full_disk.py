@@ -1,4 +1,4 @@
-"""A real disk that fills up during recording: a small tmpfs, in a mount namespace of its own."""
+"""Recording on a real disk that fills up: a small tmpfs in its own mount namespace."""
 
 import json
 import subprocess

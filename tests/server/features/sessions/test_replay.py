@@ -1,4 +1,4 @@
-"""A stretch of a session as blocks: range, order, cut, and sessions of other definitions."""
+"""A range of a session as blocks: limits, order, and sessions of other definitions."""
 
 import asyncio
 import json
@@ -44,7 +44,7 @@ def change(store: Store, statement: str) -> None:
 
 
 def redefine(store: Store, session: int, topic: str, fields: list[dict[str, Any]]) -> None:
-    """Say that a topic's fields were these when the session was recorded."""
+    """Change the fields of a topic in the stored description of the session."""
     described = dict(read(store, session).topics)
     described[topic] = {**described[topic], "fields": fields}
 

@@ -1,4 +1,4 @@
-"""A session that a killed server has left: the first recorder is forgotten, the second follows it."""
+"""Resuming the session of a killed server: a second recorder follows the first."""
 
 import asyncio
 import json
@@ -38,7 +38,7 @@ def parameters_block(number: int, time: float = 40.0) -> Block:
 
 
 class Wreck:
-    """A recorder that was forgotten in the middle, and senders that go on."""
+    """A recorder that stops without an end, and processes that go on sending."""
 
     def __init__(self, store: Store, settings: Settings) -> None:
         self.before = RecorderRig(store, settings)
@@ -49,7 +49,7 @@ class Wreck:
         self.session = 0
 
     def send(self, *blocks: Block, heard: bool = True) -> None:
-        """A sender sends this, and keeps it."""
+        """Send blocks, into the replay cache too."""
         for block in blocks:
             name = "simulator" if block.topic.name == "truth" else "runtime"
             self.following[name][block.topic.name] = block.following
@@ -67,7 +67,7 @@ class Wreck:
         return {name: BacklogReply.from_bytes(cache.answer(question)) for name, cache in self.kept.items()}
 
     async def start(self, first: int = 0) -> None:
-        """Record for a while; then all that was recorded is stored, and some more is not."""
+        """Record for a while; some samples are stored, some later ones are not."""
         self.session = await self.before.start("dive")
         self.send(depth_block(first % NUMBERS, 5), debug_block(0, "a"), truth_block(0, 3))
         await self.before.recorder.flush()
@@ -79,7 +79,7 @@ class Wreck:
         self.send(depth_block((first + 15) % NUMBERS, 5), debug_block(1, "b"), truth_block(6, 3), heard=False)
 
     async def resume(self) -> dict[str, MissingSamples]:
-        """The next server starts."""
+        """Start the next server."""
         left = await self.after.recorder.recover()
         assert left is not None
         answers = self.answers()

@@ -1,4 +1,4 @@
-"""Sessions that go: after their time in the bin, by age, and where room is short."""
+"""Retention: sessions removed after their time in the bin, by age, and for space."""
 
 import asyncio
 import json
@@ -35,7 +35,7 @@ class Disk(NamedTuple):
 
 
 class Keeper:
-    """A database whose sessions one can age, and everything that tidies it up."""
+    """A database with retention, whose sessions can be aged."""
 
     def __init__(self, store: Store, settings: Settings, rules: SessionsConfig) -> None:
         self.store = store

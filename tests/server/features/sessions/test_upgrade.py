@@ -7,7 +7,7 @@ from server.features.sessions.upgrade import NoCounterpartError, rewrite_documen
 
 
 def told(value: Any) -> dict[str, Any]:
-    """A `parameters` document of one parameter with this value, and with a field that this version lacks."""
+    """A `parameters` document of one parameter with this value, and with a field unknown to this version."""
     parameter = {
         "name": "depth.pid.kp",
         "type": "number",

@@ -1,4 +1,4 @@
-"""Experiments on the whole robot in simulated time, measured as the server measures them."""
+"""Experiments on the whole robot in simulated time, evaluated by the server's code."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ ENDED = ("complete", "stopped", "failed")
 
 
 class Rig:
-    """One flight, armed, whose runs on the depth are measured one after the other."""
+    """One armed flight with several experiments on the depth."""
 
     def __init__(self, flight: Flight) -> None:
         self.flight = flight

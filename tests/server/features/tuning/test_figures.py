@@ -1,4 +1,4 @@
-"""Figures of step responses and relay cycles, against systems whose answers are known in closed form."""
+"""Figures of step responses and relay cycles, against systems with closed-form solutions."""
 
 from math import acos, degrees, exp, pi, sqrt
 

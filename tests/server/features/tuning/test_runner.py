@@ -1,4 +1,4 @@
-"""Runs through the interface: a runtime's end that the test is, and what is kept of it."""
+"""Tuning runs over HTTP, with a runtime that the test plays."""
 
 import asyncio
 import json
@@ -52,7 +52,7 @@ PID = {
 
 
 class Robot:
-    """The runtime's end as one robot, in automatic."""
+    """A runtime as of one robot in automatic."""
 
     def __init__(self, served: Served) -> None:
         self._served = served
@@ -104,7 +104,7 @@ async def begin(served: Served, wanted: dict[str, Any]) -> int:
 
 
 async def over(served: Served) -> dict[str, Any]:
-    """The run that has ended."""
+    """The ended run."""
     await until(lambda: served.container.tuning.state().active is None, "the run's end")
     last = served.container.tuning.state().last
     assert last is not None

@@ -1,4 +1,4 @@
-"""The whole way on the simulated robot: a relay, gains by a rule, and a step with them."""
+"""Tuning on the simulated robot from end to end: a relay, gains by a rule, and a step with them."""
 
 from server.features.tuning.rules import propose
 from tests.runtime.control.flight import Flight

@@ -1,4 +1,4 @@
-"""The vision node's settings in the interface: handed on whole, refused at the edge, and as TOML."""
+"""The vision settings over HTTP: passed on completely, refused where invalid, and as TOML."""
 
 import asyncio
 import tomllib
