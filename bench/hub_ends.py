@@ -29,7 +29,7 @@ TOPICS = ("imu", "depth", "beacon", "motor", "status", "navigation", "control", 
 RATE = 100.0
 """Samples a second of each topic."""
 PAST_SECONDS = 60
-"""Of samples that the source sends at once when it begins."""
+"""s of samples that the source sends at once when it begins."""
 _VARIANTS = 997
 
 

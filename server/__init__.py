@@ -1,4 +1,4 @@
 """The server: serves the page, records, exports, and keeps the other processes running."""
 
 VERSION = "0.2.0"
-"""Of everything here: pyproject.toml takes it, and a check compares firmware and changelog with it."""
+"""The project's version: pyproject.toml reads it, and a check compares firmware and changelog with it."""

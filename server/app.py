@@ -75,7 +75,7 @@ def create_app(
         lifespan=lifespan,
     )
     app.state.ended = ""
-    # What is added last is asked first.
+    # The middleware added last runs first.
     app.add_middleware(SignInMiddleware)
     app.add_middleware(SecurityMiddleware, allowed_hosts=settings.allowed_hosts, port=settings.port)
     add_error_handlers(app)

@@ -25,7 +25,7 @@ COMMANDS = {
     "access": "server.features.people.command:access",
     "completion": "server.cli:completion",
 }
-"""Where each command is. Only the one that is called is loaded: a Raspberry Pi Zero is slow at that."""
+"""Module and function of each command. Only the called one is loaded: a Raspberry Pi Zero is slow at that."""
 
 
 class LazyGroup(click.Group):

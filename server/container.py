@@ -245,7 +245,7 @@ class Container:
         session = self.recorder.session
         if (scenario := self._scenario_on()) is not None:
             return scenario
-        # What arming has begun ends by itself: reserving the board disarms the robot.
+        # An automatic recording ends by itself: reserving the board disarms the robot.
         if session is None or session.origin == "arming":
             return None
         return f"“{session.name}” is being recorded. Stop the recording first."

@@ -53,7 +53,7 @@ def _serve(settings: Settings) -> int:
         server.config.load()
 
         def serve(ended: str) -> int:
-            """In a process of its own; `ended` says how the server before it did, if there was one."""
+            """Serve in a process of its own; `ended` describes the end of the server before it, if any."""
             try:
                 prepare(settings.data)
             except SetupError as problem:

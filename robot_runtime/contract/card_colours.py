@@ -11,8 +11,8 @@ PAINTS: Mapping[str, Paint] = {
     "green": (70, 170, 50),
     "blue": (200, 75, 20),
 }
-"""Of printed cards."""
+"""Colours of printed cards."""
 WHITE: Paint = (235, 238, 240)
-"""Of the card with the marker."""
+"""Colour of the card with the marker."""
 MARKER_CARD = 7
 """Number of the marker on that card, of OpenCV's dictionary 4x4_50."""

@@ -375,7 +375,7 @@ class RelayExperimentCommand(ExperimentCommand):
 
 
 HYSTERESIS_SHARE = 0.25
-"""Of the distance between the limits: the largest hysteresis of a relay."""
+"""Largest hysteresis of a relay, as a share of the distance between the limits."""
 
 
 @command("end_experiment", None, tunes=True)

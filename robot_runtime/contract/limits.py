@@ -49,7 +49,7 @@ SET_POINTS: dict[LoopName, Range] = {
     "pitch": Range(-TILT_MAX, TILT_MAX),
     "roll": Range(-TILT_MAX, TILT_MAX),
 }
-"""Of each loop; m, of the angles rad."""
+"""Range of each loop's set point, in m or rad."""
 VISION_RATE = Range(2, 30)
 """Hz; a lower rate leaves the newest detection stale before the next one."""
 ALONE = Range(0, 3600)
@@ -59,7 +59,7 @@ DepthSetPoint = Annotated[float, SET_POINT]
 VisionRate = Annotated[float, VISION_RATE]
 AloneSeconds = Annotated[float, ALONE]
 SettleSeconds = Annotated[float, Range(0, 120)]
-"""For which an experiment waits for the loop to settle."""
+"""Longest wait of an experiment for the loop to settle, in s."""
 ExperimentSeconds = Annotated[float, Range(2, 300)]
 RelayAmplitude = Annotated[float, Range(0.1, 1.0)]
 """Share of the largest command."""

@@ -14,7 +14,7 @@ from robot_runtime.contract.link_statistics import LinkStatistics
 from robot_runtime.contract.packets.layout import Record
 
 TIME = Struct("<d")
-"""Of a row: s, steady clock."""
+"""The time at the start of a row: s, steady clock."""
 
 Sender = Literal["runtime", "simulator", "scene", "server"]
 
@@ -110,7 +110,7 @@ TOPICS: tuple[Topic, ...] = (
 BY_NAME = {topic.name: topic for topic in TOPICS}
 BY_ID = {topic.id: topic for topic in TOPICS}
 ROW_BYTES = {topic.id: topic.row_bytes for topic in TOPICS if topic.kind is Kind.ROWS}
-"""Of one row with its time, by the topic's number."""
+"""Size of a row with its time, by the topic's number."""
 RECORDED = tuple(topic for topic in TOPICS if topic.recorded)
 SENT_BY: dict[str, tuple[Topic, ...]] = {
     sender: tuple(topic for topic in RECORDED if topic.sender == sender)

@@ -22,7 +22,7 @@ WhiteBalance = Literal["none", "grey_world", "underwater"]
 MarkerDictionary = Literal["none", "4x4_50", "5x5_100", "6x6_250", "7x7_1000", "original", "april_36h11"]
 
 NAME = re.compile(r"[^\W\d_][\w .-]{0,31}")
-"""Of a colour: a letter, then up to 31 letters, digits, blanks and . _ -"""
+"""A colour's name: a letter, then up to 31 letters, digits, blanks and . _ -"""
 MARKER = re.compile(r"marker (0|[1-9]\d{0,3})")
 """The name of a marker in `actions`."""
 COLOURS_MAX = 16

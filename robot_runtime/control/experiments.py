@@ -44,9 +44,9 @@ class LoopExperiment(ABC):
         """Share that is done, 0 to 1."""
         self.text = ""
         self.cycles = 0
-        """Of a relay: its cycles since it was balanced."""
+        """Cycles of a relay since it was balanced."""
         self.bias = 0.0
-        """Of a relay: the mean command, which balances the load, -1 to 1."""
+        """Mean command of a relay, which balances the load, -1 to 1."""
         self.middle = (low + high) / 2
         self._clock = clock
         self._low, self._high = low, high

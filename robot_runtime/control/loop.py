@@ -42,7 +42,7 @@ class ControlLoop:
         self.mean: float | None = None
         """Mean of the values measured since the last tick, if there were any."""
         self.heave_acceleration: float | None = None
-        """Of the depth: the mean acceleration downwards since the last tick, m/s², if its controller
+        """Depth loop only: mean heave acceleration since the last tick, m/s², downwards, if its controller
         `needs_heave_acceleration` and any was measured."""
         self.output: float | None = None
         """The newest command, -1 to 1; None while the loop does not steer."""

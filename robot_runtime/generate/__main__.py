@@ -9,7 +9,7 @@ from robot_runtime.generate.configuration import configuration_page
 
 SOURCES = Path(__file__).resolve().parents[2]
 ROOT = SOURCES
-"""Where the generated files go."""
+"""The folder of the generated files."""
 
 
 def main() -> int:

@@ -96,7 +96,7 @@ def _row_topic(topic: Topic) -> str:
     offset = TIME.size
     fields: list[str] = []
     for name, wire in record.wires.items():
-        # The row's own time replaces the board's clock, which stays in the bytes for whoever wants it.
+        # The row's own time replaces the board's clock, which stays in the bytes unused.
         shown = "board_time" if name == "time" else name
         fields.append(f"      {_field(shown, wire, offset)},")
         offset += wire.size

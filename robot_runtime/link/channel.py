@@ -329,7 +329,7 @@ class Channel:
 
     def _take_readiness(self, ready: bool) -> None:
         if ready and not self._ready:
-            # What was sent meanwhile was dropped.
+            # The receiver has dropped the frames that were sent meanwhile.
             for flight in self._flights:
                 flight.lost = not flight.held
         self._ready = ready
@@ -337,7 +337,7 @@ class Channel:
     def _note_arrival(self, flight: _Flight, now: float) -> None:
         if flight.held:
             return
-        # Nobody knows which of several copies arrived: the first is the safe guess.
+        # It is not known which of several copies arrived: the first is the safe assumption.
         self._newest_order = max(self._newest_order, flight.first_order)
         self._limit = min(self._limit + _LIMIT_GAIN, MESSAGES_BYTES_MAX)
         if flight.order == flight.first_order:

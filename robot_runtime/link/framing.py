@@ -36,7 +36,7 @@ _CRC = Struct("<I")
 # One byte of COBS for every 254, and the closing zero.
 CONTENT_BYTES_MAX = FRAME_BYTES_MAX - 2
 MESSAGES_BYTES_MAX = CONTENT_BYTES_MAX - 1 - _CRC.size
-"""In a reliable frame; an unreliable one has room for one byte less."""
+"""Largest size of the messages in a reliable frame; an unreliable one has room for one byte less."""
 _CONTENT_BYTES_MIN = 2 + _CRC.size
 _BYTES = [bytes([value]) for value in range(256)]
 

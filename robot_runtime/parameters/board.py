@@ -88,7 +88,7 @@ class BoardParameters:
 
     def _request(self, number: int, value: float) -> None:
         with self._lock:
-            # What the line carries is what is in force.
+            # The value in force is the rounded one of the packet.
             self._values[number] = _to_wire(value) / 1000
             self._unconfirmed.add(number)
             self._send_unconfirmed()

@@ -43,7 +43,7 @@ def _open_device(width: int, height: int) -> Any:
         ) from problem
     try:
         device = picamera2.Picamera2()
-        # What libcamera calls RGB888 lies in memory as blue, green, red, which is OpenCV's order.
+        # libcamera's RGB888 is blue, green, red in memory, which is OpenCV's order.
         device.configure(
             device.create_video_configuration(main={"size": (width, height), "format": "RGB888"})
         )

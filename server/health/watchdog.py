@@ -14,14 +14,14 @@ PERIOD = 0.25
 SILENT_SECONDS = 1.5
 """The runtime sends its state every second, if nothing else; the water sends 20 times as often."""
 HUNG_SECONDS = 10.0
-"""For which a running runtime may say nothing before it is ended; the board has disarmed long before that."""
+"""Silence of a running runtime after which it is killed; the board has disarmed long before that."""
 STARTING_SECONDS = 10.0
-"""For which a process that has just been started may be silent; a Raspberry Pi Zero takes its time."""
+"""Permitted silence of a process that has just started; a Raspberry Pi Zero is slow."""
 DISK_LOW_BYTES = 500_000_000
 DISK_LOW_SHARE = 0.05
-"""The smaller of the two is little room: hours of recording, but on a disk that is small itself."""
+"""The alarm limit is the smaller of both: hours of recording, less on a small disk."""
 DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scene")}
-"""The alarms of parts that have ended."""
+"""The alarms of ended processes."""
 
 
 class Watchdog:
@@ -56,7 +56,7 @@ class Watchdog:
         """Check once, now."""
         previous, self._checked = self._checked, self._clock.now()
         if self._checked - previous > SILENT_SECONDS / 2:
-            # Whoever was held up has not listened either.
+            # A stalled server has received nothing either.
             return
         see = self._alarms.see
         for name, fault in DOWN.items():

@@ -71,7 +71,7 @@ def _send(
     except OSError as problem:
         raise SetupError(f"No server works on {folder.path}. Start one with `mucat run`.") from problem
     request = urllib.request.Request(f"{address}/api{path}", body, headers, method=method)
-    # What is on this computer is not to be asked through a proxy.
+    # No proxy for a server on this computer.
     handlers: list[urllib.request.BaseHandler] = [urllib.request.ProxyHandler({})]
     if address.startswith("https:"):
         handlers.append(urllib.request.HTTPSHandler(context=trust_only(folder)))

@@ -45,7 +45,7 @@ class DataFolder:
         self.imports = path / "imports"
         """Archives while they are imported."""
         self.run = path / "run"
-        """Sockets and PID files; emptied at a start if none of the processes is left running."""
+        """Folder of sockets and PID files; emptied at a start if none of the processes still runs."""
         self.lock = path / "server.lock"
         """Held by the one server that uses this folder."""
         self.runner = path / "server.pid"
@@ -164,7 +164,7 @@ def make_folders(folder: DataFolder) -> None:
         for path in (folder.path, folder.logs, folder.run):
             make_folder(path)
         folder.run.chmod(0o700)
-        # What lives there belongs to parts of a killed server, as long as one of them runs.
+        # The files belong to processes of a killed server as long as one of them runs.
         if not running_parts(folder.run):
             for file in folder.run.iterdir():
                 file.unlink()

@@ -19,7 +19,7 @@ from robot_runtime.simulation.boards.firmware import firmware_path
 from tests.runtime.control.flight import Flight
 
 SHARE = 0.02
-"""Of the frames that are damaged."""
+"""Share of damaged frames."""
 SETTLE = 1.0
 """s, in which the next frames tell what was missing."""
 

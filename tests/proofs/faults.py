@@ -195,7 +195,7 @@ class Row:
     elf: str = "robot"
     more: str = ""
     once: bool = False
-    """Whether it cannot be mended, and each injection takes a board of its own."""
+    """True if it cannot be repaired: each injection then takes its own board."""
 
 
 def _all_stop(fault: str, wrong: Callable[[Swim], Wrong], **more: bool | str) -> Row:

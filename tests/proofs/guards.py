@@ -21,7 +21,7 @@ from tests.board.rig import ROOT, build
 
 LIST = Path(__file__).with_name("guards.toml")
 TEST_SECONDS = 240
-"""After which a test that hangs without its guard has failed."""
+"""Time limit in s of a guard's tests; a test that hangs without the guard has failed."""
 
 
 class GuardError(Exception):

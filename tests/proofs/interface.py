@@ -39,7 +39,7 @@ from tests.shell import shell_headers
 
 AnyCase = Case[Any]
 SILENT = {"putView": {503, 504}}
-"""What truly nobody answers here: there is no scene."""
+"""Operations without an answer here: there is no scene."""
 SLOW = {"importSession": 10}
 """Operations that start a process, and for how many questions to others one is put to them."""
 SEED = 5

@@ -122,7 +122,7 @@ class Viewer:
 
     def __init__(self, stack: Stack) -> None:
         self.newest: dict[str, float] = {}
-        """When the newest sample of each topic was taken, s."""
+        """Time of the newest sample of each topic, s."""
         self.state: dict[str, Any] = {}
         self.alarms: list[dict[str, Any]] = []
         """The robot's and the server's."""

@@ -18,7 +18,7 @@ class ChipParameter:
     unit: str
     meaning: str
     while_armed: bool = True
-    """Whether the board takes another value while it is armed."""
+    """True if the board accepts a new value while it is armed."""
 
 
 CHIP_PARAMETERS: tuple[ChipParameter, ...] = (

@@ -90,7 +90,7 @@ class Record:
     wires: ClassVar[dict[str, Wire]]
     tail: ClassVar[tuple[str, Text] | None]
     layout: ClassVar[Struct]
-    # What `wires` says, made ready once, for every packet on the line passes here.
+    # Prepared once from `wires`, because every packet on the line passes here.
     _writers: ClassVar[tuple[tuple[str, Callable[[float], float], bool], ...]]
     _places: ClassVar[tuple[tuple[str, int | slice], ...]]
     _scales: ClassVar[tuple[float, ...]]

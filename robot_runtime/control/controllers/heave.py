@@ -54,15 +54,15 @@ class Heave:
     """The model with the parameters estimated for this craft; accelerations in m/s²."""
 
     thrust: float
-    """Of all fins at full command."""
+    """Acceleration by all fins at full command."""
     drag: float
     """1/m: quadratic drag over the mass."""
     strength: float = 1.0
-    """Of the fins' thrust, as a share of the model's; so are the next two."""
+    """The fins' thrust as a share of the model's; likewise the next two."""
     blades: float = 1.0
-    """Of the water's force across the blades."""
+    """The water's force across the blades."""
     hull: float = 1.0
-    """Of the water's resistance to the hull."""
+    """The drag of the hull."""
     drift: float = 0.0
     """Any other push downwards: buoyancy, below 0 where the hull floats."""
     slopes: tuple[float, float, float, float] = field(default=(0.0, 0.0, 0.0, 0.0), init=False)

@@ -80,7 +80,7 @@ class Builder:
         self._library_hash = self._hash(library_files, [*CXX, *OWN])
         words = [self._core_hash, self._library_hash, *CXX, *OWN, *LINK]
         self.firmware_hash = self._hash(self._sketch_files(), words)
-        """Of everything but the parameters."""
+        """Hash of all inputs but the parameters."""
 
     def build(self, test: CommTest, baud: int, arduino_delay: float) -> Product:
         """The sketch with these parameters, compiled now or before. Raises BuildError."""

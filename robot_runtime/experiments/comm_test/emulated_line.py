@@ -48,7 +48,7 @@ class EmulatedLine(CommTestLine):
         self._board.command(command)
 
     def _hand_over(self, data: bytes) -> None:
-        # What is put in or doubled takes its time on the line too, more or less of it than to be expected.
+        # With faults the line carries more or fewer bytes than were written: a write takes an unknown time.
         while self._port.count("waiting") + len(data) > WRITE_BUFFER_BYTES:
             self.wait(len(data) * self.byte_time)
         self._port.write(data)

@@ -17,9 +17,9 @@ HOST_EPOCH = 1
 """The board's epoch differs in every cell, so this one need not."""
 REACTION_BYTES = 16
 REACTION_MIN, REACTION_MAX = 0.005, 0.02
-"""s between two looks at the line while something is awaited: about as long as so many bytes take."""
+"""Limits in s of the pause between two reads while an answer is awaited."""
 NUMBER_BYTES, NUMBER_BYTES_ALONE = 4, 20
-"""What a number costs on the line with others in a frame, and in a frame of its own; about."""
+"""Approximate bytes of a number on the line, in a frame with others and in a frame of its own."""
 GREETING_TIME = 0.5
 """s, about."""
 GREETING_PATIENCE = 30.0

@@ -27,7 +27,7 @@ from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 Phase = Literal["compile", "upload", "run"]
 Tell = Callable[[int, Phase], None]
 BOOTLOADER = "firmware/optiboot.hex"
-"""In the folder of all that is built."""
+"""Path below the build folder."""
 UPLOADS_AT_ONCE = 2
 """For every cell that is computed; an upload waits about 1 s for avrdude, a cell computes 1 to 10 s."""
 LOOP_TIME = 0.003

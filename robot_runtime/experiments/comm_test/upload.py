@@ -32,7 +32,7 @@ class UploadError(Exception):
 
 
 def avrdude_version() -> str:
-    """Of avrdude, as it says it. Raises UploadError where it is not there."""
+    """The version of avrdude, in its own words. Raises UploadError where avrdude is missing."""
     said = _run_briefly(["avrdude", "-?"])
     version = [line.partition(",")[0] for line in said.splitlines() if line.startswith("avrdude version")]
     return version[0] if version else "avrdude"
@@ -45,7 +45,7 @@ def upload(
 
     `attend` is called again and again meanwhile. Raises UploadError, and StoppedError.
     """
-    # Whatever ends this process ends avrdude too: it must not go on to write behind somebody's back.
+    # avrdude ends with this process in any case: it must not go on writing unsupervised.
     command = ["setpriv", "--pdeathsig", "KILL", "avrdude", "-q", "-q", "-c", "arduino", "-p", "m328p"]
     command += ["-b", str(baud), "-P", port, "-D", "-U", f"flash:w:{program}:i"]
     with tempfile.TemporaryFile() as said:

@@ -258,7 +258,7 @@ def _read_robot(table: Any) -> SimulationParameters:
     for name, value in given.items():
         default = getattr(plain, name, None)
         if is_dataclass(default) and isinstance(value, dict):
-            # What a sensor's table leaves out stays as it is.
+            # Missing entries of a sensor's table keep their defaults.
             given[name] = asdict(default) | value  # type: ignore[arg-type]
     try:
         changed = parse(SimulationParameters, given, ROBOT)

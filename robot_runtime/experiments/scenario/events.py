@@ -175,7 +175,7 @@ class BookmarkEvent(TimedEvent):
 
 
 EVENTS: dict[str, type[TimedEvent]] = {"line": LineFaultChange, "marker": BookmarkEvent}
-"""Of the line and the recording."""
+"""Events of the serial line and of the recording, by name."""
 
 
 def event_names() -> list[str]:

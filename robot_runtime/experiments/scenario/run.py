@@ -40,7 +40,7 @@ class RunListener(Protocol):
         ...
 
     def event(self, event: str, **more: Any) -> None:
-        """Something about the run: started, progress, marker or ended."""
+        """Receive an event of the run: started, progress, marker or ended."""
         ...
 
 

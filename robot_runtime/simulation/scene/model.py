@@ -38,7 +38,7 @@ RELIEF = 0.35
 """m between the highest and the lowest places of the natural floor; the highest is the simulator's floor."""
 RELIEF_SIDE = 49
 STONES, PLANTS = 26, 34
-"""In each period."""
+"""Number of each in every period of the floor."""
 TILE_TEXTURE = 1.2
 """m that one tile texture covers, with 8 x 8 tiles."""
 LINE_WIDTH, LINE_APART = 0.25, 2.5

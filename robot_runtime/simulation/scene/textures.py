@@ -104,7 +104,7 @@ def _cloud(seed: int, smoothness: float) -> Floats:
     white = np.fft.rfft2(np.random.default_rng(seed).standard_normal((SIDE, SIDE)))
     frequency = np.hypot(np.fft.fftfreq(SIDE)[:, np.newaxis], np.fft.rfftfreq(SIDE)[np.newaxis])
     frequency[0, 0] = 1.0
-    # Nothing larger than a third of the texture, or its repetition would be visible.
+    # At most a third of the texture: larger details would make its repetition visible.
     low = 1 - np.exp(-((frequency * SIDE / 3.0) ** 4))
     spectrum = white * low * frequency ** (-smoothness / 2 - 0.5)
     spectrum[0, 0] = 0.0

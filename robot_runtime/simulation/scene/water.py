@@ -14,7 +14,7 @@ from robot_runtime.contract.limits import Range
 
 Kind = Literal["pool", "natural"]
 Colours = tuple[float, float, float]
-"""Of blue, green and red."""
+"""One value each for blue, green and red."""
 
 TURBIDITY = Range(0, 1)
 TURBIDITY_ATTENUATION = 30.0

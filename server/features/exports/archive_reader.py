@@ -30,7 +30,7 @@ from server.platform.errors import InvalidError
 
 SESSION_BYTES_MAX = 32_000_000
 CHUNK_BYTES_MAX = 16_000_000
-"""Of one chunk, packed or unpacked."""
+"""Largest size of one chunk, packed or unpacked."""
 UNPACKED_RATIO_MAX = 1100
 """zlib cannot pack tighter than 1032 to 1."""
 STEP_BYTES = 1 << 20

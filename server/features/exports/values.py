@@ -72,7 +72,7 @@ class Rows:
         self._members = ",".join(_member(field) for field in self.fields)
 
     def batches(self) -> Iterator[tuple[Sequence[float], Columns]]:
-        """Some hundreds of rows at once. Raises StoreError, RecordingError."""
+        """Yield the rows in batches of some hundreds. Raises StoreError, RecordingError."""
         for rows in self._source.batches(self._name):
             times, *counts = zip(*self._row.iter_unpack(rows), strict=True)
             yield (

@@ -33,7 +33,7 @@ def rms(errors: Floats) -> float:
 
 
 def integral_absolute(times: Floats, errors: Floats) -> float:
-    """Of the size of the error over time (s), by the trapezoidal rule."""
+    """Integral of the absolute error over time (s), by the trapezoidal rule."""
     return float(np.trapezoid(np.abs(errors), times))
 
 

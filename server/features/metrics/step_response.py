@@ -28,7 +28,7 @@ class StepResponse:
 
     begin: float
     end: float
-    """When the next step came, or the record ended."""
+    """Time of the next step, or of the record's end."""
     start_value: float
     final_value: float
     band: float

@@ -40,9 +40,9 @@ class RowLayout:
     scales: tuple[float, ...]
     line: str
     names: tuple[str, ...]
-    """Of the columns, such as "position_2"."""
+    """Names of the columns, such as "position_2"."""
     columns: tuple[str, ...]
-    """Their names with units, such as "position_2 [m]"."""
+    """Names of the columns with units, such as "position_2 [m]"."""
 
 
 def shuffle(rows: bytes, size: int) -> bytes:

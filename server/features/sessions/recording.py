@@ -87,7 +87,7 @@ class Recording:
             return database.exec(query).first() is not None
 
     def spans(self, topic: str) -> list[tuple[float, float, int]]:
-        """Of each chunk in order: the times of its first and its last sample, and how many it has."""
+        """Times of the first and the last sample, and number of samples, of each chunk in order."""
         query = (
             select(Chunk.first_time, Chunk.last_time, Chunk.count)
             .where(Chunk.session_id == self.row.id, Chunk.topic == topic)

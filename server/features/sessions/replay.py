@@ -36,7 +36,7 @@ RANGE_MAX = 120.0
 HISTORY_MAX = CHART_SECONDS
 """s before the start that the page's charts can show."""
 BYTES_MAX = 16_000_000
-"""Of one answer; two minutes at the robot's full rate are 2 MB."""
+"""Largest size of one answer; two minutes at the robot's full rate are 2 MB."""
 LISTED_CHUNKS = 300
 STATE = BY_NAME["state"]
 COUNT_MAX = 65_535

@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 
 DEVICES_MAX = 200
 SEEN_SECONDS = 3600.0
-"""How old the moment of the last visit may be in the database, which should not wear out its card."""
+"""Interval of storing the last visit; a shorter one would wear out the SD card."""
 
 
 class UnknownDeviceError(NotFoundError):
