@@ -25,7 +25,7 @@ const LAYERS = [
 ];
 /** Files beside the rooms' folders. */
 const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'resource', 'router', 'screen', 'shortcuts', 'storage', 'theme'];
-const APP = ['App', 'Root', 'main'];
+const APP = ['App', 'Root', 'lazyPages', 'main'];
 /** A single panel is reached through the registry (panels/registry.ts) alone. */
 const DOORS = { 'panels/*': ['panels'] };
 /** The one page that shows another: a replay is Operate, filled from a recording. */

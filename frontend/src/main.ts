@@ -7,6 +7,7 @@ import './styles/tiles.css';
 import { mount } from 'svelte';
 import { Access } from './access/access.svelte';
 import { browserName, takeCode } from './access/code';
+import { prefetch } from './lazyPages';
 import Root from './Root.svelte';
 import { Router } from './router.svelte';
 import { Theme } from './theme.svelte';
@@ -21,7 +22,9 @@ window.addEventListener('hashchange', () => {
   const code = takeCode();
   if (code !== null) open(code);
 });
+const router = new Router();
+prefetch(router);
 mount(Root, {
   target: place,
-  props: { access, socket: `${protocol}//${location.host}/api/live`, router: new Router(), theme: new Theme() },
+  props: { access, socket: `${protocol}//${location.host}/api/live`, router, theme: new Theme() },
 });

@@ -1,0 +1,22 @@
+/** Pages that are fetched when they are first shown. */
+import type { Component } from 'svelte';
+import type { PageName, Router } from './router.svelte';
+
+type Load = () => Promise<{ default: Component }>;
+
+export const lazyPages = {
+  tune: () => import('./pages/tune/Tune.svelte'),
+  scenarios: () => import('./pages/scenarios/Scenarios.svelte'),
+  'comm-tests': () => import('./pages/comm_tests/CommTests.svelte'),
+  sessions: () => import('./pages/sessions/Sessions.svelte'),
+  replay: () => import('./pages/replay/Replay.svelte'),
+  people: () => import('./pages/people/People.svelte'),
+  system: () => import('./pages/system/System.svelte'),
+} satisfies Partial<Record<PageName, Load>>;
+
+/** Fetches the page that the address names, before it is known who asks; one that fails is fetched again when it is shown. */
+export function prefetch({ current, within }: Router): void {
+  const load = (lazyPages as Partial<Record<PageName, Load>>)[current];
+  load?.().catch(() => undefined);
+  if (current === 'sessions' && within[0] === 'compare') import('./pages/sessions/compare/CompareSessions.svelte').catch(() => undefined);
+}
