@@ -10,6 +10,7 @@ CHAOS_SECONDS ?= 3600
 CUTS ?= 10000
 QUESTIONS ?= 300
 WORDS ?= 500
+HOURS ?= 8
 PYTHON := .venv/bin/python
 # Where it is set, each process compiles at every start what it imports: pytest its tests, at 8 seconds a time.
 unexport PYTHONDONTWRITEBYTECODE
@@ -25,7 +26,7 @@ LONGEST := $(wildcard tests/documents/test_*.py tests/proofs/test_*.py)
 REST = $(LONGEST) $(filter-out $(LONGEST) tests/browser/%,$(shell find tests -name 'test_*.py' | sort))
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test test-real-time test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface hours generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -69,6 +70,10 @@ hostile: setup ## hostile words through every entrance to a build, a file name o
 
 interface: setup ## ask every operation what its description lets one think of (QUESTIONS=300 of each)
 	@nice $(PYTHON) -W ignore -m tests.proofs.interface $(QUESTIONS)
+
+hours: setup host-firmware ## record HOURS=8 of a dive in simulated time and read them; an hour's load on the memory
+	@nice $(PYTHON) -m tests.proofs.hours $(HOURS)
+	@nice $(PYTHON) -m tests.proofs.memory 60
 
 generate: .venv/.ready frontend/node_modules/.ready ## write the generated files from their definitions
 	$(PYTHON) -m robot_runtime.generate

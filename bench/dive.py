@@ -67,6 +67,8 @@ class Dive:
         self._start = start
         self._chance = np.random.default_rng(seed)
         self._rows = {name: self._make_rows(name, rate, seconds) for name, rate in RATES.items()}
+        self._times = {name: np.ascontiguousarray(rows["row time"]) for name, rows in self._rows.items()}
+        """Of the rows; a column of them would be copied at every search."""
         self._documents = _make_documents(start, seconds)
         self._thumbnails = _make_thumbnails(self._chance, start, seconds)
         self._numbers = dict.fromkeys([*self._rows, *self._documents, "thumbnail"], 0)
@@ -75,7 +77,7 @@ class Dive:
         """The blocks of what comes before `time` (s, steady clock) and was not taken yet."""
         for name, rows in self._rows.items():
             first = self._numbers[name]
-            last = int(np.searchsorted(rows["row time"], time))
+            last = int(np.searchsorted(self._times[name], time))
             if last > first:
                 yield Block.of(BY_NAME[name], last - first, first, rows[first:last].tobytes())
                 self._numbers[name] = last

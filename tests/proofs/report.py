@@ -33,6 +33,7 @@ class Proof:
 PROOFS = (
     Proof("hostile", "No word from outside reaches a build, a file name or a path."),
     Proof("interface", "No request that the interface allows makes the server fail."),
+    Proof("hours", "A recording of hours is whole, and an hour's load leaves no memory behind."),
     Proof("power", "A power cut loses no row that was acknowledged."),
     Proof("kills", "A killed server leaves no hole in a recording."),
     Proof("fuzz", "No bytes bring down the firmware's end of the line."),

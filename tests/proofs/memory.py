@@ -1,0 +1,294 @@
+"""Memory of the runtime and of the server over an hour: `python -m tests.proofs.memory 60`; 1 for growth.
+
+Each is loaded in a process of its own, as fast as the computer goes. The runtime dives in simulated time,
+armed and stopped each minute, with cards, current and waves. The server takes an hour's messages, records a
+session each minute, replays, compares and removes it, while pages come and go and commands pass. Once it is
+warm, memory must stay: a process's anonymous memory is read each minute, after a collection. Mapped files are
+left out: whether they count as shared depends on other processes.
+"""
+
+import asyncio
+import ctypes
+import gc
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import linear_regression
+from typing import Any
+
+import httpx
+from websockets.exceptions import ConnectionClosed
+
+from bench.dive import Dive
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import read_scenario
+from robot_runtime.experiments.scenario.run import ScenarioRun
+from robot_runtime.transport import replay_cache
+from server.features.comparison import samples
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.stream import hub
+from tests.exports import export_session
+from tests.server.serving import Served, serve
+from tests.server.waiting import until
+from tests.shell import ShellToken
+from tests.stack import ROOT
+
+MINUTE = 60.0
+STEP = 1.0
+"""s of messages that are published at once."""
+SMALL_BYTES, SMALL_MESSAGES = 20_000, 40
+"""Buffers and caches of this size are full after a minute. With their own, which take up to an hour, filling
+them would be taken for growth."""
+PAGES = 3
+COMMANDS = 20
+EXPORT_EVERY = 10
+"""minutes; an export is made by a process of its own."""
+
+HEAD = """
+name = "memory"
+title = "Memory"
+description = "A minute again and again."
+duration = {seconds}
+[scene]
+kind = "natural"
+depth = 4.0
+[control]
+controller = "pid"
+[vision]
+camera = "card"
+"""
+EVENTS = (
+    (1, 'do = "acknowledge"'),
+    (2, 'do = "arm"'),
+    (10, 'do = "card"\ncolour = "yellow"'),
+    (15, 'do = "current"\nnorth = 0.1\neast = 0.05\nturning = 0.05'),
+    (20, 'do = "card"'),
+    (30, 'do = "waves"\namplitude = 0.05\nperiod = 2.5\ndirection = 1.0'),
+    (45, 'do = "waves"\namplitude = 0'),
+    (55, 'do = "stop"'),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """How far a process's memory may rise once it is warm.
+
+    `noise`, in MB, is that of the allocator, which works in pages and arenas. `rate`, in MB a minute, is what
+    a day on a Raspberry Pi Zero with 512 MB bears.
+    """
+
+    warm: int
+    """minutes"""
+    noise: float
+    rate: float
+
+    def judge(self, part: str, held: Sequence[float]) -> str:
+        """What is wrong with the MB after each minute; empty where nothing is."""
+        after = held[self.warm :]
+        if len(after) < 2:
+            return f"{part}: {len(held)} minutes do not show whether memory grows; {self.warm} warm it"
+        rise = linear_regression(range(len(after)), after).slope * len(after)
+        most = self.noise + self.rate * len(after)
+        if rise <= most:
+            return ""
+        return f"{part}: memory rose by {rise:.2f} MB in {len(after)} minutes; the limit is {most:.2f} MB"
+
+
+LIMITS = {"runtime": Limit(1, 0.1, 0.02), "server": Limit(6, 1.0, 0.05)}
+
+
+def anonymous(pid: int | str = "self") -> int:
+    """Bytes of memory of a process without a file behind it."""
+    lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+    (size,) = (int(line.split()[1]) for line in lines if line.startswith("Anonymous:"))
+    return 1024 * size
+
+
+class Scales:
+    """Weighs this process."""
+
+    def __init__(self) -> None:
+        self.held: list[float] = []
+        self._libc = ctypes.CDLL(None)
+
+    def weigh(self) -> None:
+        """Note what is held now, without what is only not yet freed."""
+        gc.collect()
+        self._libc.malloc_trim(0)
+        self.held.append(round(anonymous() / 1e6, 3))
+
+
+class _Minutes:
+    """Hears a run, and weighs after each minute of it."""
+
+    def __init__(self, scales: Scales) -> None:
+        self.blocks_heard = 0
+        self._scales = scales
+
+    def blocks(self, data: bytes) -> None:
+        self.blocks_heard += len(data)
+
+    def event(self, event: str, **more: Any) -> None:
+        if event == "marker" and "refused" in more["text"]:
+            raise AssertionError(more["text"])
+        if event == "progress" and more["time"] > 0 and more["time"] % MINUTE == 0:
+            self._scales.weigh()
+
+
+def load_runtime(minutes: int) -> list[float]:
+    """MB after each minute of a dive in simulated time."""
+    events = (
+        f"[[events]]\nat = {minute * MINUTE + at}\n{what}\n"
+        for minute in range(minutes)
+        for at, what in EVENTS
+    )
+    scenario = read_scenario(HEAD.format(seconds=minutes * MINUTE) + "".join(events))
+    scales = Scales()
+    listener = _Minutes(scales)
+    ScenarioRun(scenario, boards()["host"], listener).perform(lambda _: {})
+    assert listener.blocks_heard > minutes * MINUTE * 1000
+    return scales.held
+
+
+def load_server(minutes: int) -> list[float]:
+    """MB after each minute of messages and of what people do."""
+    hub.HISTORY_TOPIC_BYTES = samples.CACHE_BYTES = replay_cache.BYTES_MAX = SMALL_BYTES
+    hub.ROWS_MESSAGES = hub.DOCUMENTS_MESSAGES = SMALL_MESSAGES
+    scales = Scales()
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+        data = DataFolder(Path(name) / "data")
+        make_folders(data)
+        settings = Settings(
+            data=data, config=ROOT / "robot.toml", robot="tested", page=ROOT / "server" / "page"
+        )
+        asyncio.run(_serve_minutes(settings, minutes, scales))
+    return scales.held
+
+
+async def _serve_minutes(settings: Settings, minutes: int, scales: Scales) -> None:
+    async with serve(settings) as served:
+        day = _Day(served, minutes)
+        page = asyncio.create_task(day.watch())
+        await until(lambda: served.container.hub.clients == 1, "the page")
+        for minute in range(minutes):
+            await day.live_through(minute)
+            scales.weigh()
+        page.cancel()
+        await asyncio.gather(page, return_exceptions=True)
+
+
+class _Day:
+    """What happens to a server, minute by minute."""
+
+    def __init__(self, served: Served, minutes: int) -> None:
+        self._served = served
+        self._start = time.monotonic()
+        self._dive = Dive(self._start, minutes * MINUTE, 1)
+        self._sent = 0
+        self._before: int | None = None
+
+    async def live_through(self, minute: int) -> None:
+        """A minute: the robot sends, and people record, watch, command, look back and tidy up."""
+        begin = self._start + minute * MINUTE
+        session = (await self._post("/sessions", {"name": f"minute {minute}"}))["id"]
+        await self._send(begin, begin + MINUTE / 2)
+        for _ in range(PAGES):
+            await self._visit()
+        await self._served.take_control()
+        for _ in range(COMMANDS):
+            await self._post("/robot/commands/arm")
+            await self._post("/robot/stop")
+        await self._send(begin + MINUTE / 2, begin + MINUTE)
+        await self._post(f"/sessions/{session}/stop")
+        await self._look_back(session)
+        if minute % EXPORT_EVERY == 0:
+            await asyncio.to_thread(self._export, session)
+        if self._before is not None:
+            await self._remove(self._before)
+        self._before = session
+        for heard in (self._served.runtime.asked, self._served.runtime.epochs):
+            heard.clear()
+
+    async def watch(self) -> None:
+        """A page that stays, and reads."""
+        async with self._served.connect() as socket:
+            with suppress(ConnectionClosed):
+                async for _ in socket:
+                    pass
+
+    async def _visit(self) -> None:
+        """A page that comes, reads its first messages and goes away."""
+        async with self._served.connect() as socket:
+            for _ in range(10):
+                await asyncio.wait_for(socket.recv(), 10)
+            await socket.send(json.dumps({"op": "ping", "id": 1}))
+
+    async def _send(self, begin: float, end: float) -> None:
+        totals, depth = self._served.container.hub.rows, BY_NAME["depth"].id
+        for step in range(round((end - begin) / STEP)):
+            blocks = list(self._dive.until(begin + (step + 1) * STEP))
+            self._sent += sum(block.count for block in blocks if block.topic.id == depth)
+            self._served.runtime.publish(*blocks)
+            await until(lambda: totals.totals.get(depth, 0) == self._sent, "what was sent")
+
+    async def _look_back(self, session: int) -> None:
+        for start, end in ((0.0, 5.0), (20.0, 25.0), (50.0, 60.0)):
+            await self._get(f"/sessions/{session}/blocks", start=start, end=end, history=60.0)
+        for path in (f"/sessions/{session}/timeline", "/sessions", "/storage", "/health"):
+            await self._get(path)
+        both = [one for one in (session, self._before) if one is not None]
+        await self._post("/compare", {"sessions": both, "signals": ["depth.depth"]})
+
+    def _export(self, session: int) -> None:
+        settings = self._served.settings
+        base = f"{settings.scheme}://127.0.0.1:{settings.port}/api"
+        with httpx.Client(base_url=base, auth=ShellToken(settings.data), timeout=30) as client:
+            assert len(export_session(client, session).content) > 100_000
+
+    async def _remove(self, session: int) -> None:
+        (await self._served.api.delete(f"/sessions/{session}")).raise_for_status()
+        await self._post(f"/sessions/{session}/purge")
+
+    async def _get(self, path: str, **query: float) -> None:
+        (await self._served.api.get(path, params=query)).raise_for_status()
+
+    async def _post(self, path: str, body: object = None) -> Any:
+        answer = await self._served.api.post(path, json=body)
+        answer.raise_for_status()
+        return answer.json() if answer.content else None
+
+
+def measure(part: str, minutes: int) -> list[float]:
+    """MB after each minute, from a process of its own."""
+    command = [sys.executable, "-m", "tests.proofs.memory", part, str(minutes)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-4000:]
+    found: list[float] = json.loads(done.stdout)
+    return found
+
+
+def main() -> int:
+    """Exit status."""
+    if len(sys.argv) > 2:
+        load = {"runtime": load_runtime, "server": load_server}[sys.argv[1]]
+        print(json.dumps(load(int(sys.argv[2]))))
+        return 0
+    minutes = int(sys.argv[1]) if len(sys.argv) > 1 else 60
+    problems = []
+    for part, limit in LIMITS.items():
+        held = measure(part, minutes)
+        print(f"{part}: {', '.join(f'{one:.2f}' for one in held)} MB")
+        problems.append(limit.judge(part, held))
+    print("\n".join(filter(None, problems)) or "Memory does not grow.")
+    return 1 if any(problems) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
