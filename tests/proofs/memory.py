@@ -78,7 +78,7 @@ EVENTS = (
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """How far a process's memory may rise once it is warm.
+    """The rise of a process's memory that is allowed once it is warm.
 
     `noise`, in MB, is that of the allocator, which works in pages and arenas. `rate`, in MB a minute, is what
     a day on a Raspberry Pi Zero with 512 MB bears.
@@ -90,7 +90,7 @@ class Limit:
     rate: float
 
     def judge(self, part: str, held: Sequence[float]) -> str:
-        """What is wrong with the MB after each minute; empty where nothing is."""
+        """The fault in the MB after each minute, in words; empty where there is none."""
         after = held[self.warm :]
         if len(after) < 2:
             return f"{part}: {len(held)} minutes do not show whether memory grows; {self.warm} warm it"
@@ -185,7 +185,7 @@ async def _serve_minutes(settings: Settings, minutes: int, scales: Scales) -> No
 
 
 class _Day:
-    """What happens to a server, minute by minute."""
+    """The events in the life of a server, minute by minute."""
 
     def __init__(self, served: Served, minutes: int) -> None:
         self._served = served
