@@ -31,7 +31,7 @@ def main() -> int:
     ]
     results = Results()
     began = time.monotonic()
-    # Emulated time passes as it does, whatever else the computer does; what is timed needs it alone.
+    # Emulated time does not depend on the computer's load; measurements of real time need it idle.
     _measure_all([part for part in parts if part.is_emulated], os.cpu_count() or 1, results)
     _measure_all([part for part in parts if not part.is_emulated], 1, results)
     print(f"\n{len(parts)} parts took {(time.monotonic() - began) / 60:.1f} min", file=sys.stderr)

@@ -149,7 +149,7 @@ def wait_for_samples(open_one: Open) -> None:
 
 @contextmanager
 def process(*role: str) -> Iterator[psutil.Process]:
-    # foxglove-sdk tells at length of every viewer that leaves.
+    # foxglove-sdk logs every viewer that disconnects, at length.
     command = [sys.executable, "-m", "bench.hub_ends", *role]
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL)
     try:

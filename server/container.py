@@ -274,7 +274,7 @@ class Container:
             self._stopping = asyncio.create_task(self._stop_without_water())
 
     async def _stop_without_water(self) -> None:
-        # It may be back before the sensors have frozen for long enough, with a robot that is elsewhere.
+        # The simulator may be back before the frozen sensors are a fault, with the robot at another place.
         with suppress(RefusedError, RuntimeSilentError):
             await self.bridge.disarm()
 

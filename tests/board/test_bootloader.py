@@ -106,7 +106,7 @@ def test_after_a_reset_it_listens(tmp_path: Path) -> None:
         rig.board.reset()
         rig.board.run(0.5)
         assert rig.exchange(SYNCHRONISE, 0.01) == IN_STEP
-        # Having heard something it waits that long anew.
+        # After a received byte it waits for the same time again.
         rig.board.run(TIMEOUT - 0.02)
         assert rig.port.read() == b""
         rig.board.run(0.02)

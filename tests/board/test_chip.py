@@ -32,7 +32,7 @@ def test_the_watchdog_resets_a_hung_chip(make_rig: Make, command: bytes) -> None
     # The watchdog's 250 ms are 32768 cycles of its 128 kHz.
     assert took == pytest.approx(0.256, abs=0.003)
     assert monitor.boot() == WATCHDOG
-    # Everything outside the chip has kept time: line, motors and buses work as before.
+    # Time has advanced outside the chip too: line, motors and buses work as before.
     assert monitor.transfer(0x76)[0] == 0x18
     assert monitor.flood() > 0
     assert rig.board.stats()["resets"] == 2

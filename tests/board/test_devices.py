@@ -255,7 +255,7 @@ def test_without_power_no_motor_turns_and_the_bridges_are_dead(rig: Rig, monitor
     fins = rig.board.fins()
     assert (fins.drives[0], fins.speeds[0], fins.powered) == (0, 0, False)
     monitor.outputs(MOTOR_POWER)
-    assert rig.board.fins().drives[0] == 0  # it has forgotten
+    assert rig.board.fins().drives[0] == 0  # its registers are reset
 
 
 def test_the_bridges_go_on_while_the_chip_is_reset_only_as_long_as_they_have_power(

@@ -186,7 +186,7 @@ def test_bad_paths_are_refused_in_one_line(
     assert (tmp_path / "file").read_text() == "kept"
 
 
-def test_a_file_that_is_no_eeprom_is_refused_and_kept(tmp_path: Path) -> None:
+def test_a_file_that_is_no_eeprom_is_refused_and_left_unchanged(tmp_path: Path) -> None:
     file = tmp_path / "notes"
     file.write_text("kept")
     with pytest.raises(BoardError, match="not an EEPROM of this chip"):

@@ -160,7 +160,7 @@ def test_the_port_can_be_closed_and_opened_again(make_rig: Make) -> None:
     assert rig.exchange(b"after", 0.01) == b"after"
 
 
-def test_opening_the_port_resets_the_board_where_that_is_wanted(make_rig: Make) -> None:
+def test_opening_the_port_resets_the_board_with_reset_on_open(make_rig: Make) -> None:
     rig = make_rig("monitor", "--reset-on-open")
     external = 1 << 1
     wait_for(lambda: rig.board.stats()["resets"] == 2, "the reset")

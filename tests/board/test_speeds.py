@@ -53,7 +53,7 @@ def test_telemetry_at_each_speed_is_what_the_line_carries(join: Join, baud: int)
     host = join(baud, baud)
     frame = airtime(FRAME_BYTES_MAX, baud)
     host.until(lambda: host.session.stage is SessionStage.ESTABLISHED, 0.5 + 4 * frame)
-    # The lines of the start come through beside the telemetry.
+    # The debug lines of the start arrive beside the telemetry.
     host.until(lambda: count(host.heard, Debug) == 7, 1.0 + 16 * frame)
     host.run(1.0 + 3 * periods(baud)[Status])
 
@@ -61,7 +61,7 @@ def test_telemetry_at_each_speed_is_what_the_line_carries(join: Join, baud: int)
     heard = host.run(measured)
     for kind, period in periods(baud).items():
         assert count(heard, kind) == pytest.approx(measured / period, rel=0.15), kind.__name__
-    # What comes is new: it waited for no more than what was on the line already.
+    # Telemetry is new: it waited only for bytes that were on the line already.
     clock = host.board.stats()["time"] - host.now
     ages = [
         at + clock - packet.time * 1e-6 for at, packet in heard if isinstance(packet, Depth | Imu | Motor)

@@ -1,4 +1,4 @@
-"""Debian's Chromium, as the tests and the measurements start it and sign in with it."""
+"""Debian's Chromium, for tests and measurements, and its sign-in."""
 
 from pathlib import Path
 

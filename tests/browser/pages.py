@@ -1,4 +1,4 @@
-"""All pages, and the way to open each."""
+"""All pages, and their addresses."""
 
 import re
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ PAGES = (
 
 
 def fill(stack: Stack) -> None:
-    """See to it that there are two sessions to look at."""
+    """Ensure that two sessions exist."""
     there = {session["name"] for session in stack.api.get("/sessions").json()}
     for name in SESSIONS:
         if name in there:
@@ -59,7 +59,7 @@ def samples(stack: Stack, session: int) -> int:
 
 
 def show(page: Page, stack: Stack, view: View) -> None:
-    """Go there, and wait until it has what it is to show."""
+    """Open a page, and wait until its contents are shown."""
     there = {one["name"]: one for one in stack.api.get("/sessions").json()}
     first, second = (there[name] for name in SESSIONS)
     names = {
@@ -74,7 +74,7 @@ def show(page: Page, stack: Stack, view: View) -> None:
 
 
 def settle(page: Page) -> None:
-    """Wait until nothing says that it is on its way."""
+    """Wait until no element of the page is busy."""
     expect(
         page.get_by_text(re.compile("being (fetched|read|compared|checked)|(Loading|Checking)…"))
     ).to_have_count(0)

@@ -16,7 +16,7 @@ def make_link(stack: Stack, role: str) -> str:
 
 @contextmanager
 def somebody(browser: Browser, stack: Stack, role: str) -> Iterator[Page]:
-    """The page in another browser, signed in by a link; what its code complains about fails the test."""
+    """The page in another browser, signed in by a link; console errors fail the test."""
     context = browser.new_context(viewport={"width": 1440, "height": 900}, color_scheme="dark")
     page = context.new_page()
     complaints: list[str] = []

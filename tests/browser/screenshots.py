@@ -1,4 +1,4 @@
-"""`python -m tests.browser.screenshots FOLDER`: every page, both sizes, both themes, of a robot at work.
+"""`python -m tests.browser.screenshots FOLDER`: every page, both sizes, both themes, of a robot in operation.
 
 docs/pictures has a few of them: copy one there only when what it shows has changed.
 """
@@ -124,7 +124,7 @@ def draw(page: Page) -> None:
 
 
 def main(folder: Path) -> None:
-    """Start a robot, let it swim, and look."""
+    """Start a robot, arm it, and take the pictures."""
     folder.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory(prefix="mucat-") as data, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)

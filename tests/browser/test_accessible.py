@@ -47,7 +47,7 @@ OPENED = ("Control:", "Record", "Alarms", "Page settings")
 def seen(
     request: pytest.FixtureRequest, browser: Browser, stack: Stack, cookies: StorageState
 ) -> Iterator[Page]:
-    """One page for all of these tests; nothing is changed by them."""
+    """One page for all of these tests; none of them changes anything."""
     fill(stack)
     context = browser.new_context(
         viewport=request.param,
@@ -75,7 +75,7 @@ def faults(page: Page, how: str = USUAL) -> list[str]:
 
 
 @pytest.mark.parametrize("view", PAGES, ids=lambda view: view.name)
-def test_no_page_has_a_grave_fault(seen: Page, stack: Stack, view: View) -> None:
+def test_no_page_has_a_serious_accessibility_violation(seen: Page, stack: Stack, view: View) -> None:
     show(seen, stack, view)
     dark = faults(seen)
     seen.evaluate("document.documentElement.dataset.theme = 'sunlight'")
@@ -84,7 +84,7 @@ def test_no_page_has_a_grave_fault(seen: Page, stack: Stack, view: View) -> None
     assert dark + sunlight == []
 
 
-def test_what_opens_from_the_bar_has_none(seen: Page, stack: Stack) -> None:
+def test_menus_of_the_bar_have_no_serious_violation(seen: Page, stack: Stack) -> None:
     show(seen, stack, PAGES[0])
     for name in OPENED:
         opener = seen.get_by_role("button", name=name).first
@@ -94,7 +94,7 @@ def test_what_opens_from_the_bar_has_none(seen: Page, stack: Stack) -> None:
         opener.click()
 
 
-def test_the_bar_has_room_for_all_that_it_says_and_for_stop_at_every_width(seen: Page, stack: Stack) -> None:
+def test_the_bar_shows_all_its_contents_and_stop_at_every_width(seen: Page, stack: Stack) -> None:
     show(seen, stack, PAGES[0])
     size = seen.viewport_size
     assert size is not None
@@ -111,7 +111,7 @@ def test_the_bar_has_room_for_all_that_it_says_and_for_stop_at_every_width(seen:
     assert crowded == {width: [] for width in WIDTHS}
 
 
-def test_signing_in_has_none(browser: Browser, stack: Stack) -> None:
+def test_the_sign_in_page_has_no_serious_violation(browser: Browser, stack: Stack) -> None:
     context = browser.new_context(viewport=PHONE, color_scheme="dark")
     page = context.new_page()
     context.add_init_script(path=AXE)
@@ -122,7 +122,7 @@ def test_signing_in_has_none(browser: Browser, stack: Stack) -> None:
     assert wrong == []
 
 
-def test_a_viewer_is_told_before_he_tries(browser: Browser, stack: Stack) -> None:
+def test_a_viewer_sees_the_reason_before_an_attempt(browser: Browser, stack: Stack) -> None:
     context = browser.new_context(viewport=DESKTOP, color_scheme="dark")
     page = context.new_page()
     context.add_init_script(path=AXE)

@@ -1,4 +1,4 @@
-"""Charts in a real browser: what was before a reload, pause, zoom, the cursor by mouse, keys and fingers."""
+"""Charts: history after a reload, pause, zoom, the cursor by mouse, keys and touch."""
 
 import re
 
@@ -12,7 +12,7 @@ DRAWN = """(chart) => [...chart.querySelectorAll('canvas')].some((canvas) => {
 
 
 def depth_chart(page: Page) -> tuple[Locator, Locator]:
-    """The panel, and what takes pointers and keys in it."""
+    """The panel, and the element in it that takes pointers and keys."""
     panel = page.get_by_role("region", name="Depth over time")
     panel.scroll_into_view_if_needed()
     return panel, panel.get_by_role("slider")
@@ -41,7 +41,7 @@ def pinch(page: Page, cursor: Locator) -> None:
         devtools.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
 
 
-def test_a_reload_keeps_the_past_of_every_chart(page: Page) -> None:
+def test_charts_show_their_history_after_a_reload(page: Page) -> None:
     panel, cursor = depth_chart(page)
     expect(cursor).to_have_attribute("aria-valuetext", re.compile(r"now: depth \S+ m, set point"))
     page.wait_for_function("() => performance.now() > 4000")

@@ -1,4 +1,4 @@
-"""The form of a communication test: each problem that the server finds is where it belongs."""
+"""The form of a communication test: each error of the server is shown at its field."""
 
 import json
 import re

@@ -60,7 +60,7 @@ def place_of(row: list[str]) -> Place:
 
 
 @pytest.mark.timeout(2 * SWEEP_MS // 1000)
-def test_a_run_of_the_thesis_example_with_fewer_cells(page: Page, tmp_path: Path) -> None:
+def test_a_run_of_the_thesis_s_example_with_fewer_cells(page: Page, tmp_path: Path) -> None:
     open_comm_tests(page)
     expect(page.get_by_role("radio", name=re.compile("Figure 10"))).to_be_checked()
     expect(page.get_by_text("75 cells", exact=False)).to_be_visible()
@@ -73,8 +73,8 @@ def test_a_run_of_the_thesis_example_with_fewer_cells(page: Page, tmp_path: Path
     check_run(page, tmp_path, SMALL, timeout=SWEEP_MS)
 
 
-def test_the_thesis_example_as_it_ships(page: Page, stack: Stack, tmp_path: Path) -> None:
-    """Sample that `tests/server/features/comm_tests/test_thesis_example.py` runs again, cell by cell."""
+def test_the_shipped_run_of_the_thesis_s_example(page: Page, stack: Stack, tmp_path: Path) -> None:
+    """The sample that `tests/server/features/comm_tests/test_thesis_example.py` runs again, cell by cell."""
     runs = stack.api.get("/comm-tests/runs").json()
     (sample,) = (run["id"] for run in runs if run["sample"] == "grid-thesis")
     page.goto(f"{stack.url}/#/comm-tests/runs/{sample}")
@@ -105,7 +105,7 @@ def make_smaller(page: Page, grid: Grid) -> None:
 
 
 def check_explanation(page: Page, index: int, causes: str) -> None:
-    """A click on a cell of the figure says why."""
+    """A click on a cell of the figure shows the causes."""
     cell = page.locator(".point path").nth(index)
     box = cell.bounding_box()
     assert box is not None
@@ -132,7 +132,7 @@ def check_csv(page: Page, tmp_path: Path, shown: dict[Place, tuple[str, str]]) -
 
 
 def check_json(page: Page, tmp_path: Path, grid: Grid) -> None:
-    """The file has the test as it was run, and where."""
+    """The file has the test, and the place of the run."""
     with page.expect_download() as download:
         page.get_by_role("link", name="Export JSON").click()
     path = tmp_path / "run.json"
@@ -145,7 +145,7 @@ def check_json(page: Page, tmp_path: Path, grid: Grid) -> None:
 
 
 def check_comparison(page: Page, shown: dict[Place, str]) -> None:
-    """Beside Table 6 stand the same rates, and what they differ by."""
+    """The table shows the same rates beside Table 6, and the differences."""
     page.get_by_role("link", name="Compare with Table 6").click()
     expect(page.get_by_role("heading", name="Compare runs")).to_be_visible()
     expect(page.locator(".point")).to_have_count(75 + 2 * len(shown), timeout=STEP_MS)
@@ -163,7 +163,7 @@ def check_comparison(page: Page, shown: dict[Place, str]) -> None:
         assert float(row[5].replace("±", "")) == pytest.approx(difference, abs=1e-9), place
 
 
-def test_a_bad_document_is_told_field_by_field(page: Page) -> None:
+def test_errors_of_a_document_are_shown_field_by_field(page: Page) -> None:
     open_comm_tests(page)
     page.get_by_role("button", name="Edit", exact=True).click()
     page.get_by_label("Baud rates, bit/s").fill("9600, 300000")
@@ -180,7 +180,7 @@ def test_a_bad_document_is_told_field_by_field(page: Page) -> None:
     expect(page.get_by_role("button", name="Start the test")).to_be_disabled()
 
 
-def test_what_is_cancelled_is_kept(page: Page) -> None:
+def test_a_cancelled_run_stays_stored(page: Page) -> None:
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))
     open_comm_tests(page)

@@ -1,4 +1,4 @@
-"""Two recorded sessions laid over each other, in a real browser; their report, opened without any network."""
+"""Two recorded sessions overlaid; their report, opened without any network."""
 
 import re
 from pathlib import Path
@@ -29,7 +29,7 @@ def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
     return int(session["id"])
 
 
-def test_two_sessions_over_each_other(page: Page, browser: Browser, stack: Stack, tmp_path: Path) -> None:
+def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, tmp_path: Path) -> None:
     complaints: list[str] = []
     page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
     one = record(page, stack, "with fins", armed=True)
@@ -93,7 +93,7 @@ def check_files(page: Page, folder: Path) -> None:
 
 
 def check_report(page: Page, browser: Browser, path: Path) -> None:
-    """The report opens without any network, asks for nothing, and has its charts and tables."""
+    """The report opens without any network, requests nothing, and has its charts and tables."""
     page.get_by_label("Align at").select_option("start")
     page.get_by_role("button", name="Depth", exact=True).click()
     with page.expect_download(timeout=STEP_MS) as download:
@@ -114,7 +114,7 @@ def check_report(page: Page, browser: Browser, path: Path) -> None:
     context.close()
 
 
-def test_an_address_that_names_nothing_says_what_to_do(any_page: Page, stack: Stack) -> None:
+def test_an_address_without_sessions_shows_the_remedy(any_page: Page, stack: Stack) -> None:
     any_page.goto(f"{stack.url}/#/sessions/compare/")
     expect(any_page.get_by_text("No session selected")).to_be_visible()
     any_page.goto(f"{stack.url}/#/sessions/compare/999999")

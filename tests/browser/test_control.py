@@ -1,4 +1,4 @@
-"""Control: taken, taken over, released."""
+"""Control: taking, taking over, releasing."""
 
 import re
 
@@ -15,7 +15,7 @@ def control(page: Page) -> Locator:
     return page.get_by_role("button", name=re.compile("^Control:"))
 
 
-def test_control_goes_from_one_to_the_other(page: Page, browser: Browser, stack: Stack) -> None:
+def test_control_passes_from_one_page_to_another(page: Page, browser: Browser, stack: Stack) -> None:
     expect(control(page)).to_have_accessible_name(MINE)
     with somebody(browser, stack, "operator") as other:
         expect(control(other)).not_to_have_accessible_name(MINE)

@@ -1,4 +1,4 @@
-"""Pages of other origins, in the browser of somebody who is signed in: they read nothing and change nothing.
+"""Pages of other origins in a signed-in browser: they read nothing and change nothing.
 
 Another port of 127.0.0.1 is the same site to a browser, so that it sends the strict cookie along: there the
 server alone stands in the way. A foreign name that leads to this computer is DNS rebinding.
@@ -83,7 +83,7 @@ ATTACKS = """async (target) => {
 
 
 class Evil(BaseHTTPRequestHandler):
-    """Somebody else's page."""
+    """A foreign page."""
 
     def do_GET(self) -> None:
         self.send_response(200)
@@ -92,7 +92,7 @@ class Evil(BaseHTTPRequestHandler):
         self.wfile.write(b"<!doctype html><title>evil</title><body>")
 
     def log_message(self, format: str, *_: Any) -> None:  # noqa: A002 - its name there
-        """Be quiet."""
+        """Suppress the log."""
 
 
 @pytest.fixture
@@ -107,7 +107,7 @@ def evil_port() -> Iterator[int]:
 
 @pytest.fixture
 def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
-    """Somebody's browser, signed in, in a net whose names an attacker may choose."""
+    """A signed-in browser, in a network whose names an attacker controls."""
     rules = f"--host-resolver-rules=MAP {FOREIGN} 127.0.0.1"
     other = browser.browser_type.launch(executable_path=HEADLESS_SHELL, args=[*ARGUMENTS, rules])
     yield other.new_context(storage_state=cookies)
@@ -115,7 +115,7 @@ def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
 
 
 def snapshot(stack: Stack) -> dict[str, Any]:
-    """State that an attack might change."""
+    """The state that an attack might change."""
     robot = stack.api.get("/robot").raise_for_status().json()
     names = ("mode", "armed", "set_point_default", "set_point_detected", "card", "vision_rate")
     found: dict[str, Any] = {name: robot[name] for name in names}
@@ -127,7 +127,7 @@ def snapshot(stack: Stack) -> dict[str, Any]:
 
 
 def attack(page: Page, target: str) -> dict[str, str]:
-    """Try everything there is; what came of it, but for what was refused."""
+    """Try all attacks; returns the results, without the refused ones."""
     results: dict[str, str] = page.evaluate(ATTACKS, target)
     framed = page.frame("framed")
     assert framed is not None
@@ -136,7 +136,7 @@ def attack(page: Page, target: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", ["127.0.0.1", "localhost", FOREIGN])
-def test_a_foreign_page_gets_nothing(victim: BrowserContext, stack: Stack, evil_port: int, name: str) -> None:
+def test_a_foreign_page_gets_no_data(victim: BrowserContext, stack: Stack, evil_port: int, name: str) -> None:
     own = victim.new_page()
     own.goto(stack.url)
     assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it is not signed in"
@@ -153,7 +153,7 @@ def test_a_foreign_page_gets_nothing(victim: BrowserContext, stack: Stack, evil_
     assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it was signed out"
 
 
-def test_a_foreign_name_for_this_computer_opens_nothing(victim: BrowserContext, stack: Stack) -> None:
+def test_a_foreign_host_name_is_refused(victim: BrowserContext, stack: Stack) -> None:
     page = victim.new_page()
     answer = page.goto(f"http://{FOREIGN}:{stack.port}/")
     assert answer is not None

@@ -1,4 +1,4 @@
-"""Driving by hand: the robot moves only while something is held on a visible page."""
+"""Driving: the robot moves only while a control is held on a visible page."""
 
 import csv
 import io
@@ -25,7 +25,7 @@ SMALL_PHONE: ViewportSize = {"width": 360, "height": 640}
 LYING_PHONE: ViewportSize = {"width": 844, "height": 390}
 NEUTRAL_SECONDS = 0.5
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-# What a browser tells of a gamepad; nobody can plug one in here.
+# A browser's data of a gamepad, in place of a real one.
 GAMEPAD = """
 () => {
   const buttons = Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 }));
@@ -49,20 +49,20 @@ globalThis.WebSocket = class extends WebSocket {
 
 
 def expect_full_speed(page: Page) -> None:
-    """The navigation command has grown forwards to its end."""
+    """Wait until the navigation command forwards is full."""
     command = page.get_by_role("region", name="Navigation command")
     expect(command.locator(".value").first).to_have_text(re.compile(r"^\s*1\.00$"))
 
 
 @pytest.fixture
 def in_a_window(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page]:
-    """The page in the whole browser: without windows no page leaves the front for another."""
+    """The page in the full browser: without windows no page can be hidden by another."""
     whole = browser.browser_type.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
     yield from open_page(whole, stack, cookies, DESKTOP)
     whole.close()
 
 
-def test_keys_drive_and_rest_where_nobody_looks(in_a_window: Page, stack: Stack) -> None:
+def test_keys_drive_only_on_a_visible_page(in_a_window: Page, stack: Stack) -> None:
     page = in_a_window
     session = stack.api.post("/sessions", json={"name": "by hand"}).raise_for_status().json()["id"]
     arm_by_hand(page)
@@ -75,7 +75,7 @@ def test_keys_drive_and_rest_where_nobody_looks(in_a_window: Page, stack: Stack)
     expect_full_speed(page)
     left = look_away(page)
     expect_surge(page, "")
-    # The page says nothing more; the robot rests, and at last stops by itself.
+    # The page sends nothing more; the fins rest, and then the robot stops by itself.
     stopped = page.context.pages[0].get_by_text("FAILSAFE", exact=True)
     expect(stopped).to_be_visible()
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
@@ -91,8 +91,8 @@ def test_keys_drive_and_rest_where_nobody_looks(in_a_window: Page, stack: Stack)
 
 
 def look_away(page: Page) -> float:
-    """Bring another tab to the front, which nobody drives by. Returns when that was, s since 1970."""
-    # Playwright lets every page believe that it has the focus.
+    """Bring another tab to the front. Returns the time of it, s since 1970."""
+    # By default Playwright gives every page the focus.
     session = page.context.new_cdp_session(page)
     session.send("Emulation.setFocusEmulationEnabled", {"enabled": False})
     page.evaluate("addEventListener('blur', () => { globalThis.left = Date.now(); })")
@@ -137,7 +137,7 @@ def test_a_thumb_drives_on_the_pad(page: Page) -> None:
 
 @contextmanager
 def resting_within_half_a_second(stack: Stack, begin: Callable[[], object]) -> Iterator[None]:
-    """The block, once the fins flap; after it they do for at most half a second of the board's time."""
+    """Run the block while the fins flap; after it they rest within half a second of the board's time."""
     fins = Fins(DataFolder(stack.data).board_socket)
     try:
         begin()
@@ -158,7 +158,7 @@ def until_seen(condition: Any) -> None:
         time.sleep(0.01)
 
 
-def test_a_lost_gamepad_a_lost_socket_and_escape_are_rest(page: Page, stack: Stack) -> None:
+def test_a_lost_gamepad_a_lost_socket_and_escape_stop_driving(page: Page, stack: Stack) -> None:
     page.add_init_script(KEEP_SOCKETS)
     page.reload()
     arm_by_hand(page)

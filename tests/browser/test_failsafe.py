@@ -8,7 +8,7 @@ from tests.browser.driving import hold_to_arm
 from tests.stack import Stack
 
 
-def test_a_fault_is_told_acknowledged_and_left_behind(page: Page, stack: Stack) -> None:
+def test_a_fault_is_shown_acknowledged_and_followed_by_arming(page: Page, stack: Stack) -> None:
     expect(page.get_by_role("button", name="0 alarms")).to_be_visible()
     hold_to_arm(page)
     board = stack.child("build/board")

@@ -3,7 +3,7 @@
 from playwright.sync_api import Page, expect
 
 
-def test_a_part_of_the_page_that_cannot_be_fetched_is_told(page: Page) -> None:
+def test_a_failed_download_of_a_part_of_the_page_is_reported(page: Page) -> None:
     page.route("**/assets/System-*.js", lambda route: route.abort())
     page.get_by_role("link", name="System", exact=True).click()
     told = page.get_by_role("alert").filter(has_text="could not be loaded")

@@ -1,4 +1,4 @@
-"""A newcomer's first minute: the link that the server printed, opened in a browser that knows nothing."""
+"""The first start: the printed link, opened in a new browser."""
 
 import re
 
@@ -19,7 +19,7 @@ def test_the_printed_link_signs_a_browser_in_without_typing(browser: Browser, st
     assert page.evaluate("document.cookie") == ""
     page.reload()
     expect(page.get_by_role("link", name="Operate")).to_be_visible(timeout=15_000)
-    # It worked once: another browser is asked for a code.
+    # The link is valid once: another browser is asked for a code.
     stranger = browser.new_context()
     other = stranger.new_page()
     other.goto(link)

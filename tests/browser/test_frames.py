@@ -1,4 +1,4 @@
-"""The last frames on the line, in a real browser: shown, chosen from, held still, saved."""
+"""The last frames on the line: shown, filtered, paused, saved."""
 
 import re
 from pathlib import Path

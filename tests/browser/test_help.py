@@ -1,4 +1,4 @@
-"""The help pages in a browser: they render, their search finds, and nothing leaves the robot."""
+"""The help pages: they render, their search works, and no request leaves the robot."""
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -38,7 +38,7 @@ def test_the_help_renders_and_searches_without_a_foreign_request(
     assert complaints == []
 
 
-def test_each_page_leads_to_its_chapter(any_page: Page, stack: Stack) -> None:
+def test_each_page_links_to_its_chapter(any_page: Page, stack: Stack) -> None:
     fill(stack)
     chapters: dict[str, str] = {}
     for view in PAGES:

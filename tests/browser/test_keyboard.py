@@ -1,4 +1,4 @@
-"""The keyboard: marks leave it to driving, Esc is STOP, two presses arm, single keys can be switched off."""
+"""The keyboard: bookmarks during driving, Esc is STOP, two presses arm, single keys can be disabled."""
 
 import re
 from collections.abc import Callable
@@ -14,16 +14,18 @@ EXPIRES_MS = 10_000
 
 @pytest.fixture
 def session(stack: Stack) -> int:
-    """A session that is being recorded."""
+    """A recording session."""
     return int(stack.api.post("/sessions", json={"name": "keys"}).raise_for_status().json()["id"])
 
 
 def notes(stack: Stack, session: int) -> list[str]:
-    """The notes of the session's marks, in order of time."""
+    """The texts of the session's bookmarks, in order of time."""
     return [mark["text"] for mark in stack.api.get(f"/sessions/{session}/timeline").json()["markers"]]
 
 
-def test_a_mark_leaves_the_keyboard_to_driving(page: Page, stack: Stack, session: int) -> None:
+def test_setting_a_bookmark_does_not_take_the_keyboard_from_driving(
+    page: Page, stack: Stack, session: int
+) -> None:
     arm_by_hand(page)
     page.keyboard.press("m")
     notice = page.get_by_role("region", name="Bookmark", exact=True)
@@ -41,7 +43,7 @@ def test_a_mark_leaves_the_keyboard_to_driving(page: Page, stack: Stack, session
     assert notes(stack, session) == ["bubbles"]
 
 
-def test_a_mark_without_a_note_goes_out_of_the_way(page: Page, stack: Stack, session: int) -> None:
+def test_the_note_field_of_a_bookmark_closes_by_itself(page: Page, stack: Stack, session: int) -> None:
     expect(page.get_by_role("button", name=re.compile("^REC"))).to_be_visible()
     page.keyboard.press("m")
     notice = page.get_by_role("region", name="Bookmark", exact=True)
@@ -50,7 +52,7 @@ def test_a_mark_without_a_note_goes_out_of_the_way(page: Page, stack: Stack, ses
     assert notes(stack, session) == [""]
 
 
-def test_escape_stops_and_leaves_a_sheet_open(page: Page) -> None:
+def test_escape_stops_and_does_not_close_a_sheet(page: Page) -> None:
     opener = page.get_by_role("button", name=re.compile("^Control:"))
     opener.press("Enter")
     sheet = page.get_by_role("dialog", name="Control of the robot")
@@ -86,7 +88,7 @@ def test_two_presses_arm(page: Page, press: Callable[[Locator], None]) -> None:
     expect(again).to_be_visible()
     expect(page.get_by_role("status").filter(has_text="Press again to arm")).to_be_attached()
     expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
-    # A press that nothing follows is forgotten.
+    # A press without a second one has no effect.
     expect(hold).to_be_visible(timeout=EXPIRES_MS)
     press(hold)
     press(again)

@@ -6,7 +6,7 @@ from tests.browser.conftest import PHONE
 from tests.stack import Stack
 
 
-def test_a_finger_asks_what_a_gain_means(browser: Browser, stack: Stack, cookies: StorageState) -> None:
+def test_a_tap_shows_the_meaning_of_a_gain(browser: Browser, stack: Stack, cookies: StorageState) -> None:
     context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
     page = context.new_page()
     page.goto(stack.url)
@@ -20,7 +20,7 @@ def test_a_finger_asks_what_a_gain_means(browser: Browser, stack: Stack, cookies
     context.close()
 
 
-def test_a_key_asks_what_a_figure_of_the_link_means(page: Page, stack: Stack) -> None:
+def test_a_key_shows_the_meaning_of_a_link_figure(page: Page, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/system")
     link = page.get_by_role("region", name="Serial link")
     meaning = link.get_by_text("From a reliable frame to its acknowledgement")

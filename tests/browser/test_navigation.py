@@ -1,4 +1,4 @@
-"""From page to page: each has its title, its heading gets the focus, and the current tab is in view."""
+"""Navigation: each page has its title, its heading gets the focus, and the current tab is in view."""
 
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, expect
@@ -48,7 +48,7 @@ def test_the_heading_of_the_next_page_gets_the_focus(page: Page, name: str) -> N
     expect(page.get_by_role("heading", level=1, name=name)).to_be_focused()
 
 
-def test_views_of_one_page_leave_the_focus_on_their_tab(page: Page, stack: Stack) -> None:
+def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/tune/response")
     tab = page.get_by_role("navigation", name="Tuning views").get_by_role("link", name="Parameters")
     tab.focus()
@@ -57,7 +57,7 @@ def test_views_of_one_page_leave_the_focus_on_their_tab(page: Page, stack: Stack
     expect(tab).to_be_focused()
 
 
-def test_the_tab_of_tune_that_one_is_on_is_in_view_on_a_phone(
+def test_the_current_tab_of_tune_is_in_view_on_a_phone(
     browser: Browser, stack: Stack, cookies: StorageState
 ) -> None:
     context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True)

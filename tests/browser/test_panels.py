@@ -1,4 +1,4 @@
-"""The panels of Operate: arranged by keys and by hand, kept under names; panels of one's own, shut in."""
+"""The panels of Operate: arranged by keys and mouse, stored by name; own panels, isolated."""
 
 import json
 import re
@@ -50,7 +50,7 @@ export default async function panel(root) {
 
 @pytest.fixture
 def fresh(page: Page, stack: Stack) -> Iterator[Page]:
-    """The page; afterwards the server keeps no layout and no panel."""
+    """The page; afterwards the server has no layout and no panel."""
     yield page
     for layout in stack.api.get("/layouts").json():
         stack.api.delete(f"/layouts/{layout['id']}").raise_for_status()
@@ -84,7 +84,7 @@ def drag(page: Page, what: Locator, to: Locator) -> None:
     page.mouse.up()
 
 
-def test_panels_are_arranged_kept_and_reset(fresh: Page, stack: Stack) -> None:
+def test_panels_are_arranged_stored_and_reset(fresh: Page, stack: Stack) -> None:
     page = fresh
     camera = page.get_by_role("region", name="Camera")
     expect(camera).to_be_visible()
@@ -166,7 +166,7 @@ def test_a_layout_of_another_version_is_refused(fresh: Page, tmp_path: Path) -> 
     expect(page.get_by_role("region", name="sonar")).to_contain_text("which this version does not have")
 
 
-def test_a_panel_of_ones_own_hears_samples_and_reaches_nothing(fresh: Page, stack: Stack) -> None:
+def test_an_own_panel_gets_samples_and_has_no_other_access(fresh: Page, stack: Stack) -> None:
     page = fresh
     folder = stack.data / "panels"
     folder.mkdir()
@@ -189,7 +189,7 @@ def test_a_panel_of_ones_own_hears_samples_and_reaches_nothing(fresh: Page, stac
     expect(nosy.locator("#got")).to_have_text("nothing")
     assert {one for one in answered if not one.startswith("blob:")} == {f"{stack.url}/api/panels/frame"}
 
-    # Keys stay with the page, wherever somebody has clicked.
+    # Keys go to the page, also after a click into a panel.
     hold_to_arm(page)
     nosy.get_by_role("button").click()
     expect(nosy.get_by_role("button")).to_have_text("pressed")

@@ -1,4 +1,4 @@
-"""Parameters on the page: a gain changed while the robot swims, undone, kept in a profile and restored."""
+"""Parameters: a gain changed while armed, undone, saved in a profile and restored."""
 
 from collections.abc import Iterator
 
@@ -19,13 +19,13 @@ def value(stack: Stack, name: str) -> object:
 
 @pytest.fixture
 def amplitude(stack: Stack) -> Iterator[None]:
-    """Afterwards, and once the page has left, as it was."""
+    """Restores the amplitude once the page has been closed."""
     yield
     stack.api.post("/robot/commands/parameters", json={"values": {AMPLITUDE: 1.6}}).raise_for_status()
 
 
 @pytest.mark.usefixtures("amplitude")
-def test_a_gain_is_changed_live_undone_kept_and_restored(any_page: Page, stack: Stack) -> None:
+def test_a_gain_is_changed_live_undone_saved_and_restored(any_page: Page, stack: Stack) -> None:
     page = any_page
     page.goto(f"{stack.url}/#/tune/parameters")
     page.get_by_label("Find parameters").fill("pid metre")
@@ -45,7 +45,7 @@ def test_a_gain_is_changed_live_undone_kept_and_restored(any_page: Page, stack: 
     expect(gain).to_have_value(before)
     expect(changes.get_by_text("undone by Chromium").first).to_be_visible()
 
-    # What the chip keeps is changed the same way, and confirmed by the chip.
+    # Parameters of the chip are changed the same way, and confirmed by the chip.
     page.get_by_label("Find parameters").fill("")
     page.get_by_label(AMPLITUDE, exact=True).fill("0.9")
     page.get_by_role("button", name="Apply 1 change").click()
@@ -71,7 +71,7 @@ def test_a_gain_is_changed_live_undone_kept_and_restored(any_page: Page, stack: 
     assert value(stack, AMPLITUDE) == 0.9
 
 
-def test_a_viewer_sees_them_and_is_told_why_they_are_fixed(browser: Browser, stack: Stack) -> None:
+def test_a_viewer_sees_parameters_and_the_reason_why_they_are_fixed(browser: Browser, stack: Stack) -> None:
     with somebody(browser, stack, "viewer") as page:
         page.goto(f"{stack.url}/#/tune/parameters")
         expect(page.get_by_label(KP, exact=True)).to_be_disabled()

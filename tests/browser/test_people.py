@@ -9,7 +9,7 @@ from tests.browser.people import make_link, somebody
 from tests.stack import Stack
 
 
-def test_a_link_signs_in_and_leaves_no_trace(browser: Browser, stack: Stack) -> None:
+def test_a_link_signs_in_and_is_removed_from_the_address(browser: Browser, stack: Stack) -> None:
     link = make_link(stack, "viewer")
     with browser.new_context() as context:
         page = context.new_page()
@@ -51,7 +51,7 @@ def test_a_viewer_stops_and_does_not_arm(page: Page, browser: Browser, stack: St
         expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
 
 
-def test_an_operator_lets_in_promotes_and_revokes(page: Page, browser: Browser, stack: Stack) -> None:
+def test_an_operator_pairs_promotes_and_revokes(page: Page, browser: Browser, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/people")
     page.get_by_role("region", name="Invite").get_by_role("button", name="Create link").click()
     expect(page.get_by_alt_text("QR code of the link")).to_have_js_property("complete", True)
@@ -70,7 +70,7 @@ def test_an_operator_lets_in_promotes_and_revokes(page: Page, browser: Browser, 
         with guest.expect_websocket() as coming:
             page.get_by_role("button", name="Make operator: guest").click()
         expect(you).to_contain_text("guest, operator")
-        # Only a live socket can be told why it is closed.
+        # Only a live socket can receive the reason of its closing.
         coming.value.wait_for_event("framereceived")
 
         page.get_by_role("button", name="Revoke guest").click()

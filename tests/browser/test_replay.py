@@ -1,4 +1,4 @@
-"""A session replayed in the page that shows the robot: the depth of a moment, its label, and no commands."""
+"""Replay on the page of the robot: the depth at a moment, its label, and no commands."""
 
 import re
 
@@ -11,7 +11,7 @@ from tests.stack import Stack
 
 
 def record_a_dive(page: Page, stack: Stack) -> tuple[int, float, float]:
-    """Record a dive to 0.5 m. Returns the session, where a marker stands (s), and the depth there (m)."""
+    """Record a dive to 0.5 m. Returns the session, the time of a bookmark (s), and the depth there (m)."""
     session = stack.api.post("/sessions", json={"name": "to be replayed"}).json()["id"]
     hold_to_arm(page)
     wait_for_depth(page, 0.2, 0.3)
@@ -82,11 +82,11 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     page.keyboard.press("Escape")
     expect(page.locator(".now")).to_contain_text("disarmed")
     assert all(one.endswith("/robot/stop") for one in commands)
-    # What is shown is the recording still, and not what the robot did meanwhile.
+    # The page still shows the recording, and not what the robot did meanwhile.
     page.get_by_role("button", name="Next bookmark").click()
     wait_for_depth(page, there - 0.0051, there + 0.0051)
 
 
-def test_a_session_that_is_not_there(page: Page, stack: Stack) -> None:
+def test_a_replay_of_a_missing_session_is_reported(page: Page, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/replay/999999")
     expect(page.get_by_role("alert").get_by_text("There is no session 999999")).to_be_visible()

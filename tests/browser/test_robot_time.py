@@ -1,4 +1,4 @@
-"""Durations and times go by the robot's clock: the browser's may be years away from it."""
+"""Durations and times follow the robot's clock, even where the browser's is years off."""
 
 import re
 from datetime import datetime, timedelta
@@ -13,7 +13,7 @@ MINUTES = re.compile(r"\b0\d:\d\d\b")
 """A duration below ten minutes."""
 
 
-def test_a_recording_is_as_old_as_the_robot_says(page: Page, stack: Stack) -> None:
+def test_the_duration_of_a_recording_is_by_the_robot_s_clock(page: Page, stack: Stack) -> None:
     page.clock.install(time=AHEAD)
     session = stack.api.post("/sessions", json={"name": "timed"}).raise_for_status().json()["id"]
     try:
@@ -27,7 +27,7 @@ def test_a_recording_is_as_old_as_the_robot_says(page: Page, stack: Stack) -> No
         stack.api.post(f"/sessions/{session}/stop").raise_for_status()
 
 
-def test_an_invitation_lasts_as_long_as_the_robot_says(page: Page, stack: Stack) -> None:
+def test_the_validity_of_an_invitation_is_by_the_robot_s_clock(page: Page, stack: Stack) -> None:
     page.clock.install(time=AHEAD)
     page.goto(f"{stack.url}/#/people")
     page.reload()

@@ -1,4 +1,4 @@
-"""A scenario from the page: written, checked, run live, watched, and found as a session."""
+"""Scenarios: written, checked, run live, watched, and found as sessions."""
 
 import re
 
@@ -31,7 +31,7 @@ def open_scenarios(page: Page) -> None:
 
 
 def hold_to_run(page: Page) -> None:
-    """Run it on the running robot, as a person does."""
+    """Run the scenario on the running robot, as a person does."""
     page.get_by_role("radio", name="On the robot, live").check()
     hold = page.get_by_role("button", name="Hold to run live")
     expect(hold).to_be_enabled()
@@ -47,7 +47,7 @@ def robot_at_rest(stack: Stack) -> None:
 
 
 @pytest.mark.usefixtures("robot_at_rest")
-def test_the_shipped_ones_are_shown_with_what_happens(any_page: Page) -> None:
+def test_the_shipped_scenarios_are_shown_with_their_events(any_page: Page) -> None:
     open_scenarios(any_page)
     expect(any_page.get_by_role("radio")).to_have_count(7)
     expect(any_page.get_by_role("radio", name="In simulation")).to_be_checked()
@@ -62,7 +62,7 @@ def test_the_shipped_ones_are_shown_with_what_happens(any_page: Page) -> None:
 
 
 @pytest.mark.usefixtures("robot_at_rest")
-def test_one_is_written_run_and_found_as_a_session(page: Page, stack: Stack) -> None:
+def test_a_scenario_is_written_run_and_found_as_a_session(page: Page, stack: Stack) -> None:
     open_scenarios(page)
     page.get_by_role("button", name="Edit").click()
     text = page.get_by_role("textbox", name="Scenario as TOML")
@@ -85,7 +85,7 @@ def test_one_is_written_run_and_found_as_a_session(page: Page, stack: Stack) -> 
 
 
 @pytest.mark.usefixtures("robot_at_rest")
-def test_stop_on_the_page_ends_it(page: Page) -> None:
+def test_stop_ends_a_scenario(page: Page) -> None:
     open_scenarios(page)
     page.get_by_role("button", name="Edit").click()
     text = page.get_by_role("textbox", name="Scenario as TOML")
@@ -101,7 +101,7 @@ def test_stop_on_the_page_ends_it(page: Page) -> None:
 
 
 @pytest.mark.usefixtures("robot_at_rest")
-def test_one_click_does_not_run_it_live(page: Page) -> None:
+def test_one_click_does_not_run_a_scenario_live(page: Page) -> None:
     open_scenarios(page)
     page.get_by_role("radio", name="On the robot, live").check()
     hold = page.get_by_role("button", name="Hold to run live")

@@ -1,4 +1,4 @@
-"""The bystander's view, in a real browser: drawn only while it is looked at."""
+"""The bystander's view: rendered only while it is shown."""
 
 import re
 
@@ -29,7 +29,7 @@ def test_the_bystander_shows_the_robot_and_can_be_turned(any_page: Page) -> None
     expect(picture).to_be_hidden()
 
 
-def test_a_view_that_cannot_be_is_refused(stack: Stack) -> None:
+def test_an_invalid_view_is_refused(stack: Stack) -> None:
     answer = stack.api.put("/scene/view", json={"name": "top", "azimuth": 0, "elevation": 95, "distance": 1})
     assert answer.status_code == 422
     assert "elevation" in answer.json()["detail"]

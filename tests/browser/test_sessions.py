@@ -7,7 +7,7 @@ from playwright.sync_api import Page, expect
 from tests.stack import Stack
 
 
-def test_a_session_is_kept_and_found_again(page: Page, stack: Stack) -> None:
+def test_a_session_is_recorded_and_found_again(page: Page, stack: Stack) -> None:
     stack.api.post("/sessions", json={"name": "another"}).raise_for_status()
     stack.api.post(f"/sessions/{newest(stack)}/stop").raise_for_status()
 

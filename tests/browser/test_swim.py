@@ -1,4 +1,4 @@
-"""The main job, in a real browser on the real firmware: dive, see the card, follow, return, stop, export."""
+"""The main task on the real firmware: dive, detect the card, follow, return, stop, export."""
 
 import csv
 import io
@@ -21,7 +21,7 @@ from tests.stack import Stack
 
 
 def depth(page: Page) -> float:
-    """The depth that the page shows, m."""
+    """The shown depth, m."""
     return float(page.locator(".reading", has_text="Depth").locator(".value").inner_text())
 
 
@@ -115,7 +115,7 @@ def test_escape_stops_from_anywhere(page: Page) -> None:
     expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
 
 
-def test_both_sizes_show_what_matters(any_page: Page) -> None:
+def test_both_sizes_show_the_essential_elements(any_page: Page) -> None:
     stop = any_page.get_by_role("button", name="STOP")
     expect(stop).to_be_in_viewport(ratio=1)
     box = stop.bounding_box()
@@ -136,7 +136,7 @@ def test_both_sizes_show_what_matters(any_page: Page) -> None:
         ('{"name": "depth", "controller": "pid", "gains": {"kq": 1}}', "no gain 'kq'"),
     ],
 )
-def test_refused_controllers_are_told_in_words(stack: Stack, body: str, why: str) -> None:
+def test_a_refused_controller_is_reported_with_the_reason(stack: Stack, body: str, why: str) -> None:
     before = stack.api.get("/robot").json()["loops"]
     json = {"Content-Type": "application/json"}
     answer = stack.api.post("/robot/commands/loop", content=body, headers=json)
@@ -145,7 +145,7 @@ def test_refused_controllers_are_told_in_words(stack: Stack, body: str, why: str
     assert stack.api.get("/robot").json()["loops"] == before
 
 
-def test_a_lost_board_is_named_and_comes_back(page: Page, stack: Stack) -> None:
+def test_a_lost_board_is_reported_and_recovers(page: Page, stack: Stack) -> None:
     expect(page.get_by_role("button", name="Hold to arm")).to_be_visible()
     board = stack.child("build/board")
     board.suspend()
@@ -159,13 +159,13 @@ def test_a_lost_board_is_named_and_comes_back(page: Page, stack: Stack) -> None:
     expect(page.get_by_role("button", name="Hold to arm")).to_be_visible()
 
 
-def test_a_reload_keeps_what_happened(page: Page) -> None:
+def test_a_reload_keeps_the_events(page: Page) -> None:
     hold_to_arm(page)
     page.keyboard.press("Escape")
     events = page.get_by_role("region", name="Events").get_by_role("listitem")
     expect(events.filter(has_text="Stopped by the operator.").first).to_be_visible()
     expect(events.filter(has_text="Armed.").first).to_be_visible()
-    # What was recorded at arming ends 5 s after it, and that is told as well.
+    # The automatic recording ends 5 s after disarming, with a notice.
     expect(events.nth(0)).to_contain_text("has ended.", timeout=10_000)
     told = events.count()
     page.reload()
@@ -182,14 +182,14 @@ def test_a_board_that_was_reset_is_disarmed_and_can_be_armed_again(stack: Stack)
     wait_for_state(stack, lambda state: state["mode"] == "failsafe" and state["epoch"] == epoch + 1)
     stack.api.post("/robot/commands/acknowledge").raise_for_status()
     wait_for_state(stack, lambda state: state["refusals"] == [])
-    # The chip wants half a second of steady traffic first, and says so where it refuses.
+    # The chip requires half a second of steady traffic first, and names that in a refusal.
     wait_for_state(stack, lambda _: stack.api.post("/robot/commands/arm").status_code == 204)
     wait_for_state(stack, lambda state: bool(state["armed"]))
     stack.api.post("/robot/stop").raise_for_status()
 
 
 def wait_for_state(stack: Stack, holds: Callable[[dict[str, Any]], bool]) -> None:
-    """Wait until the robot's state is so."""
+    """Wait until the robot's state meets the condition."""
     end = time.monotonic() + 10
     while not holds(state := stack.api.get("/robot").json()):
         assert time.monotonic() < end, state

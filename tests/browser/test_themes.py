@@ -39,7 +39,7 @@ def opened(
 
 
 def theme(page: Page) -> Locator:
-    """The document, which names its theme."""
+    """The document's element with its theme."""
     return page.locator("html")
 
 
@@ -57,7 +57,7 @@ def test_the_first_visit_follows_the_device(
         expect(theme(page)).to_have_attribute("data-theme", "sunlight")
 
 
-def test_a_choice_outlasts_the_device(browser: Browser, stack: Stack, cookies: StorageState) -> None:
+def test_a_chosen_theme_overrides_the_device_s(browser: Browser, stack: Stack, cookies: StorageState) -> None:
     with opened(browser, stack, cookies) as page:
         page.get_by_role("button", name="Page settings").click()
         page.get_by_role("radio", name="Sunlight").check()
@@ -95,7 +95,7 @@ def test_more_contrast_is_given_where_it_is_asked_for(
         assert colour(page.get_by_role("heading", name="Camera"), "color") != plain
 
 
-def test_forced_colours_tell_what_is_chosen_and_stop(
+def test_forced_colours_show_the_selection_and_stop(
     browser: Browser, stack: Stack, cookies: StorageState
 ) -> None:
     with opened(browser, stack, cookies, forced=True) as page:

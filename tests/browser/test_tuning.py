@@ -1,4 +1,4 @@
-"""Tuning from the page: a step response that is kept and laid over others, and gains from a relay."""
+"""Tuning: a stored step response overlaid with others, and gains from a relay."""
 
 import re
 from collections.abc import Iterator
@@ -28,13 +28,13 @@ def fill(page: Page, **values: str) -> None:
 
 @pytest.fixture
 def empty(stack: Stack) -> Stack:
-    """No runs are kept."""
+    """A robot without stored runs."""
     for run in stack.api.get("/tuning/runs").json()["runs"]:
         stack.api.delete(f"/tuning/runs/{run['id']}").raise_for_status()
     return stack
 
 
-def test_a_step_is_run_and_kept(empty: Stack, any_page: Page) -> None:
+def test_a_step_is_run_and_stored(empty: Stack, any_page: Page) -> None:
     page = any_page
     page.goto(f"{empty.url}/#/tune/response")
     expect(page.get_by_text("No step response yet")).to_be_visible()
@@ -63,7 +63,7 @@ def test_a_step_is_run_and_kept(empty: Stack, any_page: Page) -> None:
 
 @pytest.fixture
 def depth(stack: Stack) -> Iterator[dict[str, Any]]:
-    """The loop of the depth; afterwards, and once the page has left, as it was."""
+    """The depth loop; restored once the page has been closed."""
     loop: dict[str, Any] = stack.api.get("/robot").json()["loops"][0]
     yield loop
     pid = next(one for one in loop["controllers"] if one["name"] == "pid")

@@ -1,4 +1,4 @@
-"""A colour is picked in the picture, its mask looked at, and what is done about it chosen."""
+"""Vision: a colour is picked in the picture, its mask shown, and its action chosen."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -25,13 +25,13 @@ CARD_SHARE = 0.26 * 0.36 * 3 / 4
 
 @pytest.fixture
 def card(stack: Stack, request: pytest.FixtureRequest) -> None:
-    """Before the page opens, which then has the control that this takes."""
+    """Show a card before the page opens, so that the page has control afterwards."""
     stack.api.post("/robot/commands/card", json={"colour": request.param}).raise_for_status()
 
 
 @pytest.fixture
 def settings(stack: Stack) -> Iterator[dict[str, Any]]:
-    """As they are before, and again afterwards; and the set points."""
+    """The vision settings and set points, restored afterwards."""
     before: dict[str, Any] = stack.api.get("/vision").raise_for_status().json()["settings"]
     robot = stack.api.get("/robot").json()
     points = {
@@ -44,7 +44,7 @@ def settings(stack: Stack) -> Iterator[dict[str, Any]]:
 
 
 def pick_the_middle(page: Page) -> None:
-    """With the cross, which begins there."""
+    """Pick with the cross, which begins at this place."""
     picture = page.get_by_role("button", name="Camera picture")
     picture.click()
 
@@ -91,9 +91,7 @@ def test_a_colour_is_picked_and_acted_on(settings: dict[str, Any], any_page: Pag
 
 @pytest.mark.parametrize("card", ["marker 7"], indirect=True)
 @pytest.mark.usefixtures("card")
-def test_where_there_is_no_colour_nothing_is_picked(
-    settings: dict[str, Any], page: Page, stack: Stack
-) -> None:
+def test_a_place_without_colour_is_not_picked(settings: dict[str, Any], page: Page, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/tune/vision")
     page.get_by_label("ArUco markers").select_option("4x4_50")
     # Once the marker is drawn over the picture, its black and white are in the middle of it.

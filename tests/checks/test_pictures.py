@@ -17,7 +17,7 @@ def test_a_picture_that_no_page_shows_is_found(tmp_path: Path) -> None:
     assert find_needless_pictures(tmp_path) == ["docs/forgotten.png is shown on no page"]
 
 
-def test_too_many_pictures_are_told(tmp_path: Path) -> None:
+def test_too_many_pictures_are_found(tmp_path: Path) -> None:
     names = [f"{number}.jpg" for number in range(PICTURES_MAX + 1)]
     (tmp_path / "docs").mkdir()
     (tmp_path / "README.md").write_text("".join(f"![{name}](docs/{name})" for name in names))

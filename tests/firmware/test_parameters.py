@@ -78,7 +78,7 @@ def test_a_reset_brings_the_defaults_back(robot: Robot) -> None:
     tune(robot, "fins.amplitude", 0.8)
     robot.reset(ResetCause.EXTERNAL)
     robot.greet()
-    # What is refused is answered with what is in force.
+    # A refused value is answered with the value in force.
     assert tune(robot, "fins.amplitude", 0.0) == pytest.approx(1.6)
 
 

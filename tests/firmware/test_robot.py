@@ -204,7 +204,7 @@ def test_motor_reports_drives_as_the_bridges_got_them(robot: Robot) -> None:
     for _ in range(30):
         robot.say(navigation(z=1))
         drives = tuple(bridge.drive for bridge in robot.bridges)
-        # What is heard now was said at the tick before.
+        # Bytes received now were sent at the tick before.
         if any(isinstance(packet, Motor) for packet in robot.run(10)):
             assert robot.last(Motor).drive == drives
             assert robot.last(Motor).angle == pytest.approx([motor.fin for motor in robot.motors], abs=0.15)

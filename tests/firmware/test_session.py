@@ -97,7 +97,7 @@ def test_on_a_bad_line_every_command_and_every_line_arrives_once_and_in_order(pa
     pair.run(2.0)
     assert not pair.session.urgent
     assert {line.text for line in pair.lines} == {"START refused: epoch of another boot"}
-    # Where the queue was full, the board says how many it could not keep.
+    # Where the queue was full, the board reports the number of dropped lines.
     assert len(pair.lines) + pair.statuses[-1].debug_lost == 200
     assert pair.statuses[-1].debug_lost < 10
     assert all(earlier.time <= later.time for earlier, later in pairwise(pair.lines))

@@ -148,7 +148,7 @@ class Storm:
         before = stored()
         wait(lambda: stored() > before, "what the new runtime sends to be stored")
 
-    # Misfortunes; each says what it was
+    # Faults; each returns its name
 
     def _kill(self) -> str:
         name = self._chance.choice(VICTIMS)

@@ -175,7 +175,7 @@ def _no_picture(swim: Swim) -> Wrong:
 
 
 def _empty(swim: Swim) -> Wrong:
-    # From time 0 on the water tells of the battery; before, it was full.
+    # The water reports the battery from time 0 on; before, it was full.
     yield 0.0
     assert swim.now < 2 * BY_NAME["battery_low"].limit
 

@@ -159,7 +159,7 @@ class World:
                 self._problem("did not come back", f"after {kind}")
                 raise LookupError(self.report.table())
 
-    # What the host does
+    # Actions of the host
 
     def _converse(self) -> None:
         """Send three STARTs, one of which is for this boot; returns the answers."""
@@ -243,7 +243,7 @@ class World:
                     board.disturb_line(direction, kind, rate)
                 board.burst_line(direction, *_BURST)
 
-    # Time, and what the host hears
+    # Time, and the received bytes
 
     def _until(self, condition: Callable[[], bool], patience: float) -> bool:
         end = self.now + patience
@@ -303,7 +303,7 @@ class World:
         elif self._lines and line.time < self._lines[-1][0]:
             self._problem("out of order", f"{line} after {self._lines[-1]}")
         self._lines.append((line.time, line.text))
-        # What an earlier host asked may be answered to this one.
+        # Answers to requests of an earlier host may arrive at this one.
         if (
             self.joined
             and line.time > self._joined_at

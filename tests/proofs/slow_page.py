@@ -87,7 +87,7 @@ class SlowPage:
             if block.topic.kind is Kind.PICTURE:
                 continue
             wanted = expected.get(name)
-            # Below it: its sender was started anew, and nothing can be said.
+            # A smaller number: the sender was restarted, and losses are not known.
             if wanted is not None and block.first >= wanted:
                 self.missing[name] += block.first - wanted
                 self.told[name] += pending[name]

@@ -303,7 +303,7 @@ def test_bad_commands_are_refused_with_the_reason(
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
     folder = tmp_path_factory.mktemp("shared")
-    # Its state is soon what it stays; a camera "scene" says only after ten seconds that there is none.
+    # The state soon becomes constant; a camera "scene" reports a missing scene only after ten seconds.
     config = folder / "robot.toml"
     config.write_text((ROOT / "robot.toml").read_text().replace('camera = "scene"', 'camera = "card"'))
     rig = Rig(folder, "--config", str(config))
@@ -446,7 +446,7 @@ def test_ending_the_runtime_stops_the_board(rig: Rig) -> None:
     rig.ready()
     rig.arm()
     rig.board.wait(lambda: rig.board.count(Navigation.type) >= 1)
-    for _ in range(20):  # whoever is impatient asks more than once
+    for _ in range(20):  # an impatient user asks several times
         rig.process.send_signal(signal.SIGTERM)
     rig.board.wait(lambda: rig.board.count(Stop.type) >= 1)
     assert rig.process.wait(DEADLINE) == 0

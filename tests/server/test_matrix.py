@@ -134,7 +134,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/tuning/runs/{run}"): "viewer",
     ("PATCH", "/api/tuning/runs/{run}"): "operator",
     ("DELETE", "/api/tuning/runs/{run}"): "operator",
-    # The last: whoever has asked for it has to be paired again.
+    # Last: its requester must be paired again afterwards.
     ("POST", "/api/access/sign-out"): "viewer",
 }
 LIVE: dict[str, Least] = {"ping": "viewer", "watch": "viewer", "stop": "viewer", "drive": "control"}
@@ -205,7 +205,7 @@ class House:
     ) -> tuple[int, dict[str, str], bytes]:
         """The status, headers and body of an answer."""
         data = json.dumps({} if body is None else body).encode()
-        # An archive that says it is so large is refused before a process looks at it.
+        # An archive with too large a declared size is refused before a process reads it.
         size = 10**15 if path == "/api/imports" else len(data)
         headers = places | who.headers | {"content-length": str(size), "content-type": "application/json"}
         scope = self._scope("http", path, headers, address) | {"method": method, "scheme": "http"}

@@ -147,8 +147,7 @@ def _wait_for_board(test: CommTest, cell: GridCell, line: CommTestLine, message_
 
 
 def _request_result(request: bytes, cell: GridCell, line: CommTestLine) -> tuple[Counts | None, int]:
-    # On a line that is left alone, and whatever harmed bytes have made the chip answer before: so the answer
-    # tells of the numbers.
+    # The line has no faults from here on, and earlier bytes, such as an answer to damaged ones, are ignored.
     line.clear_faults()
     before = len(line.heard)
     for _ in range(QUESTIONS):

@@ -168,7 +168,7 @@ class _RunLoop:
             return
         self._receive_bytes()
         line.poll()
-        # Where bytes may come at any time, they are looked for in every step.
+        # On a line where bytes may arrive at any time, every step reads.
         self._next_poll = now + (GATHERING if line.gathering else min(line.wait(), PERIOD))
 
     def _receive_bytes(self) -> None:
@@ -216,7 +216,7 @@ class _RunLoop:
                 self._add_bookmark(event.words)
 
     def _refuse(self, event: TimedEvent, problem: str) -> None:
-        # As with an operator, whom the robot may refuse something: the experiment goes on.
+        # A refusal does not end the experiment, as with an operator.
         words = f"{event.words}: refused. {problem}"
         self._remarks.append(f"At {event.at:g} s: {words}")
         self._add_bookmark(words)

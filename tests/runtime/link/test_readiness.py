@@ -54,7 +54,7 @@ def test_a_receiver_stays_not_ready_until_it_reports_readiness() -> None:
     sender = Sender()
     sender.run(0.04)
     sender.channel.receive(told(0, NOT_READY), sender.now)
-    # A frame that says nothing of it: telemetry, or a number the other way.
+    # A frame without this flag: telemetry, or a number in the other direction.
     sender.channel.receive(Frame(1, 0, False, False, numbered_message()), sender.now)
     assert len(sender.run(0.9)) <= 1
 
@@ -87,6 +87,6 @@ def test_frames_held_while_not_ready_are_sent_again_when_still_missing() -> None
     sender = Sender()
     sender.run(0.04)
     sender.channel.receive(told(0, NOT_READY | 0b1), sender.now)
-    # It has the second, and waits for it all the same: it had no room to take it out.
+    # The receiver holds the second frame, but had no room to deliver it, and waits for it again.
     sender.channel.receive(told(1, 0), sender.now)
     assert 1 in [number for _, number, _ in sender.run(0.06)]

@@ -117,7 +117,7 @@ class World:
         self._to_host.send(self.board.say(packets, self.now), self.now)
 
     def _forget(self) -> None:
-        # An old greeting is one of its own kind: it says that the other end has restarted.
+        # Except an old greeting, which means that the other end has restarted.
         for old, wire in ((self._old_to_board, self._to_board), (self._old_to_host, self._to_host)):
             old += [frame for frame in wire.carried if not list(Decoder().feed(frame))]
             wire.carried.clear()

@@ -109,7 +109,7 @@ def test_parameters_for_a_disarmed_robot_are_refused_while_armed() -> None:
     box.armed = True
     with pytest.raises(RefusedError, match="rest can only be changed while the robot is disarmed"):
         box.registry.apply({"rest": 1, "a": 4})
-    # What it is already changes nothing.
+    # Setting the present value is no change.
     box.registry.apply({"rest": 0, "a": 4})
     assert box.held["a"] == 4.0
 

@@ -162,7 +162,7 @@ class TestAttached:
             board.hang_up()
             board.accept()
             assert board.exchange()[0] > deep - 200
-            # It answers first, and tells of it then.
+            # It answers first, and reports then.
             wait_for(lambda: len(caplog.records) >= 2, "word of both")
         assert [record.levelname for record in caplog.records] == ["WARNING", "INFO"]
 

@@ -47,7 +47,7 @@ def test_a_peer_reconnects_soon() -> None:
         with ZenohTransport("turtle", connect=[endpoint]) as staying:
             with ZenohTransport("turtle", listen=[endpoint]) as leaving:
                 heard(staying, leaving)
-            # Retries come ever later at first; by now they are as far apart as they become.
+            # Pauses between retries grow to a limit, which is reached by now.
             time.sleep(1.8)
             with ZenohTransport("turtle", listen=[endpoint]) as back:
                 assert heard(staying, back) < 0.5

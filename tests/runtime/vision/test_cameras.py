@@ -32,7 +32,7 @@ class TestCardCamera:
         assert len(boxes) > 5
 
     @pytest.mark.parametrize(("width", "height"), [(64, 48), (320, 240), (640, 480), (333, 101)])
-    def test_pictures_have_the_wanted_shape(self, width: int, height: int) -> None:
+    def test_pictures_have_the_configured_shape(self, width: int, height: int) -> None:
         picture = drawn(1.0, "blue", width, height)
         assert picture.shape == (height, width, 3)
         assert picture.dtype == np.uint8

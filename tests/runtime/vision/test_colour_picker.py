@@ -31,7 +31,7 @@ def test_a_picked_range_contains_its_pixels_at_any_hue(
     pixels = np.array([(hue, saturation, value) for hue in circle(low, span)], np.uint8)
     found = range_of(pixels)
     assert find_colour(pixels[np.newaxis], found).all()
-    # And no more of the circle than its margins, rounding included.
+    # The range exceeds the picked hues by no more than its margins, rounding included.
     held = (found.hue[1] - found.hue[0]) % 180
     assert held <= span + 2 * 5 + 2
 

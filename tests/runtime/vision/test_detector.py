@@ -180,7 +180,7 @@ def test_each_action_has_its_own_set_point() -> None:
     assert (sight.target, sight.set_point, sight.colour) == ("green", 2.0, "green")
     sight = look(patched((10, 10, 60, 60, RED)), actions=actions)
     assert (sight.target, sight.set_point) == ("red", 1.5)
-    # What has none is told of, and nothing is done.
+    # A colour without an action is reported, without an effect.
     sight = look(patched((10, 10, 60, 60, RED)), actions={"green": 2.0})
     assert (sight.target, sight.set_point, sight.colour) == (None, None, "red")
 

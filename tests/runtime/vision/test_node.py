@@ -118,7 +118,7 @@ def test_pictures_are_encoded_only_for_subscribers(listener: Listener, clock: Si
     assert (topic, taken) == ("picture", 20.0)
     decoded = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
     assert decoded is not None
-    # What was drawn, but for the losses of JPEG: nothing is added to it.
+    # The drawn picture, but for the losses of JPEG: without overlays.
     difference = np.abs(decoded.astype(float) - drawn(20.0, "yellow"))
     assert difference.mean() < 5
 
@@ -253,7 +253,7 @@ class TestThread:
         wait_for(lambda: len(listener.detections) >= 11, "eleven pictures")
         node.close()
         taken = [detection.taken for detection in listener.detections]
-        # However late single pictures are, none comes early and the rhythm is not outrun.
+        # Single pictures may be late, but none is early and the rate is not exceeded.
         assert (taken[10] - taken[0]) / 10 > 0.045
 
     def test_a_higher_rate_applies_at_once(self, listener: Listener) -> None:

@@ -48,7 +48,7 @@ def test_nothing_is_sent_to_a_closed_socket() -> None:
     async def send_after_the_end(socket: WebSocket) -> None:
         await socket.accept()
         assert (await socket.receive())["type"] == "websocket.disconnect"
-        # Starlette sees to it itself; this is what a sender meets that has not heard of the end yet.
+        # Starlette does this itself; here for a sender that has not received the end yet.
         raw: Any = socket._send
         try:
             await raw({"type": "websocket.send", "bytes": b"late"})

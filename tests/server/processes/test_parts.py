@@ -189,7 +189,7 @@ def test_children_of_a_process_end_with_it(tmp_path: Path) -> None:
 
     run(crew, scenario)
     children = [int(pid) for pid in log.read_text().split()]
-    # They have been killed; the system may still be about to bury them.
+    # They have been killed; the system may not have reaped them yet.
     asyncio.run(until(lambda: not any(map(alive, children)), "the last child's end"))
 
 

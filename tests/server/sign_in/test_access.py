@@ -283,7 +283,7 @@ def test_too_many_wrong_codes_are_refused_and_reported_once(settings: Settings) 
             told = await notices(socket, 1)
             assert told[0]["severity"] == "caution"
             assert "Too many wrong codes" in told[0]["text"]
-            # Nobody else is kept out, and the next notice is another one.
+            # Others are not refused, and the next notice is a different one.
             (await served.api.post("/access/tokens", json={"name": "script"})).raise_for_status()
             assert "script" in (await notices(socket, 1))[0]["text"]
 

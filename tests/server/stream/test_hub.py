@@ -95,7 +95,7 @@ def test_no_gap_and_no_duplicate_while_the_history_is_being_sent(monkeypatch: py
                 page.reading.clear()
         page.reading.set()
         total = 300 + 3 * ROWS_MESSAGES
-        # Of the past, the topics come one after the other.
+        # In the history the topics come one after the other.
         await until(lambda: len(page.numbers("depth")) >= total, "every depth")
         await until(lambda: len(page.numbers("debug")) >= total - 300, "every line")
         assert page.numbers("depth") == list(range(total))

@@ -58,7 +58,7 @@ def test_a_second_upload_does_not_depend_on_the_first(builder: Builder, empty: E
 def test_the_boot_loader_waits_for_a_slow_host(
     builder: Builder, empty: Empty, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # Much longer between two looks than between two of avrdude's commands.
+    # Much longer between two reads than between two of avrdude's commands.
     monkeypatch.setattr(module, "LOOK", 0.05)
     process, board = empty
     upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, Cancellation())

@@ -129,7 +129,7 @@ def test_a_cut_line_stops_the_fins_and_disarms() -> None:
     assert 3.4 < told.time_of("event", "The depth is too old") < 3.7
     assert not any(any(record.drive) for record in told.between("motor", 5.1, 7))
     assert any("disarmed" in text for text in told.texts("debug"))
-    # What the water saw of it while nobody could say: at rest half a second after the last command.
+    # The fins in the water while the link was cut: at rest half a second after the last command.
     fins = [record.fins for record in told.between("truth", 3.8, 7)]
     assert max(abs(one[0] - fins[0][0]) for one in fins) < 0.01
 

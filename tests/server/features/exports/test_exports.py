@@ -290,7 +290,7 @@ def test_an_impossible_export_is_refused_with_the_reason(
         write(store, session, **wanted)
 
 
-# Parquet's writer and the report say when they wrote.
+# Parquet's writer and the report add the time of writing.
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("parquet", "report")])
 def test_the_same_session_gives_the_same_bytes(store: Store, session: int, kind: str) -> None:
     assert write(store, session, format=kind).getvalue() == write(store, session, format=kind).getvalue()

@@ -39,7 +39,7 @@ def test_stale_or_foreign_driving_commands_are_dropped_and_counted(changes: Any,
         assert len(seen.driven) == 1
         counts = seen.arbiter.driving.counts.model_dump()
         assert {name: count for name, count in counts.items() if count} == {"passed": 1, reason: 1}
-        # What was dropped has no part in what counts as newer.
+        # A dropped command does not raise the newest number.
         seen.arbiter.drive(anna, seen.drive(sequence=9))
         assert len(seen.driven) == 2
 

@@ -71,7 +71,7 @@ def test_only_the_panel_s_frame_has_its_own_content_policy(settings: Settings) -
             assert "allow-same-origin" not in policy
             assert "default-src 'none'" in policy
             assert "frame-ancestors 'self'" in policy
-            assert "connect-src" not in policy  # as default-src says
+            assert "connect-src" not in policy  # by default-src
             (script,) = re.findall(r"<script>(.*?)</script>", frame.text, re.DOTALL)
             assert f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'" in policy
             assert frame.headers["x-frame-options"] == "SAMEORIGIN"

@@ -141,7 +141,7 @@ def test_a_seek_into_a_gap_returns_the_newest_sample_before_it(store: Store, set
     recording = read(store, record(store, settings, *batches))
     found = depths(read_blocks_between(recording, 110.0, 112.0, history=1.0).data)
     assert [int(record.time) for _, record in found] == [99]
-    # At the very moment of a sample it is the one before that was in force; the sample itself comes next.
+    # At the exact time of a sample the one before is in force; the sample itself follows.
     at = depths(read_blocks_between(recording, 100 + 50 * 0.02, 101.01, history=0.0).data)
     assert [int(record.time) for _, record in at] == [49, 50]
 
@@ -226,7 +226,7 @@ def test_rows_of_another_size_are_rewritten(store: Store, settings: Settings) ->
 
     asyncio.run(store.write(run))
     found = depths(read_blocks_between(read(store, session), 100.0, 101.0).data)
-    # What a field cannot hold becomes the nearest that it can.
+    # A value out of a field's range becomes the nearest valid one.
     assert [record.depth for _, record in found] == pytest.approx([0.25, 32.767, -32.768])
 
 

@@ -209,7 +209,7 @@ def test_a_session_resumes_after_an_earlier_restart_though_some_topics_sent_noth
         assert missing["runtime"].whole
         done = await wreck.after.recorder.stop(wreck.session)
         assert done.state == "complete"
-        # Of the old runtime as much as was heard, and of the new one everything.
+        # The received samples of the old runtime, and all samples of the new one.
         assert wreck.after.numbers() == [*range(15), *range(10)]
         assert wreck.after.numbers("debug") == [0, 2, 0]
 
@@ -240,7 +240,7 @@ def test_a_later_restart_is_recorded_from_its_first_number(wreck: Wreck) -> None
         wreck.send(depth_block(0, 5), debug_block(0, "a"), debug_block(1, "b"))
         await wreck.before.recorder.flush()
         await wreck.resume()
-        # Of neither topic anything has come since the server was killed.
+        # Neither topic has sent anything since the server was killed.
         wreck.after.recorder.add(debug_block(0, "anew"))
         wreck.after.recorder.add(depth_block(0, 3))
         await wreck.after.recorder.stop(wreck.session)
@@ -255,7 +255,7 @@ def test_another_run_of_the_runtime_is_another_recording(wreck: Wreck) -> None:
     async def scenario() -> None:
         await wreck.start()
         wreck.restart("runtime")
-        # It has come further than the one that was recorded.
+        # Its numbers are beyond the recorded ones.
         wreck.send(*(depth_block(5 * place, 5, start=200.0) for place in range(9)), heard=False)
         missing = await wreck.resume()
         assert not missing["runtime"].same_run
@@ -270,7 +270,7 @@ def test_another_run_that_has_sent_the_same_samples_is_another_recording(wreck: 
     async def scenario() -> None:
         await wreck.start()
         wreck.restart("runtime")
-        # The very numbers and times of what is stored: only the name of the run tells them apart.
+        # Numbers and times equal the stored ones: only the name of the run differs.
         wreck.send(depth_block(0, 5), depth_block(5, 5), depth_block(10, 5), heard=False)
         missing = await wreck.resume()
         assert not missing["runtime"].same_run

@@ -112,7 +112,7 @@ def test_for_a_day_after_a_clock_jump_nothing_is_purged_by_age(keep: Keep) -> No
         await keeper.age_bin(60.0)
         years = 10 * 365 * DAY
         begun = NOW - keeper.clock.now()
-        # As the steady clock goes on, so does the wall clock, but for the one jump.
+        # The wall clock advances with the steady clock, but for one jump.
         for passed, jumped in ((0.0, 0.0), (60.0, years), (DAY - 60.0, years)):
             keeper.clock.forward(passed)
             await keeper.retention.apply(begun + keeper.clock.now() + jumped)
@@ -227,7 +227,7 @@ def test_on_a_nearly_full_disk_the_oldest_are_binned_and_purged_after_an_hour(
         free = 10**9 - size - 16_384
         await keeper.retention.apply(NOW)
         assert (keeper.names(), keeper.names(deleted=True)) == (["newest"], ["older", "oldest"])
-        # Nothing more goes while these wait.
+        # Nothing else is removed while these wait in the bin.
         keeper.clock.forward(BIN_SECONDS)
         await keeper.retention.apply(NOW + BIN_SECONDS - 1)
         assert len(keeper.names(deleted=True)) == 2

@@ -150,6 +150,6 @@ def any_settings(draw: st.DrawFn) -> VisionSettings:
 def test_any_settings_survive_toml(settings: VisionSettings) -> None:
     text = tomli_w.dumps({"vision": settings.table()})
     assert read_document(text) == settings.table()
-    # What goes before all others keeps its place.
+    # The order of priority is preserved.
     assert list(tomllib.loads(text)["vision"].get("actions", {})) == list(settings.actions)
     assert parse(VisionSettings, read_document(text)) == settings
