@@ -41,7 +41,7 @@ class Experiment:
     looks: "Floats"
     """Times of the vision node's pictures."""
     seen: "Floats"
-    """1 where the wanted colour was in them, else 0."""
+    """1 where the target colour was in them, else 0."""
 
 
 def main() -> int:

@@ -14,7 +14,7 @@ class LinkStatistics(Record):
     bytes_delivered: Annotated[int, Wire("I", unit="B", meaning="received payloads that were passed on")]
     frames_received: Annotated[int, Wire("I", meaning="valid frames received")]
     frames_sent: Annotated[int, Wire("I", meaning="frames sent")]
-    frames_invalid: Annotated[int, Wire("I", meaning="frames thrown away: garbage, wrong checksum or length")]
+    frames_invalid: Annotated[int, Wire("I", meaning="frames dropped: garbage, wrong checksum or length")]
     frames_missed: Annotated[
         int, Wire("I", meaning="unreliable frames that their numbers show to be missing")
     ]

@@ -55,7 +55,7 @@ class MarkerFinder:
 class Sight:
     """The result of searching one picture.
 
-    `target_patches` are the patches of the selected colour. `patch`, of `colour`, is the reported one:
+    `target_patches` are the patches of the target colour. `patch`, of `colour`, is the reported one:
     the target's largest or, without a target, the largest of all. `set_point` (m) is the action for `target`.
     """
 
@@ -80,7 +80,7 @@ class Detector:
     def search(self, picture: Picture) -> Sight:
         """Searches a BGR picture (height, width, 3).
 
-        The selected colour comes first, then targets of actions in the actions' order, then the rest.
+        The target colour comes first, then targets of actions in the actions' order, then the rest.
         """
         settings = self.settings
         balanced = self.balance(picture)

@@ -65,7 +65,7 @@ class RateTimer:
 class VisionNode:
     """Searches pictures at a settable rate, in a thread of its own that survives failures of the camera.
 
-    Every picture gives one Detection: of the selected colour, else of a target with an action, else of the
+    Every picture gives one Detection: of the target colour, else of a target with an action, else of the
     largest patch of another colour, else an empty one. While `watched` is true of "picture", "mask" or
     "balanced", that picture is passed on with its time (s) as a JPEG file; a small picture is passed on
     every `THUMBNAIL_SECONDS`. All callbacks run on the node's thread. The camera "scene" is queried through

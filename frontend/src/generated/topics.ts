@@ -164,7 +164,7 @@ export const ROW_TOPICS = {
       { name: 'bytes_delivered', code: 'I', offset: 16, count: 1, scale: 1, unit: 'B', meaning: 'received payloads that were passed on' },
       { name: 'frames_received', code: 'I', offset: 20, count: 1, scale: 1, unit: '', meaning: 'valid frames received' },
       { name: 'frames_sent', code: 'I', offset: 24, count: 1, scale: 1, unit: '', meaning: 'frames sent' },
-      { name: 'frames_invalid', code: 'I', offset: 28, count: 1, scale: 1, unit: '', meaning: 'frames thrown away: garbage, wrong checksum or length' },
+      { name: 'frames_invalid', code: 'I', offset: 28, count: 1, scale: 1, unit: '', meaning: 'frames dropped: garbage, wrong checksum or length' },
       { name: 'frames_missed', code: 'I', offset: 32, count: 1, scale: 1, unit: '', meaning: 'unreliable frames that their numbers show to be missing' },
       { name: 'frames_repeated', code: 'I', offset: 36, count: 1, scale: 1, unit: '', meaning: 'reliable frames sent again' },
       { name: 'frames_duplicate', code: 'I', offset: 40, count: 1, scale: 1, unit: '', meaning: 'frames that came again and were not passed on again' },
@@ -328,7 +328,7 @@ export interface LinkRow {
   frames_received: number;
   /** frames sent */
   frames_sent: number;
-  /** frames thrown away: garbage, wrong checksum or length */
+  /** frames dropped: garbage, wrong checksum or length */
   frames_invalid: number;
   /** unreliable frames that their numbers show to be missing */
   frames_missed: number;

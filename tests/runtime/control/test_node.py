@@ -82,7 +82,7 @@ def test_commands_go_out_only_while_armed(rig: Rig) -> None:
     assert rig.ticks[1].latency == pytest.approx(0.2)
 
 
-def test_the_selected_colour_changes_the_set_point_and_its_loss_restores_it(rig: Rig) -> None:
+def test_the_target_colour_changes_the_set_point_and_its_loss_restores_it(rig: Rig) -> None:
     rig.depth(0.5)
     rig.see("yellow")
     rig.tick()
@@ -105,7 +105,7 @@ def test_a_seen_colour_or_marker_with_an_action_sets_its_set_point(rig: Rig) -> 
     rig.tick()
     rig.see(None, "marker 7", 1.5)
     rig.tick()
-    # The selected colour's own set point has priority over the general one.
+    # The target colour's own set point has priority over the general one.
     rig.see("yellow", "yellow", 2.0)
     rig.tick()
     rig.see("red")

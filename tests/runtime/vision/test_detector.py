@@ -63,14 +63,14 @@ def test_box_and_area_are_shares_of_the_picture() -> None:
     assert patch.area == pytest.approx(59 * 29 / 20000)
 
 
-def test_the_largest_patch_of_the_selected_colour_counts() -> None:
+def test_the_largest_patch_of_the_target_colour_counts() -> None:
     picture = patched((10, 10, 20, 20, YELLOW), (100, 10, 30, 30, YELLOW), (150, 60, 25, 25, YELLOW))
     patch = find(picture, "yellow")
     assert patch is not None
     assert patch.box.x == 0.5
 
 
-def test_the_selected_colour_has_priority_over_a_larger_patch() -> None:
+def test_the_target_colour_has_priority_over_a_larger_patch() -> None:
     picture = patched((10, 10, 80, 80, RED), (120, 10, 20, 20, YELLOW))
     found = {wanted: find(picture, wanted) for wanted in NAMES}
     assert {wanted: patch.colour if patch else None for wanted, patch in found.items()} == {
@@ -185,7 +185,7 @@ def test_each_action_has_its_own_set_point() -> None:
     assert (sight.target, sight.set_point, sight.colour) == (None, None, "red")
 
 
-def test_the_selected_colour_has_priority_over_every_action() -> None:
+def test_the_target_colour_has_priority_over_every_action() -> None:
     both = patched((10, 10, 60, 60, RED), (120, 10, 30, 30, YELLOW))
     sight = look(both, actions={"red": 1.5})
     assert (sight.target, sight.set_point) == ("yellow", None)

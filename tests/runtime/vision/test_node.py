@@ -95,7 +95,7 @@ def test_measures_its_own_time(listener: Listener, monkeypatch: pytest.MonkeyPat
     assert listener.detections[0].time == pytest.approx(20.03)
 
 
-def test_the_selected_colour_comes_first(listener: Listener, clock: SimulatedClock) -> None:
+def test_the_target_colour_comes_first(listener: Listener, clock: SimulatedClock) -> None:
     picture = drawn(1.0, "red")
     picture[:60, :60] = (0, 220, 240)
     node = listener.node(clock, ShakyCamera(picture, clock).open)
