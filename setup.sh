@@ -41,6 +41,7 @@ if [ "${1:-run}" = test ]; then
     need g++ g++
     need chromium chromium
     need chromium-headless-shell chromium-headless-shell
+    need firefox-esr firefox-esr
     need clang-format clang-format
     need iproute2 ip
     need clang clang

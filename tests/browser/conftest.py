@@ -82,16 +82,20 @@ def open_page(browser: Browser, stack: Stack, cookies: StorageState, size: Viewp
     )
     page = context.new_page()
     complaints: list[str] = []
-    # Every test finds the robot at the surface, wherever the one before has left it.
-    runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
-    with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
-        messages.query("simulator/reset", {}, RESET_SECONDS)
+    bring_to_surface(stack)
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.goto(stack.url)
     yield page
     context.close()
     put_to_rest(stack)
     assert complaints == []
+
+
+def bring_to_surface(stack: Stack) -> None:
+    """Put the robot where every test finds it, wherever the one before has left it."""
+    runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
+    with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
+        messages.query("simulator/reset", {}, RESET_SECONDS)
 
 
 def put_to_rest(stack: Stack) -> None:

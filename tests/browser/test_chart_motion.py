@@ -1,0 +1,118 @@
+"""Charts at normal speed, without reduced motion: drawn at each frame, moving with time, at right heights."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from playwright.sync_api import Browser, Page, StorageState
+
+from tests.browser.conftest import DESKTOP, bring_to_surface, put_to_rest
+from tests.browser.driving import hold_to_arm, wait_for_depth
+from tests.stack import Stack
+
+SECONDS = 10
+"""s that the chart shows."""
+WATCHED = 1.5
+"""s of motion."""
+LATE = 0.1
+"""s by which a drawn trace may be off."""
+PROFILE = """(chart) => {
+    const canvas = chart.querySelector('.u-over canvas');
+    const colour = getComputedStyle(chart.querySelector('.key')).borderTopColor.match(/\\d+/g).map(Number);
+    const { data, width, height } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    return Array.from({ length: width }, (_, x) => {
+        let sum = 0, weight = 0;
+        for (let y = 0; y < height; y++) {
+            const at = 4 * (y * width + x);
+            if (data[at + 3] < 100) continue;
+            if (colour.some((part, index) => Math.abs(part - data[at + index]) > 50)) continue;
+            sum += y;
+            weight++;
+        }
+        return weight === 0 ? null : sum / weight;
+    });
+}"""
+"""The row of the first trace in each column of a chart's canvas, found by its colour; null without one."""
+HELD = f"""async (chart) => {{
+    for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
+    return ({PROFILE})(chart);
+}}"""
+"""The rows once a pause is drawn."""
+MOTION = f"""async (chart, seconds) => {{
+    const profile = {PROFILE};
+    const frame = async () => (await new Promise(requestAnimationFrame), performance.now());
+    const context = chart.querySelector('.u-over canvas').getContext('2d');
+    let redraws = 0, frames = 0;
+    context.clearRect = function (...area) {{
+        redraws++;
+        CanvasRenderingContext2D.prototype.clearRect.apply(this, area);
+    }};
+    const began = await frame(), before = profile(chart);
+    redraws = 0;
+    let now = began;
+    while (now - began < 1000 * seconds) {{ now = await frame(); frames++; }}
+    const after = profile(chart);
+    delete context.clearRect;
+    return {{ redraws, frames, passed: (now - began) / 1000, before, after }};
+}}"""
+"""What a chart did in some seconds: redraws, frames of the browser, and its trace before and after."""
+
+
+@pytest.fixture
+def moving(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page]:
+    """The page as most people have it, with all its motion."""
+    context = browser.new_context(viewport=DESKTOP, storage_state=cookies, reduced_motion="no-preference")
+    page = context.new_page()
+    bring_to_surface(stack)
+    page.goto(stack.url)
+    yield page
+    context.close()
+    put_to_rest(stack)
+
+
+def test_charts_move_with_the_data_and_show_its_values(moving: Page) -> None:
+    panel = moving.get_by_role("region", name="Depth over time")
+    panel.get_by_label("Time shown").select_option(f"{SECONDS} s")
+    hold_to_arm(moving)
+    wait_for_depth(moving, 0.4, 1.0)
+
+    seen = panel.evaluate(MOTION, WATCHED)
+    assert seen["redraws"] >= 0.9 * seen["frames"]
+    before, after = (np.array(seen[name], dtype=float) for name in ("before", "after"))
+    passed = find_shift(before, after) * SECONDS / len(before)
+    assert abs(passed - seen["passed"]) < LATE
+
+    panel.get_by_role("button", name="Pause").click()
+    check_heights(moving, panel.evaluate(HELD))
+
+
+def find_shift(before: NDArray[np.float64], after: NDArray[np.float64]) -> int:
+    """The columns by which the later trace is the earlier one moved to the left."""
+    most = len(before) // 2
+    errors = [np.nanmean(np.abs(before[shift:] - after[: len(after) - shift])) for shift in range(most)]
+    return int(np.argmin(errors))
+
+
+def check_heights(page: Page, rows: list[Any]) -> None:
+    """Under the cursor the trace is as high as the value that is told there, on one scale for all."""
+    cursor = page.get_by_role("region", name="Depth over time").get_by_role("slider")
+    box = cursor.bounding_box()
+    assert box is not None
+    drawn = [column for column, row in enumerate(rows) if row is not None]
+    assert len(drawn) > len(rows) / 2
+    found = []
+    for column in drawn[20 : -20 : len(drawn) // 10]:
+        page.mouse.move(box["x"] + column, box["y"] + box["height"] / 2)
+        words = cursor.get_attribute("aria-valuetext") or ""
+        told = re.search(r"depth (−?[\d.]+)(?: to (−?[\d.]+))? m", words)
+        assert told is not None
+        depths = [float(one.replace("−", "-")) for one in told.groups() if one is not None]
+        found.append((float(np.mean(depths)), rows[column]))
+    depths, heights = np.array(found).T
+    assert np.ptp(depths) > 0.1
+    scale, zero = np.polyfit(depths, heights, 1)
+    assert scale > 0, "depth grows downwards"
+    assert np.abs(scale * depths + zero - heights).max() < 4

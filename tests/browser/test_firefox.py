@@ -1,0 +1,50 @@
+"""The page in a second browser engine: Debian's Firefox signs in, shows live depth, arms and stops."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.browser.conftest import bring_to_surface, put_to_rest
+from tests.browser.firefox import Firefox
+from tests.browser.pages import PAGES
+from tests.browser.people import make_link
+from tests.stack import Stack
+
+ESCAPE = "\ue00c"
+DEPTH = "Number([...document.querySelectorAll('.reading')].find((one) => one.textContent.includes('Depth'))"
+DEPTH += "?.querySelector('.value')?.textContent.replace('−', '-'))"
+VIEWS = [view for view in PAGES if "{" not in view.address]
+
+
+@pytest.fixture(scope="module")
+def firefox(tmp_path_factory: pytest.TempPathFactory, stack: Stack) -> Iterator[Firefox]:
+    """Signed in as an operator; what its console complains about fails the last test."""
+    bring_to_surface(stack)
+    with Firefox(tmp_path_factory.mktemp("profile")) as firefox:
+        firefox.open(make_link(stack, "operator"))
+        firefox.wait_for("document.querySelector('.stop')")
+        yield firefox
+        put_to_rest(stack)
+        assert firefox.complaints == []
+
+
+def test_firefox_dives_and_stops_by_a_key(firefox: Firefox, stack: Stack) -> None:
+    firefox.wait_for(f"Math.abs({DEPTH}) < 0.1")
+    firefox.wait_for("document.body.textContent.includes('Ready to arm')")
+    firefox.move_to_button("Hold to arm")
+    firefox.press_mouse()
+    firefox.wait_for("document.body.textContent.includes('The fins may move')")
+    firefox.release_mouse()
+    assert stack.api.get("/robot").json()["armed"]
+    firefox.wait_for(f"{DEPTH} > 0.2")
+    firefox.press_key(ESCAPE)
+    firefox.wait_for("!document.body.textContent.includes('The fins may move')")
+    assert not stack.api.get("/robot").json()["armed"]
+
+
+def test_firefox_opens_every_page(firefox: Firefox, stack: Stack) -> None:
+    for view in VIEWS:
+        firefox.open("about:blank")
+        firefox.open(f"{stack.url}/#/{view.address}")
+        headings = "[...document.querySelectorAll('h1, h2')]"
+        firefox.wait_for(f"{headings}.some((one) => one.textContent.includes('{view.shows}'))")
