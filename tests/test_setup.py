@@ -56,7 +56,7 @@ def test_a_complete_machine_needs_nothing(path: Path) -> None:
         ("avrdude", "avrdude"),
     ],
 )
-def test_what_is_missing_is_one_clear_line(path: Path, name: str, words: str) -> None:
+def test_missing_programs_are_reported_in_one_line(path: Path, name: str, words: str) -> None:
     (path / name).unlink()
     done = set_up(path)
     assert done.returncode == 1

@@ -56,7 +56,7 @@ struct __attribute__((packed)) Start {
 };
 static_assert(sizeof(Start) == 2, "Start has another size");
 
-// Host to board: the commanded force and torque, each as a share of the maximum. Expires after 500 ms.
+// Host to board: the commanded force and torque, each as a share of the maximum. Expires after 250 ms.
 struct __attribute__((packed)) Navigation {
   static constexpr uint8_t kType = 0x02;
   int8_t x;  // forwards; x 0.00787401575

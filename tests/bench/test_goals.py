@@ -45,5 +45,5 @@ def test_a_figure_differs_where_all_rounds_do(before: list[float], now: list[flo
     assert verdict("page.redraw_ms", before, now) == expected
 
 
-def test_where_no_goal_says_so_no_direction_is_better() -> None:
+def test_without_a_goal_no_direction_is_better() -> None:
     assert verdict("rss.server_mb", [100.0, 101.0], [120.0, 121.0]) == "more"

@@ -45,7 +45,7 @@ def test_a_part_that_is_measured_again_has_failed_no_more(file: Path) -> None:
     assert Results(file).failures == {}
 
 
-def test_a_figure_that_a_part_gives_no_more_is_gone(file: Path) -> None:
+def test_a_figure_that_a_part_no_longer_returns_is_removed(file: Path) -> None:
     results = Results(file)
     results.add("page", {"page.fps": 60.0}, {})
     results.add("page", {"page.redraw_ms": 8.0}, {})

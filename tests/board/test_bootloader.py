@@ -229,7 +229,7 @@ def test_power_off_and_on_leaves_only_the_memories(tmp_path: Path) -> None:
         assert monitor.transfer(0x69, b"\x75", 1)[0] != REFUSED_ADDRESS
 
 
-def test_the_water_stays_when_the_power_goes(tmp_path: Path) -> None:
+def test_the_water_stays_connected_without_power(tmp_path: Path) -> None:
     with both(tmp_path) as rig:
         asked = []
 

@@ -153,7 +153,7 @@ def test_its_parameters_are_taken_and_clamped_while_it_swims(robot: Robot) -> No
     assert status.stack_free > 50
 
 
-def test_a_motor_packet_tells_when_the_fins_were_measured(robot: Robot) -> None:
+def test_a_motor_packet_carries_the_time_of_its_measurement(robot: Robot) -> None:
     robot.arm()
     packets = robot.converse(1.0, DOWN)
     # They share a frame, and the fins' turn in a tick comes first.

@@ -116,7 +116,7 @@ def test_characters_leave_without_gaps(make_rig: Make) -> None:
     assert rig.board.stats()["framing_errors_host"] == 0
 
 
-def test_the_host_gets_eight_bytes_at_a_time_or_what_came_before_a_silence(make_rig: Make) -> None:
+def test_the_host_gets_eight_bytes_at_a_time_or_the_bytes_before_a_pause(make_rig: Make) -> None:
     rig = make_rig("echo")
     rig.board.run(START)
     rig.port.write(random_bytes(12))

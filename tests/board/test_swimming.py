@@ -90,7 +90,7 @@ def test_an_encoder_that_drifts_turns_its_fin_away(robot: Robot, water: Simulato
     assert true[2] - true[3] == pytest.approx(0, abs=0.15)
 
 
-def test_a_gyroscope_that_jumps_and_a_beacon_that_goes(robot: Robot, water: Simulator) -> None:
+def test_a_jumping_gyroscope_and_a_disappearing_beacon(robot: Robot, water: Simulator) -> None:
     quiet = all_of(robot.listen(1.0), Imu)
     assert max(abs(part) for packet in quiet for part in packet.rate) < 0.05
     assert last(robot.listen(0.3), Beacon).right

@@ -101,7 +101,7 @@ def refused(board: EmulatorClient) -> bool:
     return False
 
 
-def test_a_board_whose_water_goes_runs_on_with_the_last_values(make_rig: Make) -> None:
+def test_after_losing_the_water_the_board_runs_on_with_the_last_values(make_rig: Make) -> None:
     rig = make_rig("monitor")
     monitor = Monitor(rig)
     monitor.boot()

@@ -86,9 +86,7 @@ def colour(place: Locator, name: str) -> str:
     return str(place.evaluate(f"(one) => getComputedStyle(one)['{name}']"))
 
 
-def test_more_contrast_is_given_where_it_is_asked_for(
-    browser: Browser, stack: Stack, cookies: StorageState
-) -> None:
+def test_more_contrast_on_the_device_s_request(browser: Browser, stack: Stack, cookies: StorageState) -> None:
     with opened(browser, stack, cookies) as page:
         plain = colour(page.get_by_role("heading", name="Camera"), "color")
     with opened(browser, stack, cookies, contrast="more") as page:

@@ -93,7 +93,7 @@ def test_host_of_other_definitions_changes_nothing(robot: Robot) -> None:
     assert tune(robot, "fins.amplitude", 0.0) == pytest.approx(1.6)
 
 
-def test_every_answer_comes_though_the_queue_is_full(robot: Robot) -> None:
+def test_every_answer_is_sent_despite_a_full_queue(robot: Robot) -> None:
     """After a start debug lines fill the board's queue; each answer waits for room."""
     robot.say(hello())
     robot.run(20)

@@ -38,7 +38,7 @@ def span(packets: list[Packet]) -> float:
     return max(spans)
 
 
-def test_boots_disarmed_without_motor_power_and_says_hello(robot: Robot) -> None:
+def test_boots_disarmed_without_motor_power_and_sends_hello(robot: Robot) -> None:
     robot.run(300)
     assert not armed(robot)
     assert not robot.power

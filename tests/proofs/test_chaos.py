@@ -11,7 +11,7 @@ pytestmark = pytest.mark.stack
 
 
 @pytest.mark.timeout(400)
-def test_what_is_lost_in_a_minute_of_chaos_is_counted(tmp_path: Path) -> None:
+def test_losses_in_a_minute_of_chaos_are_counted(tmp_path: Path) -> None:
     report = json.loads(run(60.0, 4, tmp_path))
     assert report["problems"] == []
     assert report["samples"] > 0

@@ -26,7 +26,7 @@ def field() -> Iterator[Field]:
 
 
 @pytest.mark.parametrize("name", ENTRANCES)
-def test_nothing_gets_in(field: Field, name: str) -> None:
+def test_no_hostile_input_takes_effect(field: Field, name: str) -> None:
     for _ in range(TIMES):
         ENTRANCES[name](field)
     field.survey()

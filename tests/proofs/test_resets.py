@@ -11,9 +11,7 @@ from tests.proofs.resets import Reset, measure, prepare
     ("program", "kinds", "resets"),
     [("robot", ("host",), 7), ("robot", ("reset pin", "power"), 8), ("robot_hang", ("watchdog",), 5)],
 )
-def test_the_session_comes_back_and_nothing_comes_twice(
-    program: str, kinds: Sequence[Reset], resets: int
-) -> None:
+def test_the_session_recovers_without_duplicates(program: str, kinds: Sequence[Reset], resets: int) -> None:
     prepare()
     report = measure(program, kinds, resets, seed=11)
     assert not report.problems, report.table()

@@ -255,7 +255,7 @@ def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
     assert rig.listener.texts("event")[-1] == "Stopped by the operator."
 
 
-def test_what_the_board_sends_is_published_unchanged(rig: Rig) -> None:
+def test_packets_of_the_board_are_published_unchanged(rig: Rig) -> None:
     rig.ready()
     rig.arm()
     rig.listener.wait(lambda: "armed" in rig.listener.texts("debug"))

@@ -123,7 +123,7 @@ class Start(Packet):
 
 @_packet(0x02)
 class Navigation(Packet):
-    """Host to board: the commanded force and torque, each as a share of the maximum. Expires after 500 ms."""
+    """Host to board: the commanded force and torque, each as a share of the maximum. Expires after 250 ms."""
 
     x: Annotated[float, Wire("b", scale=1 / 127, meaning="forwards")]
     y: Annotated[float, Wire("b", scale=1 / 127, meaning="to the right")]

@@ -21,26 +21,26 @@ def starts(clock: SimulatedClock, life: float, *, killed: bool, seconds: float) 
 
 
 @pytest.mark.parametrize("life", [1.0, 1.5, 3.0, 9.9, 60.0])
-def test_what_had_come_up_and_is_killed_is_never_waited_for_long(life: float) -> None:
+def test_the_pause_after_a_kill_of_a_started_process_is_short(life: float) -> None:
     pauses = list(starts(SimulatedClock(), life, killed=True, seconds=1000 * life))
     assert len(pauses) > 800
     assert max(pauses) <= KILLED_MAX <= 2.0 - 3 * START
 
 
 @pytest.mark.parametrize("killed", [False, True], ids=["by its own error", "killed while it starts"])
-def test_what_dies_before_it_has_come_up_leaves_the_processor_to_others(killed: bool) -> None:
+def test_pauses_of_a_process_that_dies_at_its_start_leave_the_processor_to_others(killed: bool) -> None:
     pauses = list(starts(SimulatedClock(), START, killed=killed, seconds=600))
     assert pauses[:7] == [0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
     assert set(pauses[7:]) == {MAX}
     assert len(pauses) * START < 0.1 * 600
 
 
-def test_an_error_of_its_own_is_waited_for_however_long_it_lived() -> None:
+def test_pauses_after_own_errors_are_long_until_a_steady_run() -> None:
     assert max(starts(SimulatedClock(), 3.0, killed=False, seconds=600)) == MAX
     assert max(starts(SimulatedClock(), 10.0, killed=False, seconds=600)) == 0
 
 
-def test_a_kill_after_it_had_come_up_ends_the_long_pauses() -> None:
+def test_a_kill_of_a_started_process_ends_the_long_pauses() -> None:
     backoff = Backoff()
     for _ in range(10):
         backoff.after(0.0, killed=False)
@@ -48,7 +48,7 @@ def test_a_kill_after_it_had_come_up_ends_the_long_pauses() -> None:
     assert backoff.after(0.0, killed=False) == 2 * KILLED_MAX
 
 
-def test_signals_of_others_are_kills_and_those_of_its_own_errors_are_not() -> None:
+def test_signals_from_outside_are_kills_and_those_of_own_errors_are_not() -> None:
     assert all(is_killed(-number) for number in (SIGKILL, SIGTERM, SIGINT, SIGHUP))
     assert is_killed(None)
     assert not any(is_killed(-number) for number in (SIGSEGV, SIGABRT, SIGBUS))

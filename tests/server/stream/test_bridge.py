@@ -46,7 +46,7 @@ def test_a_lost_request_is_repeated_soon(settings: Settings, monkeypatch: pytest
     assert process.asked[0] < 0.5
 
 
-def test_a_slow_process_is_given_all_the_time(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_slow_process_gets_the_whole_timeout(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
     process = Process(needs=2.0)
     assert fetch(settings, monkeypatch, process) is ANSWER
     assert process.asked[-1] == BACKLOG_SECONDS

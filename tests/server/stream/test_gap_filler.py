@@ -199,7 +199,7 @@ def test_runs_without_a_name_are_not_requested() -> None:
 
 
 @given(st.lists(st.sampled_from(["lost", "heard", "twice", "later"]), max_size=30))
-def test_whatever_is_lost_on_the_way_is_filled_in_the_end(fates: list[str]) -> None:
+def test_all_losses_on_the_way_are_filled_in_the_end(fates: list[str]) -> None:
     async def scenario(receiver: Receiver) -> None:
         sender = receiver.alive = Sender("a")
         held: list[Block] = []

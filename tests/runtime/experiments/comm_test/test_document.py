@@ -41,7 +41,7 @@ def test_the_thesis_s_own_example_is_75_cells() -> None:
 
 
 @pytest.mark.parametrize("changes", [{"name": "\ud800"}, {"\udfff": 1}, {"ino_path": "\ud800"}])
-def test_halves_of_characters_are_refused(changes: dict[str, Any]) -> None:
+def test_lone_surrogates_are_refused(changes: dict[str, Any]) -> None:
     assert "surrogates not allowed" in problems(changed(**changes))[0]
 
 

@@ -367,7 +367,7 @@ def test_the_program_ends_with_its_port(tmp_path: Path) -> None:
     assert not (tmp_path / "link").is_symlink()
 
 
-def test_the_program_says_why_it_cannot_start(tmp_path: Path) -> None:
+def test_the_program_reports_why_it_cannot_start(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "robot_runtime.experiments.line_faults.pty_proxy", "--port", "/nowhere"]
     done = subprocess.run([*command, "--link", str(tmp_path / "link")], capture_output=True, text=True)
     assert done.returncode == 1

@@ -73,5 +73,5 @@ def test_a_line_without_end_is_refused() -> None:
         list(lines.feed(b"x" * (LINE_BYTES_MAX + 1)))
 
 
-def test_bytes_that_are_no_text_do_no_harm() -> None:
+def test_bytes_that_are_no_text_are_ignored() -> None:
     assert len(list(LineBuffer().feed(b"\xff\xfe\n"))) == 1

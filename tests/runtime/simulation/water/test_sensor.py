@@ -58,7 +58,7 @@ def test_offset_is_drawn_with_its_size_and_stays() -> None:
 
 
 @pytest.mark.parametrize("seconds", [4, 16])
-def test_offset_wanders_with_the_root_of_time(seconds: int) -> None:
+def test_the_offset_s_random_walk_grows_with_the_root_of_time(seconds: int) -> None:
     ends = []
     for seed in range(600):
         sensor = made(SensorQuality(walk=0.3, rate=1.0), seed=seed)

@@ -55,7 +55,7 @@ def test_dives_with_tips_up_and_floats_up_when_the_fins_rest() -> None:
     assert depth(rest(simulator, 10)) < dived
 
 
-def test_pressure_tells_the_true_depth() -> None:
+def test_pressure_follows_the_true_depth() -> None:
     simulator = Simulator(QUIET, seed=1)
     reading = swim(simulator, Flapping((UP,) * 4), 3)[-1]
     # The sensor is on the back, 5 cm above the centre.

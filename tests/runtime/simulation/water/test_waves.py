@@ -130,7 +130,7 @@ def test_current_and_waves_add_up() -> None:
     assert both == pytest.approx((alone[0] + 0.2, alone[1] - 0.1, alone[2] + 0.05))
 
 
-def test_current_turns_from_north_to_east_and_says_how_it_accelerates() -> None:
+def test_a_current_that_turns_from_north_to_east_reports_its_acceleration() -> None:
     world = World(SimulationParameters())
     world.set_current(Current(0.3, 0.0, 0.0, turning=0.1), time=7.0)
     place = (0.0, 0.0, 1.0)
@@ -150,7 +150,7 @@ def floating_in(body: Body, waves: Waves, seconds: float) -> list[Vector]:
     return places
 
 
-def test_neutral_hull_goes_round_with_the_water() -> None:
+def test_a_neutral_hull_circles_with_the_water() -> None:
     """Circles whose radius decays with depth, and the Stokes drift, a²ωk·e^(-2kz)."""
     waves, depth = Waves(0.05, 2.0, 0.0), 1.0
     body = pushed(NEUTRAL, depth=depth)

@@ -144,7 +144,7 @@ def test_parquet_keeps_numbers_types_and_units(store: Store, session: int) -> No
     assert utc.timestamp() == pytest.approx(row.started + 0.5, abs=1e-5)
 
 
-def test_parquet_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_parquet_without_its_package_names_the_installation(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
     with pytest.raises(ExportRequestError, match=r"pip install mucat\[parquet\]"):

@@ -72,7 +72,7 @@ def test_it_records_while_armed_and_until_the_fins_rest(store: Store, settings: 
     play(store, settings, scenario)
 
 
-def test_it_leaves_an_operator_s_session_alone(store: Store, settings: Settings) -> None:
+def test_automatic_recording_does_not_end_an_operator_s_session(store: Store, settings: Settings) -> None:
     async def scenario(watched: _ProcessGroup) -> None:
         row = new_row(settings, watched.clock, "mine", "", "null")
         await watched.recorder.start(row)

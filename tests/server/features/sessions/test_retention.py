@@ -193,7 +193,7 @@ def test_a_purge_returns_space_to_the_disk(keep: Keep, monkeypatch: pytest.Monke
     keep(NO_RULES, scenario)
 
 
-def test_old_sessions_are_binned_except_kept_tagged_or_recording_ones(keep: Keep) -> None:
+def test_old_sessions_are_binned_except_protected_tagged_or_recording_ones(keep: Keep) -> None:
     async def scenario(keeper: Keeper) -> None:
         for name in ("old", "kept", "tagged"):
             await keeper.record(name, 31 * DAY)

@@ -100,7 +100,7 @@ def test_picking_returns_the_runtime_s_answer(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_the_table_of_robot_toml_is_given_and_read(settings: Settings) -> None:
+def test_the_table_of_robot_toml_is_downloaded_and_uploaded(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         answer = await served.api.get("/vision/toml")
         assert 'filename="vision.toml"' in answer.headers["content-disposition"]
