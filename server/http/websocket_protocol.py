@@ -35,6 +35,18 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
             raise ClientDisconnected
         self.transport.write(_head(len(data)) + data)
 
+    def shutdown(self) -> None:
+        """Close the connection as the server ends.
+
+        uvicorn's own raises InvalidState where the client has closed it and not read everything yet, and the
+        server then ends without its lifespan.
+        """
+        if self.handshake_complete and not self.close_sent and self.conn.state is not State.OPEN:
+            self.stop_keepalive()
+            self.transport.close()
+        else:
+            super().shutdown()
+
 
 def _head(size: int) -> bytes:
     if size <= _SHORT:

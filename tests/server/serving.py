@@ -71,9 +71,9 @@ class Served:
 
 @asynccontextmanager
 async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> AsyncIterator[Served]:
-    """Run the server of these settings, on a port of the system's choice."""
+    """Run the server of these settings at their host, on a port of the system's choice."""
     certificate = prepare_certificate(settings) if settings.tls else None
-    with open_socket("127.0.0.1", 0) as listener:
+    with open_socket(settings.host, 0) as listener:
         settings = replace(settings, port=listener.getsockname()[1])
         await place_with_samples(settings.data)
         prepare(settings.data)

@@ -1,12 +1,14 @@
 """Binary messages of any size, in frames as every WebSocket client reads them."""
 
 import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
 from fastapi import FastAPI, WebSocket
 from uvicorn.protocols.utils import ClientDisconnected
-from websockets.asyncio.client import connect
+from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosedOK
 
 from server.http.serving import make_server, open_socket
@@ -63,6 +65,38 @@ def test_nothing_is_sent_to_a_closed_socket() -> None:
 
     asyncio.run(_serve(app, scenario))
     assert [type(problem) for problem in outcomes] == [ClientDisconnected]
+
+
+def test_the_server_ends_in_order_while_a_page_that_has_left_still_has_unread_data() -> None:
+    ended: list[bool] = []
+    clients: list[ClientConnection] = []
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        ended.append(True)
+        clients[0].transport.abort()
+
+    app = FastAPI(lifespan=lifespan)
+    left = asyncio.Event()
+
+    @app.websocket("/")
+    async def send_much(socket: WebSocket) -> None:
+        await socket.accept()
+        await socket.send_bytes(bytes(5_000_000))
+        while (await socket.receive())["type"] != "websocket.disconnect":
+            pass
+        left.set()
+
+    async def scenario(url: str) -> None:
+        clients.append(client := await connect(url, max_size=None))
+        client.transport.pause_reading()
+        client.protocol.send_close(1001)
+        client.transport.write(b"".join(client.protocol.data_to_send()))
+        await left.wait()
+
+    asyncio.run(_serve(app, scenario))
+    assert ended == [True]
 
 
 async def _serve(app: FastAPI, scenario: Any) -> None:
