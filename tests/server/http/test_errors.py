@@ -5,6 +5,7 @@ import pytest
 from fastapi import FastAPI
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.errors import RefusedError
 from server.features.lease.lease import NotInControlError
 from server.features.sessions.recording import RecordingError
@@ -50,12 +51,23 @@ def ask(problem: Exception) -> httpx.Response:
         (RuntimeSilentError("It did not answer.", waited=True), 504, "It did not answer."),
         (StoreError("the disk is full"), 503, "The database does not work: the disk is full."),
         (RefusedError("Press STOP first."), 409, "Press STOP first."),
-        (ConfigError("a: too large", "b: unknown"), 422, "a: too large\nb: unknown"),
     ],
 )
 def test_an_error_is_answered_with_its_status_and_text(problem: Exception, status: int, detail: str) -> None:
     answer = ask(problem)
     assert (answer.status_code, answer.json()) == (status, {"detail": detail})
+
+
+def test_problems_of_a_document_are_answered_with_the_paths_to_them() -> None:
+    answer = ask(ConfigError(DocumentEntry("a", ("a",)).item(1).problem("is 9"), "b: unknown"))
+    assert answer.status_code == 422
+    assert answer.json() == {
+        "detail": "a[1] is 9\nb: unknown",
+        "problems": [
+            {"path": ["a", 1], "text": "a[1] is 9", "words": "is 9"},
+            {"path": [], "text": "b: unknown", "words": "b: unknown"},
+        ],
+    }
 
 
 def test_an_unreadable_recording_does_not_affect_others() -> None:
