@@ -1,12 +1,14 @@
 """The server's end of Zenoh: blocks from the runtime and the simulator come in, commands go out.
 
 A `GapFiller` for each sender requests missing blocks. Zenoh calls back in its own threads. Received blocks go
-into a queue. An arrival wakes the event loop, which empties it at once,
-or `ROUND_SECONDS` after it was emptied last.
+into a queue. An arrival wakes the event loop, which empties it at once, or `ROUND_SECONDS` after it was
+emptied last. A single message of the simulator waits for the next of the runtime: twenty a second would
+otherwise begin rounds in which the robot's own samples wait.
 """
 
 import asyncio
 import logging
+import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -44,6 +46,9 @@ BACKLOG_PAUSE = 0.1
 """s between two requests; a process answers only after Zenoh has discovered it."""
 CONTACT_SECONDS = 10.0
 """Time that a starting server waits for the answer of a process that a killed server has left."""
+
+_SIMULATED = frozenset(bytes([topic.id]) for topic in SENT_BY["simulator"])
+"""First bytes of the simulator's messages: the topic of the first block."""
 
 QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
 """The query topics at which the processes answer with their backlog."""
@@ -88,6 +93,8 @@ class Bridge:
         self._emptying = False
         self._resting = True
         """True while no emptying of the queue is scheduled: the next arrival wakes the event loop."""
+        self._due = threading.Event()
+        """Set while the queue has more than a single message of the simulator."""
         self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
@@ -247,6 +254,9 @@ class Bridge:
     def _receive(self, name: str, data: bytes, run: str) -> None:
         """Queue a message. Called in Zenoh's thread."""
         self._queue.append((name, data, run))
+        if name == STREAM and data[:1] in _SIMULATED and len(self._queue) == 1:
+            return
+        self._due.set()
         if self._resting:
             self._resting = False
             try:
@@ -255,12 +265,13 @@ class Bridge:
                 log.debug("a block of %s arrived after the event loop had ended", name)
 
     def _drain(self) -> None:
-        if not self._queue:
+        if not self._due.is_set():
             self._resting = True
             # A block that arrived before the line above has not woken the event loop.
-            if not self._queue:
+            if not self._due.is_set():
                 return
             self._resting = False
+        self._due.clear()
         self._empty_queue()
         self._loop.call_later(ROUND_SECONDS, self._drain)
 

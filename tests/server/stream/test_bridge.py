@@ -4,10 +4,12 @@ from collections.abc import Mapping
 
 import pytest
 
+from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.errors import NoAnswerError
+from robot_runtime.transport.blocks import Block
 from robot_runtime.transport.replay_cache import BacklogReply
 from server.platform.settings import Settings
-from server.stream.bridge import BACKLOG_SECONDS, Bridge
+from server.stream.bridge import BACKLOG_SECONDS, ROUND_SECONDS, Bridge
 
 ANSWER = BacklogReply("0123456789abcdef", {}, [])
 
@@ -50,3 +52,50 @@ def test_a_slow_process_gets_the_whole_timeout(settings: Settings, monkeypatch: 
     process = Process(needs=2.0)
     assert fetch(settings, monkeypatch, process) is ANSWER
     assert process.asked[-1] == BACKLOG_SECONDS
+
+
+def message(topic: str) -> bytes:
+    return Block.of(BY_NAME[topic], 1, 0, bytes(BY_NAME[topic].row_bytes)).data
+
+
+def deliveries(settings: Settings, arrivals: list[tuple[float, str]]) -> list[tuple[float, list[str]]]:
+    """ms and topics of each delivery, of messages that arrive so (ms, topic) at an otherwise idle server."""
+    found: list[tuple[float, list[str]]] = []
+
+    async def scenario() -> None:
+        loop = asyncio.get_running_loop()
+        bridge = Bridge(
+            settings,
+            lambda blocks: found.append((1000 * (loop.time() - began), [one.topic.name for one in blocks])),
+        )
+        bridge._loop = loop
+        bridge.begin_delivery({})
+        began = loop.time()
+        for at, topic in arrivals:
+            await asyncio.sleep(max(began + at / 1000 - loop.time(), 0.0))
+            bridge._receive("stream", message(topic), "")
+        await asyncio.sleep(3 * ROUND_SECONDS)
+
+    asyncio.run(scenario())
+    return found
+
+
+def test_a_robot_s_sample_is_delivered_at_once_though_the_simulator_has_just_spoken(
+    settings: Settings,
+) -> None:
+    (first, together), (second, alone) = deliveries(settings, [(0, "truth"), (5, "depth"), (105, "depth")])
+    assert together == ["truth", "depth"]
+    assert first < 5 + 1000 * ROUND_SECONDS / 2
+    assert alone == ["depth"]
+    assert second < 105 + 1000 * ROUND_SECONDS / 2
+
+
+def test_a_simulator_without_a_runtime_is_heard_with_its_next_message(settings: Settings) -> None:
+    found = deliveries(settings, [(0, "truth"), (50, "truth")])
+    assert [topics for _, topics in found] == [["truth", "truth"]]
+
+
+def test_messages_of_a_round_are_delivered_together(settings: Settings) -> None:
+    found = deliveries(settings, [(0, "depth"), (1, "imu"), (2, "truth"), (3, "motor")])
+    assert [topics for _, topics in found] == [["depth"], ["imu", "truth", "motor"]]
+    assert found[1][0] >= 1000 * ROUND_SECONDS
