@@ -23,7 +23,7 @@ def wait(condition: Callable[[], object], what: str) -> None:
     end = time.monotonic() + SECONDS
     while not condition():
         assert time.monotonic() < end, f"waited in vain for {what}"
-        time.sleep(0.005)
+        time.sleep(0.02)
 
 
 def kill(process: psutil.Process) -> None:
