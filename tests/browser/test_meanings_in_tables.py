@@ -1,8 +1,12 @@
 """Meanings of headings, axes, signals and chips are there for fingers, keys and screen readers too."""
 
+import re
+
 from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSize, expect
 
 from tests.browser.conftest import PHONE
+from tests.browser.pages import samples
+from tests.proofs.watching import wait
 from tests.stack import Stack
 
 ROOMY: ViewportSize = {"width": 1920, "height": 1080}
@@ -49,3 +53,15 @@ def ask_by_key(term: Locator, meaning: Locator) -> None:
     term.focus()
     term.press("Enter")
     expect(meaning).to_be_visible()
+
+
+def test_a_chip_of_the_export_shows_its_meaning_to_a_key(page: Page, stack: Stack) -> None:
+    session = stack.api.post("/sessions", json={"name": "chips"}).json()["id"]
+    wait(lambda: samples(stack, session) > 0, "samples")
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+    page.goto(f"{stack.url}/#/sessions/{session}")
+    page.get_by_role("radio", name=re.compile("CSV")).first.check(force=True)
+    chip = page.get_by_role("checkbox", name="depth", exact=True)
+    chip.focus()
+    expect(chip).to_have_accessible_description(re.compile("depth", re.IGNORECASE))
+    expect(page.get_by_text(re.compile("^depth: "))).to_be_visible()
