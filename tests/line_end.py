@@ -37,6 +37,11 @@ class LineEnd:
         return self._channel.key != OPEN
 
     @property
+    def key(self) -> int:
+        """The key of its session's frames."""
+        return self._channel.key
+
+    @property
     def urgent(self) -> bool:
         """True if an acknowledgement is due at either end."""
         return self._channel.urgent

@@ -1,6 +1,8 @@
-"""Free space on the disk that holds the data folder."""
+"""Free space on the disk that holds the data folder, and writing that fails without it."""
 
+import errno
 import shutil
+from pathlib import Path
 
 from robot_runtime.errors import RefusedError
 from server.platform.settings import DataFolder
@@ -17,3 +19,10 @@ def check_room(folder: DataFolder) -> None:
             f"The disk is full: {free / 1e6:.0f} MB are free, and a dive that is recorded needs "
             f"{DIVE_BYTES / 1e6:.0f} MB. Remove sessions or exports."
         )
+
+
+def explain_write_error(problem: OSError, path: Path) -> str:
+    """The cause of a failed write to `path`, and the remedy."""
+    if problem.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        return f"The disk that holds {path.parent} is full. Free some space, and try again."
+    return f"{path.parent} cannot be written: {problem.strerror or problem}."

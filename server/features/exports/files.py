@@ -1,6 +1,5 @@
 """Writes a file whole or not at all, with its checksum."""
 
-import errno
 import hashlib
 import os
 from collections.abc import Callable, Iterable
@@ -8,6 +7,7 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple, cast
 
 from robot_runtime import durable_files
+from server.platform.disk_space import explain_write_error
 from server.platform.errors import InsufficientStorageError
 
 BUFFER_BYTES = 1 << 18
@@ -37,7 +37,7 @@ def write_part(path: Path, write: Callable[[BinaryIO], object]) -> WrittenFile:
             os.fsync(file.fileno())
     except OSError as problem:
         path.unlink(missing_ok=True)
-        raise FileWriteError(explain(problem, path)) from problem
+        raise FileWriteError(explain_write_error(problem, path)) from problem
     except BaseException:
         path.unlink(missing_ok=True)
         raise
@@ -49,14 +49,7 @@ def put_in_place(part: Path, path: Path) -> None:
     try:
         durable_files.put_in_place(part, path)
     except OSError as problem:
-        raise FileWriteError(explain(problem, path)) from problem
-
-
-def explain(problem: OSError, path: Path) -> str:
-    """The cause of a failed write to `path`, and the remedy."""
-    if problem.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
-        return f"The disk that holds {path.parent} is full. Free some space, and try again."
-    return f"{path.parent} cannot be written: {problem.strerror or problem}."
+        raise FileWriteError(explain_write_error(problem, path)) from problem
 
 
 class _ChecksumWriter:

@@ -20,8 +20,9 @@ from robot_runtime.durable_files import PART
 from robot_runtime.errors import RefusedError
 from server.features.exports.archive_reader import Archive, ArchiveError, open_archive
 from server.features.exports.export_process import ExportProcess, ExportProcessError
-from server.features.exports.files import FileWriteError, explain
+from server.features.exports.files import FileWriteError
 from server.features.sessions.session import IMPORTING, REMOVING
+from server.platform.disk_space import explain_write_error
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.settings import DataFolder
 from server.platform.store import Store, insert_row
@@ -97,7 +98,7 @@ class Imports:
                         self._check_room(file.tell())
                 await asyncio.to_thread(file.write, bytes(waiting))
         except OSError as problem:
-            raise FileWriteError(explain(problem, path)) from problem
+            raise FileWriteError(explain_write_error(problem, path)) from problem
 
     async def _take(self, path: Path) -> int:
         try:

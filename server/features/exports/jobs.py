@@ -17,10 +17,11 @@ from robot_runtime.durable_files import PART, make_folder, write_whole
 from robot_runtime.errors import RefusedError
 from server.features.exports.description import file_name
 from server.features.exports.export_process import ExportProcess, ExportProcessError
-from server.features.exports.files import FileWriteError, explain, put_in_place
+from server.features.exports.files import FileWriteError, put_in_place
 from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions, Job, NewExport
 from server.features.exports.selection import ExportSelection
+from server.platform.disk_space import explain_write_error
 from server.platform.errors import NotFoundError
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder
@@ -109,7 +110,7 @@ class Jobs:
             self._unlink(job)
         except OSError as problem:
             raise RefusedError(
-                f"The export cannot be deleted. {explain(problem, self.path(job))}"
+                f"The export cannot be deleted. {explain_write_error(problem, self.path(job))}"
             ) from problem
         del self._jobs[job.id]
 
@@ -155,7 +156,7 @@ class Jobs:
         try:
             write_whole(described, done.model_dump_json().encode())
         except OSError as problem:
-            raise FileWriteError(explain(problem, described)) from problem
+            raise FileWriteError(explain_write_error(problem, described)) from problem
         put_in_place(part, self.path(done))
 
     def _unlink(self, job: Job) -> None:

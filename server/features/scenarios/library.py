@@ -9,6 +9,7 @@ from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario, read_scenario
 from server.features.scenarios.schemas import ScenarioText, summarize
+from server.platform.disk_space import explain_write_error
 
 log = logging.getLogger(__name__)
 
@@ -31,11 +32,12 @@ def keep_scenario(own: Path, text: str) -> Scenario:
     scenario = read_scenario(text)
     if scenario.name in SHIPPED:
         raise RefusedError(f"{scenario.name} ships with the program. Choose another name.")
+    path = own / f"{scenario.name}.toml"
     try:
         make_folder(own)
-        write_whole(own / f"{scenario.name}.toml", text.encode())
+        write_whole(path, text.encode())
     except OSError as problem:
-        raise RefusedError(f"{own} cannot be written: {problem.strerror}.") from problem
+        raise RefusedError(explain_write_error(problem, path)) from problem
     return scenario
 
 

@@ -10,6 +10,8 @@ import pytest
 from tests.stack import ROOT
 from tests.two_hosts import available
 
+pytestmark = pytest.mark.stack
+
 
 @pytest.fixture(scope="module")
 def seen() -> dict[str, Any]:

@@ -42,6 +42,8 @@ def test_recording_loses_nothing_when_the_disk_is_full_for_a_while(tmp_path: Pat
     assert (told["integrity"], told["gaps"], told["holes"]) == ("ok", [], 0)
     assert len(told["refused_beside"]) == 3
     for refusal in told["refused_beside"]:
-        assert "disk" in refusal
-        assert "full" in refusal or "No space left" in refusal
+        # The path may hold any word.
+        words = refusal.replace(str(tmp_path), "")
+        assert "disk" in words
+        assert "full" in words
     assert told["cells"] == [0, 1]
