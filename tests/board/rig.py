@@ -1,17 +1,16 @@
 """A board whose time advances only on request, with a host at its serial port."""
 
-import fcntl
 import os
 import subprocess
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Self
 
 import serial
 
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient, EmulatorProcess
+from robot_runtime.simulation.boards.firmware import build_lock
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/board"
@@ -22,19 +21,9 @@ PATIENCE = 10.0
 """s of real time for what the operating system does between two processes."""
 
 
-@contextmanager
-def building() -> Iterator[None]:
-    """Lock the build: make does not know of another make on the same files."""
-    lock = ROOT / "build/.building"
-    lock.parent.mkdir(exist_ok=True)
-    with lock.open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-
-
 def build(folder: Path, *targets: str) -> None:
     """Build `folder`, or fail with make's output."""
-    with building():
+    with build_lock():
         made = subprocess.run(["make", "-s", "-C", str(folder), *targets], capture_output=True, text=True)
     assert made.returncode == 0, made.stdout + made.stderr
 

@@ -5,9 +5,13 @@ The speed is compiled in, so that each speed has its own folder; that of the def
 """
 
 import argparse
+import fcntl
+import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from robot_runtime.config import LinkConfig, load
@@ -33,6 +37,17 @@ def firmware_path(build: Path, baud: int, suffix: str, *, hil: bool = False) -> 
     return (folder / "hil" if hil else folder) / f"robot{suffix}"
 
 
+@contextmanager
+def build_lock() -> Iterator[None]:
+    """Waits for other builds: make does not notice another make that writes the same files."""
+    sources = os.open(_SOURCES, os.O_RDONLY)
+    try:
+        fcntl.flock(sources, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(sources)
+
+
 def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
     """Builds the firmware for this many bit/s if it is out of date. Raises FirmwareBuildError.
 
@@ -48,7 +63,8 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
         )
     command = ["make", "--silent", "-C", str(_SOURCES), "robot", f"BAUD={baud}", f"BUILD={product.parent}"]
     command += ["HIL=1"] if hil else []
-    made = subprocess.run(command, capture_output=True, text=True, check=False)
+    with build_lock():
+        made = subprocess.run(command, capture_output=True, text=True, check=False)
     if made.returncode != 0:
         last = " ".join((made.stderr or made.stdout).split("\n")[-_LINES_SHOWN:]).strip()
         raise FirmwareBuildError(f"The firmware for {baud} baud could not be built: {last}")

@@ -1,5 +1,6 @@
 """The firmware for each baud: its own path, and its build where it is missing."""
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,16 @@ def test_without_a_compiler_an_existing_build_is_used_or_the_remedy_named(
     product.parent.mkdir(parents=True)
     product.touch()
     build_firmware(tmp_path, 4800)
+
+
+def test_two_builds_at_once_wait_for_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    make = tmp_path / "make"
+    make.write_text(f"#!/bin/sh\nmkdir {tmp_path}/busy && sleep 0.2 && rmdir {tmp_path}/busy\n")
+    make.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    with ThreadPoolExecutor(2) as pool:
+        for build in [pool.submit(build_firmware, tmp_path, 4800) for _ in range(2)]:
+            build.result()
 
 
 def test_a_compiler_error_is_reported(tmp_path: Path) -> None:
