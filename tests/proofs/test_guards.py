@@ -55,6 +55,7 @@ def test_the_removal_of_a_guard_is_detected_and_of_unguarded_code_is_not() -> No
 @pytest.fixture(scope="module")
 def tree() -> Iterator[Tree]:
     with copy_tree() as tree:
+        build(tree.root / "firmware/emulator")
         yield tree
 
 
@@ -69,8 +70,6 @@ def test_the_removal_of_today_s_tenth_of_guards_is_detected(
         return
     guard, again = guards[number], f"MUCAT_GUARDS_DAY={DAY} repeats it."
     record_property("guard", guard.name)
-    if any(test.startswith("tests/board/") for test in guard.tests):
-        build(tree.root / "firmware/emulator")
     outcome = tree.run_without(guard)
     assert not outcome.broken, f"{guard.name}: {outcome.broken}. {again}\n{outcome.words}"
     assert outcome.failed, f"without “{guard.name}” no test fails. {again}"
