@@ -58,7 +58,7 @@ MOTION = f"""async (chart, seconds) => {{
     delete context.clearRect;
     return {{ redraws, frames, passed: (now - began) / 1000, before, after }};
 }}"""
-"""What a chart did in some seconds: redraws, frames of the browser, and its trace before and after."""
+"""The motion of a chart in some seconds: redraws, frames of the browser, and its trace before and after."""
 
 
 @pytest.fixture

@@ -27,7 +27,7 @@ YELLOW = """(image) => {
     for (let at = 0; at < data.length; at += 4) yellow += data[at] > 1.5 * data[at + 2];
     return yellow / (data.length / 4) > 0.01;
 }"""
-"""Whether at least 1 % of a picture is yellow: water is blue."""
+"""True where at least 1 % of a picture is yellow: water is blue."""
 
 
 @pytest.fixture

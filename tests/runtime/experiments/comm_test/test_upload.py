@@ -66,19 +66,27 @@ def test_the_boot_loader_waits_for_a_slow_host(
     assert run_there(empty).rate == 1.0
 
 
+def replace_avrdude(script: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Puts a shell script before the real avrdude."""
+    avrdude = folder / "bin/avrdude"
+    avrdude.parent.mkdir()
+    avrdude.write_text(f"#!/bin/sh\n{script}")
+    avrdude.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{avrdude.parent}:{os.environ['PATH']}")
+
+
 def test_an_upload_that_loses_step_is_started_over(
     builder: Builder, empty: Empty, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     product = builder.build(TEST, CELL.baud, 0.0)
-    lost, avrdude = tmp_path / "lost", tmp_path / "bin/avrdude"
-    avrdude.parent.mkdir()
+    lost = tmp_path / "lost"
     # The first one hangs up in the middle, as one that was starved; the next ones are whole.
-    avrdude.write_text(
-        f'#!/bin/sh\n[ -e {lost} ] && exec {shutil.which("avrdude")} "$@"\n'
-        f'touch {lost}\ntimeout 0.5 {shutil.which("avrdude")} "$@"\nexit 1\n'
+    replace_avrdude(
+        f'[ -e {lost} ] && exec {shutil.which("avrdude")} "$@"\n'
+        f'touch {lost}\ntimeout 0.5 {shutil.which("avrdude")} "$@"\nexit 1\n',
+        tmp_path,
+        monkeypatch,
     )
-    avrdude.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{avrdude.parent}:{os.environ['PATH']}")
     process, board = empty
     upload_paused(product.hex, process.tty, board, Cancellation())
     assert lost.exists()
@@ -89,11 +97,8 @@ def test_a_failing_upload_is_reported_after_some_attempts(
     builder: Builder, empty: Empty, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     product = builder.build(TEST, CELL.baud, 0.0)
-    calls, avrdude = tmp_path / "calls", tmp_path / "bin/avrdude"
-    avrdude.parent.mkdir()
-    avrdude.write_text(f"#!/bin/sh\necho again >> {calls}\necho out of step >&2\nexit 1\n")
-    avrdude.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{avrdude.parent}:{os.environ['PATH']}")
+    calls = tmp_path / "calls"
+    replace_avrdude(f"echo again >> {calls}\necho out of step >&2\nexit 1\n", tmp_path, monkeypatch)
     process, board = empty
     with pytest.raises(UploadError, match=r"could not upload comm_test.hex through .*: out of step"):
         upload_paused(product.hex, process.tty, board, Cancellation())
