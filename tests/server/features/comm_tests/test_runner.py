@@ -32,8 +32,15 @@ QUICK: dict[str, Any] = {
     "arduinodelay": [0.0],
     "framing": "plain",
 }
-ENDLESS = QUICK | {"name": "endless", "delay": [0.0, 10.0], "to_val": 201, "expected": 200}
-"""Its second cell is half an hour of emulated time."""
+ENDLESS = QUICK | {
+    "name": "endless",
+    "delay": [0.0, 10.0],
+    "from_val": 0,
+    "to_val": 5000,
+    "expected": 5000,
+    "framing": "thesis",
+}
+"""Its second cell is 14 hours of emulated time: minutes, computed beside the first."""
 
 
 @pytest.fixture(scope="module", autouse=True)
