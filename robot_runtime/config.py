@@ -1,6 +1,5 @@
 """The configuration in robot.toml as typed, checked values, with the default of each entry."""
 
-import tomllib
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Literal
@@ -8,6 +7,7 @@ from typing import Annotated, Literal
 from robot_runtime.contract.limits import SET_POINT, ConfigError, Range
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.problems import DocumentEntry
+from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.contract.vision_settings import VisionSettings
 
 HIL_BAUD_MIN = 115_200
@@ -137,7 +137,9 @@ class Config:
 def load(path: Path) -> Config:
     """Reads the configuration from this file. Raises ConfigError if it cannot be read or used."""
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
+        table = read_toml(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as problem:
         raise ConfigError(f"{path} cannot be read: {problem}") from problem
+    except TomlError as problem:
+        raise ConfigError(f"{path} cannot be read: it {problem}") from problem
     return parse(Config, table, DocumentEntry(path.name))

@@ -4,7 +4,6 @@ SI units; world axes north, east, down from the start, angles in rad. docs/use/s
 """
 
 import re
-import tomllib
 from dataclasses import asdict, dataclass, field, fields, is_dataclass
 from typing import Annotated, Any, Literal, get_type_hints
 
@@ -12,6 +11,7 @@ from robot_runtime.config import ControlConfig
 from robot_runtime.contract.limits import VISION_RATE, ConfigError, Range
 from robot_runtime.contract.parsing import TOP, parse, read_value
 from robot_runtime.contract.problems import DocumentEntry, EntryProblem
+from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.experiments.scenario.events import (
     Colour,
     TimedEvent,
@@ -35,7 +35,6 @@ from robot_runtime.simulation.water.surroundings import (
 )
 from robot_runtime.simulation.water.world import World
 
-TEXT_BYTES_MAX = 60_000
 DURATION = Range(1, 3600)
 """s."""
 SEED = Range(0, 2**32 - 1)
@@ -190,12 +189,10 @@ _STAND_IN: dict[str, Any] = {
 
 def read_scenario(text: str) -> Scenario:
     """The scenario that a TOML text says. Raises ConfigError with all problems."""
-    if len(text.encode("utf-8", "replace")) > TEXT_BYTES_MAX:
-        raise ConfigError(f"the scenario is larger than {TEXT_BYTES_MAX} bytes")
     try:
-        table = tomllib.loads(text)
-    except (ValueError, RecursionError) as problem:
-        raise ConfigError(f"the scenario is not TOML: {problem}") from problem
+        table = read_toml(text)
+    except TomlError as problem:
+        raise ConfigError(f"the scenario {problem}") from problem
     problems: list[str | EntryProblem] = []
     values = _read_entries(table, problems)
     try:

@@ -1,11 +1,11 @@
 """Differences between sessions: configuration, gains in force, versions, scenario."""
 
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel, Field
 
+from robot_runtime.contract.toml_text import TomlError, read_toml
 from server.features.comparison.moments import ControlHistory, Span
 from server.platform.models import SessionRow
 
@@ -65,9 +65,9 @@ def find_differences(sessions: Sequence[tuple[SessionRow, ControlHistory]]) -> l
 def flatten(text: str) -> Iterator[tuple[str, str]]:
     """The entries of a TOML text, with dotted names; one entry with the problem if it is not valid."""
     try:
-        yield from _entries("", tomllib.loads(text))
-    except tomllib.TOMLDecodeError as problem:
-        yield "text", f"cannot be read: {problem}"
+        yield from _entries("", read_toml(text))
+    except TomlError as problem:
+        yield "text", f"cannot be read: it {problem}"
 
 
 def _entries(prefix: str, value: Any) -> Iterator[tuple[str, str]]:

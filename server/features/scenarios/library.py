@@ -5,9 +5,10 @@ from importlib.resources import files
 from pathlib import Path
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.errors import RefusedError
-from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario, read_scenario
+from robot_runtime.experiments.scenario.document import Scenario, read_scenario
 from server.features.scenarios.schemas import ScenarioText, summarize
 from server.platform.disk_space import explain_write_error
 
@@ -50,7 +51,7 @@ def _own(folder: Path) -> list[tuple[Path, str]]:
     found = []
     for file in sorted(folder.glob("*.toml")):
         try:
-            if file.stat().st_size <= TEXT_BYTES_MAX:
+            if file.stat().st_size <= BYTES_MAX:
                 found.append((file, file.read_text(encoding="utf-8")))
         except (OSError, UnicodeDecodeError) as problem:
             log.warning("the scenario %s cannot be read: %s", file, problem)

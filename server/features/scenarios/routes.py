@@ -70,7 +70,11 @@ async def start_scenario(
     """Run a scenario: live at once, or refused with the reasons; in simulated time in its turn."""
     if body.place == "live":
         require_control(request)
-    run = scenarios.start(body.text, body.place, body.board, caller.name)
+    scenario = await run_in_threadpool(read_scenario, body.text)
+    if body.place == "live":
+        # Control may have changed hands in the meantime.
+        require_control(request)
+    run = scenarios.start(scenario, body.text, body.place, body.board, caller.name)
     return ScenarioStarted(run=run)
 
 

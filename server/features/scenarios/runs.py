@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any, Protocol
 
 from robot_runtime.errors import RefusedError
-from robot_runtime.experiments.scenario.document import Scenario, read_scenario
+from robot_runtime.experiments.scenario.document import Scenario
 from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
 from server.features.scenarios.schemas import BoardKind, End, EndedRun, Place, QueuedRun, ScenarioState
 from server.features.sessions.recorder import RecordingRefusedError
@@ -64,9 +64,8 @@ class ScenarioRunner:
             last=self._last,
         )
 
-    def start(self, text: str, place: Place, board: BoardKind, who: str = "") -> int:
-        """Start or queue a scenario, and return its number. Raises ConfigError, RefusedError."""
-        scenario = read_scenario(text)
+    def start(self, scenario: Scenario, text: str, place: Place, board: BoardKind, who: str = "") -> int:
+        """Start or queue the scenario of this text, and return its number. Raises RefusedError."""
         if place == "live" and self._active is not None:
             raise RefusedError(f"“{self._active.scenario.title}” is running. Wait for its end, or cancel it.")
         if len(self._queue) >= QUEUE_MAX:

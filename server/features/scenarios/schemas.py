@@ -5,14 +5,15 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from robot_runtime.contract.problems import EntryProblem
+from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.control.controllers import CONTROLLERS
-from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario
+from robot_runtime.experiments.scenario.document import Scenario
 
 Place = Literal["live", "simulated"]
 BoardKind = Literal["host", "emulated"]
 Phase = Literal["waiting", "preparing", "running", "ending"]
 End = Literal["complete", "cancelled", "failed"]
-Text = Annotated[str, Field(max_length=TEXT_BYTES_MAX, description="TOML")]
+Text = Annotated[str, Field(max_length=BYTES_MAX, description="TOML")]
 
 
 class ScenarioText(BaseModel):

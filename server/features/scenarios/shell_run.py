@@ -10,6 +10,7 @@ from time import sleep
 import click
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.experiments.scenario.document import read_scenario
 from server.features.lease.command import in_control, renew_control
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState
@@ -57,7 +58,7 @@ async def _simulate(start: ScenarioStart, settings: Settings, store: Store) -> E
     )
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
-    runs.start(start.text, start.place, start.board)
+    runs.start(read_scenario(start.text), start.text, start.place, start.board)
     await runs.wait()
     last = runs.state().last
     assert last is not None

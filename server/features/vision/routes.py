@@ -1,6 +1,5 @@
 """Operations on the vision node: its settings, and the colour at a place in its picture."""
 
-import tomllib
 from typing import Any
 
 import tomli_w
@@ -10,6 +9,7 @@ from robot_runtime.config import VisionConfig
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import parse, read_value
 from robot_runtime.contract.problems import DocumentEntry
+from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.contract.vision_settings import VisionSettings
 from server.features.vision.schemas import PickedColour, PickPlace, VisionSetup, VisionText
 from server.http.dependencies import Provided
@@ -61,9 +61,9 @@ def read_document(text: str) -> dict[str, Any]:
     not valid.
     """
     try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise ConfigError(f"This is not TOML: {problem}.") from problem
+        document = read_toml(text)
+    except TomlError as problem:
+        raise ConfigError(f"This {problem}.") from problem
     if "vision" not in document:
         raise ConfigError("There is no table [vision] in it.")
     # A whole robot.toml also names the camera, which cannot be changed while the robot runs.

@@ -1,6 +1,12 @@
 """Differences between sessions: the parameters in force while armed."""
 
-from server.features.comparison.differences import CHANGED, find_differences
+import tomllib
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from server.features.comparison.differences import CHANGED, find_differences, flatten
 from server.features.comparison.moments import ControlHistory, ParameterValues, Span
 from server.platform.models import SessionRow
 
@@ -37,3 +43,15 @@ def test_a_session_that_was_never_armed_counts_with_its_initial_values() -> None
 
 def test_older_recordings_have_no_parameters() -> None:
     assert differing(history(), history((0, 3)))["loud"] == ["", "yes"]
+
+
+@pytest.mark.parametrize("text", ["a" + ".a" * 20_000 + "=1", "a=" + "[" * 50_000])
+def test_a_text_that_would_take_the_memory_is_not_read(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tomllib, "loads", loads_short_keys)
+    ((name, words),) = flatten(text)
+    assert (name, words.startswith("cannot be read: it ")) == ("text", True)
+
+
+def loads_short_keys(text: str, loads: Callable[[str], dict[str, Any]] = tomllib.loads) -> dict[str, Any]:
+    assert ".a" * 100 not in text
+    return loads(text)

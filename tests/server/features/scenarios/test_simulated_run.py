@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.experiments.scenario.document import read_scenario
 from server.cli import main
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import ScenarioState
@@ -67,7 +68,7 @@ def samples(store: Store, session: int) -> list[Any]:
 
 def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Settings, store: Store) -> None:
     async def work(runs: ScenarioRunner) -> None:
-        assert [runs.start(SHORT, "simulated", "host") for _ in range(2)] == [1, 2]
+        assert [runs.start(read_scenario(SHORT), SHORT, "simulated", "host") for _ in range(2)] == [1, 2]
         assert [one.run for one in runs.state().queued] == [2]
         await runs.wait()
 
@@ -93,8 +94,8 @@ def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Setting
 
 def test_a_cancelled_run_keeps_its_recording_and_clears_the_queue(settings: Settings, store: Store) -> None:
     async def work(runs: ScenarioRunner) -> None:
-        runs.start(LONG, "simulated", "host")
-        runs.start(LONG, "simulated", "host")
+        runs.start(read_scenario(LONG), LONG, "simulated", "host")
+        runs.start(read_scenario(LONG), LONG, "simulated", "host")
         while runs.active is None or runs.active.elapsed < 1:
             await asyncio.sleep(0.02)
         runs.cancel()
@@ -112,8 +113,10 @@ def test_a_cancelled_run_keeps_its_recording_and_clears_the_queue(settings: Sett
 def test_a_refused_command_gets_a_bookmark_and_a_notice(settings: Settings, store: Store) -> None:
     broken = SHORT + "[[events]]\nat = 0.1\ndo = 'fault'\nsensor = 'pressure'\nkind = 'bus'\n"
 
+    later = broken.replace("at = 0.5", "at = 2.5")
+
     async def work(runs: ScenarioRunner) -> None:
-        runs.start(broken.replace("at = 0.5", "at = 2.5"), "simulated", "host")
+        runs.start(read_scenario(later), later, "simulated", "host")
         await runs.wait()
 
     last = perform(settings, store, work)[-1].last
@@ -126,7 +129,7 @@ def test_a_failed_process_is_reported_with_its_output(
     settings: Settings, store: Store, tmp_path: Path
 ) -> None:
     async def work(runs: ScenarioRunner) -> None:
-        runs.start(SHORT, "simulated", "emulated")
+        runs.start(read_scenario(SHORT), SHORT, "simulated", "emulated")
         await runs.wait()
 
     nowhere = Settings(data=settings.data, config=settings.config, robot="tested", build=tmp_path)
