@@ -3,6 +3,7 @@ import svelte from 'eslint-plugin-svelte';
 import globals from 'globals';
 import ts from 'typescript-eslint';
 import { house } from './eslint/house.js';
+import { parser } from './eslint/one_program.js';
 import svelteConfig from './svelte.config.js';
 
 export default ts.config(
@@ -10,6 +11,7 @@ export default ts.config(
   js.configs.recommended,
   ts.configs.strictTypeChecked,
   ts.configs.stylisticTypeChecked,
+  { languageOptions: { parser } },
   svelte.configs.recommended,
   {
     languageOptions: {
@@ -35,7 +37,7 @@ export default ts.config(
   },
   {
     files: ['**/*.svelte', '**/*.svelte.ts'],
-    languageOptions: { parserOptions: { parser: ts.parser, svelteConfig } },
+    languageOptions: { parserOptions: { parser, svelteConfig } },
   },
   { files: ['*.js', 'eslint/*.js'], extends: [ts.configs.disableTypeChecked], languageOptions: { globals: { ...globals.node } } },
 );
