@@ -21,18 +21,16 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from robot_runtime.contract.topics import TIME
 from server.features.exports.archive import CHECKSUMS, CHUNKS, FORMAT, HEAD, SESSION, VERSION
 from server.features.sessions.chunks import (
+    CHUNK_BYTES_MAX,
     DOCUMENTS_ENCODING,
     PICTURES_ENCODING,
     ROWS_ENCODING,
     decode_pictures,
+    unpack,
 )
 from server.platform.errors import InvalidError
 
 SESSION_BYTES_MAX = 32_000_000
-CHUNK_BYTES_MAX = 16_000_000
-"""Largest size of one chunk, packed or unpacked."""
-UNPACKED_RATIO_MAX = 1100
-"""zlib cannot pack tighter than 1032 to 1."""
 STEP_BYTES = 1 << 20
 MEMBER = re.compile(r"session\.json|checksums\.json|chunks/[a-z][a-z0-9_]{0,49}")
 CODES = "bBhHiIqQfd?"
@@ -256,10 +254,14 @@ class Archive:
         if topic.kind == "picture":
             _check_pictures(chunk, where)
             return
-        limit = CHUNK_BYTES_MAX if topic.kind == "documents" else chunk.samples * topic.row_bytes
-        data = _unpack(chunk.data, limit, where)
+        announced = CHUNK_BYTES_MAX if topic.kind == "documents" else chunk.samples * topic.row_bytes
+        limit = min(CHUNK_BYTES_MAX, announced)
+        try:
+            data = unpack(chunk.data, limit)
+        except (ValueError, zlib.error) as problem:
+            raise ArchiveError(f"{where} is damaged: {problem}.") from problem
         if topic.kind == "rows":
-            if len(data) != limit:
+            if len(data) != announced:
                 raise ArchiveError(f"{where} has {len(data)} bytes, which are not {chunk.samples} samples.")
             return
         try:
@@ -299,14 +301,3 @@ def _check_pictures(chunk: ArchivedChunk, where: str) -> None:
         raise ArchiveError(f"{where} is damaged: {problem}") from problem
     if len(times) != chunk.samples or not all(map(isfinite, times)):
         raise ArchiveError(f"{where} does not hold {chunk.samples} pictures with a time.")
-
-
-def _unpack(data: bytes, limit: int, where: str) -> bytes:
-    unpacker = zlib.decompressobj()
-    try:
-        unpacked = unpacker.decompress(data, min(limit, len(data) * UNPACKED_RATIO_MAX) + 1)
-    except zlib.error as problem:
-        raise ArchiveError(f"{where} is damaged: {problem}") from problem
-    if len(unpacked) > limit or not unpacker.eof or unpacker.unused_data:
-        raise ArchiveError(f"{where} does not unpack to the announced size.")
-    return unpacked

@@ -26,6 +26,8 @@ PICTURES_ENCODING = "pictures"
 PICTURE_SIZE = Struct("<I")
 LEVEL = 1
 """zlib's fastest: on a Raspberry Pi Zero the rest gains little and costs much."""
+CHUNK_BYTES_MAX = 16_000_000
+"""Largest size of one chunk, packed or unpacked; the recorder's are 4 MB at most."""
 
 DIGITS = {"f": "%.9g", "d": "%.17g"}
 """Enough decimal digits to read back the same number."""
@@ -61,6 +63,17 @@ def unshuffle(shuffled: bytes, size: int) -> bytes:
     return bytes(rows)
 
 
+def unpack(data: bytes, limit: int = CHUNK_BYTES_MAX) -> bytes:
+    """The unpacked bytes of a chunk. Raises ValueError where they are more than `limit`, or zlib.error."""
+    unpacker = zlib.decompressobj()
+    unpacked = unpacker.decompress(data, limit + 1)
+    if len(unpacked) > limit:
+        raise ValueError(f"it unpacks to more than {limit} bytes")
+    if not unpacker.eof or unpacker.unused_data:
+        raise ValueError("it is cut off, or followed by other bytes")
+    return unpacked
+
+
 def encode(topic: Topic, payloads: Sequence[bytes], count: int) -> tuple[str, bytes, float, float]:
     """The encoding of these payloads of a topic, their chunk, and its first and last sample's times.
 
@@ -87,7 +100,7 @@ def encode_rows(payloads: Sequence[bytes], size: int) -> tuple[bytes, float, flo
 
 def decode_rows(data: bytes, size: int) -> bytes:
     """The rows of a chunk. Raises ValueError or zlib.error where it is damaged."""
-    return unshuffle(zlib.decompress(data), size)
+    return unshuffle(unpack(data), size)
 
 
 def encode_documents(payloads: Sequence[bytes], count: int) -> tuple[bytes, float, float]:
@@ -110,7 +123,7 @@ def encode_documents(payloads: Sequence[bytes], count: int) -> tuple[bytes, floa
 
 def decode_documents(data: bytes) -> Iterator[dict[str, Any]]:
     """The objects of a chunk. Raises ValueError or zlib.error where it is damaged."""
-    for line in zlib.decompress(data).splitlines():
+    for line in unpack(data).splitlines():
         yield json.loads(line)
 
 

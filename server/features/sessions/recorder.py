@@ -41,6 +41,8 @@ PERIOD = 0.8
 PROBE_PERIODS = 5
 """Periods between attempts to write while writing fails and nothing is recorded."""
 BACKLOG_BYTES = 8_000_000
+SPAN_BYTES_MAX = 4_000_000
+"""Payloads in one chunk while writing takes long; readers accept `chunks.CHUNK_BYTES_MAX`."""
 
 _PARAMETERS = BY_NAME["parameters"]
 
@@ -57,6 +59,8 @@ class _Span:
     run: str
     first: int
     count: int = 0
+    size: int = 0
+    """Bytes of the payloads."""
     payloads: list[bytes] = field(default_factory=list)
 
 
@@ -231,11 +235,12 @@ class Recorder:
             kind, missed = ("missed", ahead) if ahead < NUMBERS // 2 else ("restarted", 0)
             self._gathered.note(topic.name, kind, missed, self._clock.now())
             span = None
-        if span is None or span.run != block.run:
+        if span is None or span.run != block.run or span.size + len(block.payload) > SPAN_BYTES_MAX:
             span = self._spans[topic.id] = _Span(topic, block.run, block.first)
             self._gathered.spans.append(span)
         span.payloads.append(block.payload)
         span.count += block.count
+        span.size += len(block.payload)
         self._expected[topic.id] = block.following
 
     def _is_stored(self, block: Block) -> bool:

@@ -12,6 +12,7 @@ from sqlalchemy import bindparam
 from sqlmodel import Session, col, desc, func, select
 
 from server.features.sessions.chunks import (
+    CHUNK_BYTES_MAX,
     DOCUMENTS_ENCODING,
     PICTURES_ENCODING,
     ROWS_ENCODING,
@@ -19,6 +20,7 @@ from server.features.sessions.chunks import (
     decode_pictures,
     decode_rows,
     row_layout,
+    unpack,
 )
 from server.platform.errors import ApiError
 from server.platform.models import Chunk, SessionRow
@@ -184,7 +186,7 @@ class Recording:
             if chunk.encoding != DOCUMENTS_ENCODING:
                 raise _wrong_encoding(chunk, topic)
             try:
-                for line in zlib.decompress(chunk.data).splitlines():
+                for line in unpack(chunk.data).splitlines():
                     content = line.partition(b",")[2]
                     if content != before:
                         before = content
@@ -200,8 +202,9 @@ class Recording:
         import numpy as np
 
         size = self.topics[topic]["row_bytes"]
-        for _, alike in groupby(self._shuffled(topic, size, start, end), len):
-            while some := list(islice(alike, DATA_AT_ONCE)):
+        for length, alike in groupby(self._shuffled(topic, size, start, end), len):
+            at_once = min(DATA_AT_ONCE, CHUNK_BYTES_MAX // max(length, 1))
+            while some := list(islice(alike, at_once)):
                 yield np.frombuffer(b"".join(some), np.uint8).reshape(len(some), size, -1)
 
     def _shuffled(self, topic: str, size: int, start: float, end: float) -> Iterator[bytes]:
@@ -213,7 +216,7 @@ class Recording:
             if chunk.encoding != ROWS_ENCODING:
                 raise _wrong_encoding(chunk, topic)
             try:
-                shuffled = zlib.decompress(chunk.data)
+                shuffled = unpack(chunk.data)
                 if len(shuffled) % size:
                     raise ValueError(f"{len(shuffled)} bytes are not whole rows of {size}")
             except (ValueError, zlib.error) as problem:

@@ -25,6 +25,7 @@ from server.features.sessions.chunks import (
     decode_pictures,
     decode_rows,
     describe_topics,
+    unpack,
 )
 from server.features.sessions.recording import Recording
 from server.features.sessions.upgrade import NoCounterpartError, rewrite_document, rewrite_rows
@@ -157,8 +158,9 @@ def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_St
 
 @dataclass(frozen=True, slots=True)
 class _Samples:
-    """The samples of one chunk: the time of the one at a place, and the number and bytes of some in a row."""
+    """The samples of one chunk: their count, the time of each, and the number and bytes of some in a row."""
 
+    count: int
     time: Callable[[int], float]
     payload: Callable[[int, int], tuple[int, bytes]]
     most: int = COUNT_MAX
@@ -167,6 +169,7 @@ class _Samples:
 
 def _rows(rows: bytes, size: int) -> _Samples:
     return _Samples(
+        len(rows) // size,
         lambda place: float(TIME.unpack_from(rows, place * size)[0]),
         lambda first, last: (last - first, rows[first * size : last * size]),
     )
@@ -179,14 +182,14 @@ def _documents(lines: list[bytes], topic: Topic | None) -> _Samples:
         some = lines[first:last] if topic is None else list(_rewrite_lines(lines[first:last], topic))
         return len(some), b"[" + b",".join(some) + b"]"
 
-    return _Samples(lambda place: float(json.loads(lines[place])["time"]), payload)
+    return _Samples(len(lines), lambda place: float(json.loads(lines[place])["time"]), payload)
 
 
 def _pictures(pictures: list[tuple[float, bytes]]) -> _Samples:
     def payload(first: int, last: int) -> tuple[int, bytes]:
         return last - first, b"".join(TIME.pack(time) + jpeg for time, jpeg in pictures[first:last])
 
-    return _Samples(lambda place: pictures[place][0], payload, most=1)
+    return _Samples(len(pictures), lambda place: pictures[place][0], payload, most=1)
 
 
 class _Reader:
@@ -226,22 +229,28 @@ class _Reader:
 
     def _open(self, chunk: _StoredChunk) -> _Samples | None:
         try:
-            if chunk.encoding == ROWS_ENCODING:
-                recorded = self._recorded
-                size = self._topic.row_bytes if recorded is None else int(recorded["row_bytes"])
-                rows = decode_rows(chunk.data, size)
-                if recorded is not None:
-                    rows = rewrite_rows(rows, recorded, self._topic)
-                return _rows(rows, self._topic.row_bytes)
-            if chunk.encoding == DOCUMENTS_ENCODING:
-                lines = zlib.decompress(chunk.data).splitlines()
-                return _documents(lines, None if self._recorded is None else self._topic)
-            if chunk.encoding == PICTURES_ENCODING:
-                return _pictures(list(decode_pictures(chunk.data)))
+            samples = self._decode(chunk)
+            if samples.count != chunk.count:
+                raise ValueError(f"it holds {samples.count} samples instead of {chunk.count}")
+            return samples
         except (ValueError, KeyError, zlib.error) as problem:
             log.warning("a chunk of %s cannot be read: %s", self._topic.name, problem)
         self.left_out += chunk.count
         return None
+
+    def _decode(self, chunk: _StoredChunk) -> _Samples:
+        recorded = self._recorded
+        if chunk.encoding == ROWS_ENCODING:
+            size = self._topic.row_bytes if recorded is None else int(recorded["row_bytes"])
+            rows = decode_rows(chunk.data, size)
+            if recorded is not None:
+                rows = rewrite_rows(rows, recorded, self._topic)
+            return _rows(rows, self._topic.row_bytes)
+        if chunk.encoding == DOCUMENTS_ENCODING:
+            return _documents(unpack(chunk.data).splitlines(), None if recorded is None else self._topic)
+        if chunk.encoding == PICTURES_ENCODING:
+            return _pictures(list(decode_pictures(chunk.data)))
+        raise ValueError(f"its encoding is {chunk.encoding!r}")
 
     def _blocks(
         self, samples: _Samples, chunk: _StoredChunk, first: int, last: int

@@ -10,6 +10,7 @@ from typing import Any
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Motor
 from robot_runtime.transport.blocks import Block, read_rows
+from server.features.sessions.chunks import unpack
 
 DIGITS = 6
 """Stored decimals of times and values."""
@@ -50,7 +51,7 @@ class TuningCurve:
     @classmethod
     def from_bytes(cls, data: bytes) -> "TuningCurve":
         """The stored curve; empty where none was stored."""
-        return cls(*json.loads(zlib.decompress(data))) if data else cls([], [], [], [])
+        return cls(*json.loads(unpack(data))) if data else cls([], [], [], [])
 
     def _columns(self) -> tuple[list[float], list[float], list[float], list[float]]:
         return self.times, self.set_points, self.values, self.outputs

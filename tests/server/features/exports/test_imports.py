@@ -157,6 +157,17 @@ def bomb(members: Members) -> None:
     members["chunks/debug"] = HEAD.pack(0, 1.0, 2.0, 0, 1, len(data), b"lines-zlib") + data
 
 
+def row_bomb(members: Members) -> None:
+    """A chunk of as many rows as it announces, 40 MB of them."""
+    size = json.loads(members[SESSION])["session"]["topics"]["depth"]["row_bytes"]
+    samples = 40_000_000 // size
+    packer = zlib.compressobj(1)
+    rows = bytes(size * 1000)
+    data = b"".join([*(packer.compress(rows) for _ in range(samples // 1000)), packer.flush()])
+    head = HEAD.pack(0, 1.0, 2.0, 0, samples // 1000 * 1000, len(data), b"shuffle-zlib")
+    members["chunks/depth"] = head + data
+
+
 def nonsense(members: Members) -> None:
     data = zlib.compress(b'{"time": 1}\n{"time": null}\n')
     members["chunks/debug"] = HEAD.pack(0, 1.0, 2.0, 0, 2, len(data), b"lines-zlib") + data
@@ -171,10 +182,11 @@ def endless(members: Members) -> None:
 
 BAD = {
     "a checksum that is another": (flip, False, "chunks/depth is damaged: its checksum"),
-    "a chunk that does not unpack": (flip, True, "Chunk 0 of depth (is damaged|does not)"),
+    "a chunk that does not unpack": (flip, True, "Chunk 0 of depth is damaged"),
     "a chunk that is cut": (cut, True, "Chunk 1 of depth is cut off"),
     "too many samples": (count, True, "Chunk 0 of depth has 1000 bytes, which are not 51 samples"),
-    "a bomb": (bomb, True, "Chunk 0 of debug does not unpack"),
+    "a bomb": (bomb, True, "Chunk 0 of debug is damaged: it unpacks to more than 16000000 bytes"),
+    "a bomb of rows": (row_bomb, True, "Chunk 0 of depth is damaged: it unpacks to more than 16000000 bytes"),
     "documents that are none": (nonsense, True, "Chunk 0 of debug does not hold documents"),
     "a time that is none": (endless, True, "Chunk 0 of debug has an invalid time"),
     "a newer format": (tell(version=2), True, "It has format 2; this version of µ-CAT reads format 1"),

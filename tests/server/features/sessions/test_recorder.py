@@ -2,6 +2,7 @@ import asyncio
 import json
 import sqlite3
 import threading
+import zlib
 from collections.abc import Awaitable, Callable
 from typing import Any
 
@@ -57,6 +58,20 @@ def test_received_samples_are_stored_unchanged_and_in_order(rig: RecorderRig) ->
             block.payload for block in blocks
         )
         assert (stored[0].first_time, stored[0].last_time) == (100.0, pytest.approx(100.18))
+        assert rig.gaps() == []
+
+    play(scenario)
+
+
+def test_what_gathers_while_writing_takes_long_becomes_chunks_that_readers_accept(rig: RecorderRig) -> None:
+    async def scenario() -> None:
+        await rig.start()
+        for number in range(5):
+            rig.recorder.add(debug_block(number, "x" * 1_500_000))
+        await rig.recorder.flush()
+        stored = rig.chunks("debug")
+        assert [(chunk.first, chunk.count) for chunk in stored] == [(0, 2), (2, 2), (4, 1)]
+        assert all(len(zlib.decompress(chunk.data)) <= recorder_module.SPAN_BYTES_MAX for chunk in stored)
         assert rig.gaps() == []
 
     play(scenario)

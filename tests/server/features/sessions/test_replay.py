@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import zlib
 from collections.abc import Awaitable, Callable
 from contextlib import closing
 from dataclasses import asdict
@@ -10,19 +11,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sqlalchemy import Connection, insert, text
+from sqlalchemy import Connection, insert, text, update
+from sqlmodel import col
 
 from robot_runtime.contract import documents
 from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents, read_blocks, read_rows, row
-from server.features.sessions.chunks import encode_rows
-from server.features.sessions.recording import Recording
+from server.features.sessions.chunks import CHUNK_BYTES_MAX, encode_rows
+from server.features.sessions.recording import Recording, RecordingError
 from server.features.sessions.replay import LISTED_CHUNKS, RANGE_MAX, read_blocks_between
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import StateSilence, read_timeline
 from server.platform.errors import InvalidError
-from server.platform.models import BookmarkRow
+from server.platform.models import BookmarkRow, Chunk
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -189,6 +191,39 @@ def test_damaged_chunks_are_left_out_and_counted(store: Store, dive: Recording) 
     stretch = read_blocks_between(dive, 100.0, 110.0)
     assert [int(record.time) for _, record in depths(stretch.data)] == [*range(100), *range(150, 500)]
     assert stretch.left_out == 50
+
+
+@pytest.mark.parametrize("lie", ["count = count + 1", "count = count - 1"])
+def test_a_chunk_of_another_count_is_left_out(store: Store, dive: Recording, lie: str) -> None:
+    change(store, f"UPDATE chunk SET {lie} WHERE number = 2")
+    stretch = read_blocks_between(dive, 100.0, 110.0)
+    assert [int(record.time) for _, record in depths(stretch.data)] == [*range(100), *range(150, 500)]
+    assert len(told(stretch.data, "debug")) == 90
+
+
+def test_a_stored_bomb_is_left_out(store: Store, dive: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    size = dive.topics["depth"]["row_bytes"]
+    samples = CHUNK_BYTES_MAX // size + 1
+    bombs = {"depth": zlib.compress(bytes(samples * size)), "debug": zlib.compress(b"{}\n" * 6_000_000)}
+
+    def store_bombs(connection: Connection) -> None:
+        for topic, data in bombs.items():
+            which = col(Chunk.topic) == topic, col(Chunk.number) == 2
+            connection.execute(update(Chunk).where(*which).values(data=data, count=samples))
+
+    asyncio.run(store.write(store_bombs))
+    monkeypatch.setattr(zlib, "decompress", None)
+    stretch = read_blocks_between(dive, 100.0, 110.0)
+    assert [int(record.time) for _, record in depths(stretch.data)] == [*range(100), *range(150, 500)]
+    assert stretch.left_out == 2 * samples
+    for read_topic in (
+        lambda: dive.columns("depth", ["depth"]),
+        lambda: list(dive.rows("depth")),
+        lambda: list(dive.documents("debug")),
+        lambda: list(dive.changes("debug")),
+    ):
+        with pytest.raises(RecordingError, match="unpacks to more than 16000000 bytes"):
+            read_topic()
 
 
 def test_rows_of_other_definitions_are_rewritten_by_name_and_scale(store: Store, dive: Recording) -> None:
