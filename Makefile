@@ -27,7 +27,7 @@ REST = $(LONGEST) $(filter-out $(LONGEST) tests/browser/%,$(shell find tests -na
 
 .DEFAULT_GOAL := help
 .PHONY: help run test test-real-time test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface hours generate firmware \
-	host-firmware setup setup-test clean
+	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -81,6 +81,9 @@ interface: setup ## ask every operation what its description lets one think of (
 hours: setup host-firmware ## record HOURS=8 of a dive in simulated time and read them; an hour's load on the memory
 	@nice $(PYTHON) -m tests.proofs.hours $(HOURS)
 	@nice $(PYTHON) -m tests.proofs.memory 60
+
+released-session: setup host-firmware ## store a session of this version, which every later one must read; once a release
+	$(PYTHON) -m tests.released
 
 generate: .venv/.ready frontend/node_modules/.ready ## write the generated files from their definitions
 	$(PYTHON) -m robot_runtime.generate
