@@ -25,6 +25,13 @@ class ApiError(Exception):
         return {cls.status: str(cls.__doc__).partition("\n")[0]}
 
 
+class SignedOutError(ApiError):
+    """Not signed in"""
+
+    status = 401
+    headers: Mapping[str, str] = {"www-authenticate": "Bearer"}
+
+
 class ForbiddenError(ApiError):
     """Not allowed"""
 

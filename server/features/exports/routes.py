@@ -1,5 +1,6 @@
 """Exports of sessions: start, progress, download; imports of archives."""
 
+from collections.abc import AsyncIterator
 from typing import Annotated
 
 from fastapi import Path, Request
@@ -13,6 +14,7 @@ from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs, UnknownExportError
 from server.features.exports.schemas import Job, NewExport
 from server.features.exports.selection import ExportRequestError
+from server.features.lease.admission import admit
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import UnknownSessionError, find_row, from_row
 from server.health.monitor import HealthMonitor
@@ -95,5 +97,12 @@ async def import_session(
     """Import a session from an archive, the request's body; it is stored whole or not at all."""
     monitor.require_disarmed("An upload slows the recording.")
     length = request.headers.get("content-length")
-    number = await imports.receive(request.stream(), int(length) if length else None)
+    number = await imports.receive(_pieces(request), int(length) if length else None)
     return from_row(await run_in_threadpool(find_row, store, number))
+
+
+async def _pieces(request: Request) -> AsyncIterator[bytes]:
+    """The body; an upload lasts, and ends where the access of its sender does."""
+    async for piece in request.stream():
+        await admit(request)
+        yield piece

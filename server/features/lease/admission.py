@@ -8,22 +8,29 @@ from starlette.requests import HTTPConnection
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.http.dependencies import find_service
+from server.http.sign_in.access import Access
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.http.sign_in.policy import Need, need_of, refusal
-from server.platform.errors import ConflictError, ForbiddenError
+from server.platform.errors import ConflictError, ForbiddenError, SignedOutError
 
 HEADER = "x-mucat-client"
 
 
 async def admit(connection: HTTPConnection) -> None:
-    """Check a request to any router.
+    """Check a request to any router, once its body has been read; again wherever a request has waited since.
 
+    The sign-in was checked at the request's head: until now it may have been revoked, or its role changed.
     The live socket needs a sign-in; each of its messages is checked by itself (`may_say`). Raises
-    ForbiddenError, or NotInControlError if the operation needs control and another client has it.
+    SignedOutError, ForbiddenError, or NotInControlError if the operation needs control and another client
+    has it.
     """
     socket = connection.scope["type"] == "websocket"
     need = Need.VIEWER if socket else need_of(connection.scope["route"])
-    reason = refusal(connection.scope.get(IDENTITY), need)
+    before = connection.scope.get(IDENTITY)
+    identity = connection.scope[IDENTITY] = find_service(connection, Access).refresh(before)
+    if identity is None and before is not None and need != Need.NOTHING:
+        raise SignedOutError("Your access was revoked before the request was complete.")
+    reason = refusal(identity, need)
     if reason is not None:
         raise ForbiddenError(reason)
     if need == Need.CONTROL:

@@ -151,7 +151,7 @@ async def live(
 
     try:
         # Access may have been revoked while the socket opened; from here on the hub dismisses it.
-        if not access.is_valid(caller):
+        if access.refresh(caller) != caller:
             raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
             listen = _LiveConnection(socket, owner, hub, arbiter, bridge).listen

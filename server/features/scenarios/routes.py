@@ -5,7 +5,7 @@ from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.scenario.document import read_scenario
-from server.features.lease.admission import require_control
+from server.features.lease.admission import admit, require_control
 from server.features.scenarios import library
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import (
@@ -71,8 +71,9 @@ async def start_scenario(
     if body.place == "live":
         require_control(request)
     scenario = await run_in_threadpool(read_scenario, body.text)
+    # Access may have been revoked, and control changed hands, in the meantime.
+    await admit(request)
     if body.place == "live":
-        # Control may have changed hands in the meantime.
         require_control(request)
     run = scenarios.start(scenario, body.text, body.place, body.board, caller.name)
     return ScenarioStarted(run=run)

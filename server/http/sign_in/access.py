@@ -61,9 +61,12 @@ class Access:
             return self._find_bearer(header[len(BEARER) :].strip())
         return self._see(self.devices.find(connection.cookies.get(self.cookie, ""), "browser"))
 
-    def is_valid(self, identity: Identity) -> bool:
-        """True while this identity is valid and unchanged."""
-        return identity == SHELL or any(device.identity == identity for device in self.devices.all())
+    def refresh(self, identity: Identity | None) -> Identity | None:
+        """The caller's identity as it is now, perhaps in another role; None where access was revoked."""
+        if identity is None or identity == SHELL:
+            return identity
+        device = self.devices.find_valid(identity.device)
+        return None if device is None else device.identity
 
     async def pair(self, code: str, name: str, known: Identity | None) -> tuple[Identity, str | None]:
         """Sign a browser in; its identity and its new cookie, None where it has one, being `known`.

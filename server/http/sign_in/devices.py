@@ -80,6 +80,10 @@ class Devices:
         device = self._devices.get(self._by_secret.get(digest(secret), 0))
         return device if device is not None and device.kind == kind else None
 
+    def find_valid(self, number: int) -> Device | None:
+        """The device of this number; None where it is revoked, also while its end is still being stored."""
+        return self._devices.get(number) if number in self._by_secret.values() else None
+
     @property
     def operators(self) -> list[Device]:
         """Operators that are browsers; only they can admit others."""

@@ -1,7 +1,9 @@
 """Sign-in check for everything under /api: refuses a request before its body is read."""
 
+from contextlib import suppress
+
 from starlette.requests import HTTPConnection
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.http.dependencies import find_service
 from server.http.security import SAFE_METHODS, refuse
@@ -40,9 +42,30 @@ class SignInMiddleware:
             await refuse(scope, receive, send, 401, NOBODY)
         elif identity is not None and (reason := _foreign(connection, identity)) is not None:
             await refuse(scope, receive, send, 403, reason)
+        elif identity is not None and scope["type"] == "http":
+            scope[IDENTITY] = identity
+            with suppress(_RevokedError):
+                await self._app(
+                    scope, receive, _stop_when_revoked(send, find_service(connection, Access), identity)
+                )
         else:
             scope[IDENTITY] = identity
             await self._app(scope, receive, send)
+
+
+class _RevokedError(Exception):
+    """The caller's access was revoked while an answer was being sent; its rest is not sent."""
+
+
+def _stop_when_revoked(send: Send, access: Access, identity: Identity) -> Send:
+    """The `send` of a request, which ends a long answer, such as a download, with the caller's access."""
+
+    async def send_piece(message: Message) -> None:
+        if message.get("more_body") and access.refresh(identity) is None:
+            raise _RevokedError
+        await send(message)
+
+    return send_piece
 
 
 def _is_api(path: str) -> bool:

@@ -244,7 +244,7 @@ class SigningIn(RuleBasedStateMachine):
             other: Kind = "program" if one.identity.kind == "browser" else "browser"
             assert self.run(self.seen(one.identity.kind, one.secret)) == (None if one.out else one.identity)
             assert self.run(self.seen(other, one.secret)) is None
-            assert self.access.is_valid(one.identity) is not one.out
+            assert (self.access.refresh(one.identity) == one.identity) is not one.out
         there = {one.identity for one in self.everybody if not one.out}
         assert {one.identity for one in self.access.devices.all()} == there
         assert self.access.codes.any_valid is bool(self.valid())

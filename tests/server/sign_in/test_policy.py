@@ -2,6 +2,7 @@
 
 import asyncio
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from fastapi import APIRouter, Depends, FastAPI
@@ -10,6 +11,7 @@ from starlette.requests import HTTPConnection
 
 from server.app import create_app
 from server.features.lease.admission import admit
+from server.http.sign_in.access import Access
 from server.http.sign_in.identity import IDENTITY, SHELL
 from server.http.sign_in.middleware import OPEN
 from server.http.sign_in.policy import Need, list_needs, needs
@@ -49,10 +51,11 @@ def test_an_operation_without_a_need_is_refused_even_to_the_shell() -> None:
     router.get("/undeclared")(lambda: None)
     app = FastAPI()
     app.include_router(router, dependencies=[Depends(admit)])
+    app.state.services = {Access: SimpleNamespace(refresh=lambda identity: identity)}
     routes = {one.path: one for one in iter_route_contexts(app.routes)}
 
     def ask(path: str) -> None:
-        scope = {"type": "http", "route": routes[path], IDENTITY: SHELL, "headers": []}
+        scope = {"type": "http", "app": app, "route": routes[path], IDENTITY: SHELL, "headers": []}
         asyncio.run(admit(HTTPConnection(scope)))
 
     ask("/declared")
