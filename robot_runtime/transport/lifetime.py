@@ -4,6 +4,7 @@ import argparse
 import ctypes
 import fcntl
 import os
+import resource
 import signal
 import sys
 import threading
@@ -32,6 +33,16 @@ def end_with_parent(parent: int | None = None, number: signal.Signals = signal.S
         raise OSError(ctypes.get_errno(), "prctl(PR_SET_PDEATHSIG) failed")
     if os.getppid() != parent:
         sys.exit(0)
+
+
+def limit_process(memory: int, seconds: int) -> None:
+    """Limits this process: bytes of its own memory, at most half of the computer's, and s on a processor.
+
+    Beyond the first an allocation raises MemoryError; beyond the second the kernel ends the process.
+    """
+    physical = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    resource.setrlimit(resource.RLIMIT_DATA, (min(memory, physical // 2),) * 2)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds,) * 2)
 
 
 def add_server_options(parser: argparse.ArgumentParser) -> None:

@@ -23,7 +23,7 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.comm_test.builder import _macros
 from robot_runtime.experiments.comm_test.document import SKETCH, CommTest, read_document
-from server.features.exports.archive_reader import ArchiveError, open_archive
+from server.features.exports.archive_reader import Archive, ArchiveError, open_archive
 from server.features.scenarios.library import keep_scenario
 from server.http.page import Page
 from server.http.serving import MESSAGE_BYTES_MAX
@@ -291,7 +291,7 @@ def archive(field: Field) -> None:
             zipped.writestr("session.json", "{}")
             zipped.writestr("checksums.json", "{}")
         file.flush()
-        with suppress(ArchiveError), open_archive(Path(file.name)):
+        with suppress(ArchiveError), open_archive(Path(file.name), Archive):
             raise AssertionError(f"{name!r} was let in")
 
 

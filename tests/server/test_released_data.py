@@ -18,6 +18,7 @@ import pytest
 
 from robot_runtime.transport.blocks import read_blocks
 from server.cli import main
+from server.features.exports.archive_reader import examine
 from server.platform.settings import Settings
 from tests.server.serving import serve
 
@@ -61,6 +62,14 @@ def test_exported_tables_are_identical(released: Settings, session: str, tmp_pat
     assert {name: hashlib.sha256(data).hexdigest() for name, data in files.items()} == EXPECTED["csv"][
         session
     ]
+
+
+@pytest.mark.parametrize("session", SESSIONS)
+def test_an_archive_is_read_as_one_of_today(released: Settings, session: str, tmp_path: Path) -> None:
+    path = tmp_path / "dive.mucat.zip"
+    where = ["--data", str(released.data.path), "--config", str(released.config)]
+    assert main(["export", session, "--format", "archive", "-o", str(path), *where]) == 0
+    examine(path, tmp_path / "rows")
 
 
 def test_comparisons_give_the_same_figures(released: Settings) -> None:

@@ -39,7 +39,7 @@ from server.features.comparison.schemas import (
 from server.features.comparison.signals import Signal, list_signals, split
 from server.features.metrics.figure import Figure
 from server.features.metrics.series import Floats
-from server.features.sessions.recording import Recording
+from server.features.sessions.recording import Recording, reading_content
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Moment, read_events
 from server.platform.models import SessionRow
@@ -82,15 +82,22 @@ class Comparer:
 
     def signals(self, session: int) -> list[Signal]:
         """The signals of a session that can be drawn."""
-        return list_signals(self._open(session))
+        recording = self._open(session)
+        with reading_content(recording.row):
+            return list_signals(recording)
 
     def compare(self, query: ComparisonQuery) -> Comparison:
         """Lines, figures and differences of the sessions, in the order asked for."""
         aligned = self._align(query)
+
+        def compare_one(one: _AlignedSession) -> Compared:
+            with reading_content(one.row):
+                return self._compare_one(one, query)
+
         return Comparison(
             align=query.align,
             signals=_chosen_signals(query.signals, aligned),
-            sessions=list(self._threads.map(lambda one: self._compare_one(one, query), aligned)),
+            sessions=list(self._threads.map(compare_one, aligned)),
             figures=list(FIGURES),
             differences=find_differences([(one.row, one.history) for one in aligned]),
         )
@@ -114,6 +121,10 @@ class Comparer:
         return list(self._threads.map(lambda one: self._align_one(one, query), recordings))
 
     def _align_one(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
+        with reading_content(recording.row):
+            return self._find_offset(recording, query)
+
+    def _find_offset(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
         # All at once, since the columns of a topic are read together.
         found = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
         history = self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))

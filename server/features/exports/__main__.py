@@ -1,10 +1,11 @@
 """Writes one export, or checks one archive, in a process beside the server.
 
     python -m server.features.exports write DATABASE SESSION OPTIONS PATH
-    python -m server.features.exports examine PATH
+    python -m server.features.exports examine PATH ROWS
 
-OPTIONS are ExportOptions as JSON. It writes lines of JSON: {"progress": 0..1}, and last {"bytes", "sha256"},
-{"examined": true} or {"problem": text}.
+ROWS is the file to which `examine` writes the rows of the session. OPTIONS are ExportOptions as JSON. It
+prints lines of JSON: {"progress": 0..1}, and last {"bytes", "sha256"}, {"examined": true} or
+{"problem": text}.
 """
 
 import json
@@ -14,7 +15,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.transport.lifetime import end_with_parent
+from robot_runtime.transport.lifetime import end_with_parent, limit_process
 from server.features.exports.archive_reader import examine
 from server.features.exports.files import write_part
 from server.features.exports.formats import check
@@ -27,24 +28,31 @@ from server.platform.store import Reader
 NICENESS = 15
 """Control and recording go first."""
 REPORT_SECONDS = 0.2
+BYTES_MAX = 2_000_000_000
+SECONDS_MAX = 3600
+"""Memory, and time on a processor, of one export or one check."""
 
 
 def main() -> int:
     """Run the action. Exit status: 1 after a problem, which was reported."""
     end_with_parent()
     os.nice(NICENESS)
+    limit_process(BYTES_MAX, SECONDS_MAX)
     try:
         match sys.argv[1:]:
             case ["write", database, session, options, path]:
                 choice = ExportOptions.model_validate_json(options)
                 _write(Path(database), int(session), choice, Path(path))
-            case ["examine", path]:
-                examine(Path(path), _Progress().tell)
+            case ["examine", path, rows]:
+                examine(Path(path), Path(rows), _Progress().tell)
                 _report({"examined": True})
             case _:
                 sys.exit(__doc__)
     except ApiError as problem:
         _report({"problem": problem.detail})
+        return 1
+    except MemoryError:
+        _report({"problem": f"It takes more than {BYTES_MAX / 1e9:g} GB of memory."})
         return 1
     return 0
 

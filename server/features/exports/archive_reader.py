@@ -7,159 +7,40 @@ chunk to the samples that its head announces.
 import hashlib
 import json
 import re
-import struct
 import zipfile
-import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import isfinite
 from pathlib import Path
-from typing import IO, Annotated, Any, Literal, NamedTuple
+from typing import IO, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import ValidationError
 
-from robot_runtime.contract.topics import TIME
 from server.features.exports.archive import CHECKSUMS, CHUNKS, FORMAT, HEAD, SESSION, VERSION
-from server.features.sessions.chunks import (
-    CHUNK_BYTES_MAX,
-    DOCUMENTS_ENCODING,
-    PICTURES_ENCODING,
-    ROWS_ENCODING,
-    decode_pictures,
-    unpack,
-)
+from server.features.exports.archive_models import ArchivedChunk, ArchivedDocument
+from server.features.exports.archive_samples import SPAN_MAX, check_chunk, check_document
+from server.features.sessions.chunks import CHUNK_BYTES_MAX
 from server.platform.errors import InvalidError
 
 SESSION_BYTES_MAX = 32_000_000
+DESCRIPTION_BYTES_MAX = 1_000_000
+ROWS_AT_ONCE = 1_000
+"""Rows in one line, each of at most 20 kB, and in one transaction."""
 STEP_BYTES = 1 << 20
 MEMBER = re.compile(r"session\.json|checksums\.json|chunks/[a-z][a-z0-9_]{0,49}")
-CODES = "bBhHiIqQfd?"
-ENCODINGS = {"rows": ROWS_ENCODING, "documents": DOCUMENTS_ENCODING, "picture": PICTURES_ENCODING}
-
-Text = Annotated[str, Field(max_length=1_000_000)]
-Words = Annotated[str, Field(max_length=10_000)]
-Time = Annotated[float, Field(ge=-1e15, le=1e15, allow_inf_nan=False)]
-Count = Annotated[int, Field(ge=0, lt=1 << 62)]
-Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,49}$")]
 
 
 class ArchiveError(InvalidError):
     """The file is no archive that can be imported"""
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="ignore", allow_inf_nan=False)
-
-
-class TopicField(_Strict):
-    """A field of a topic, as `chunks.describe_topics` writes it; of documents only the name."""
-
-    name: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,99}$")]
-    code: Annotated[str, Field(min_length=1, max_length=1)] | None = None
-    count: Annotated[int, Field(ge=1, le=1000)] = 1
-    scale: float = 1
-    unit: Annotated[str, Field(max_length=50)] = ""
-    meaning: Words = ""
-
-
-class ArchivedTopic(_Strict):
-    """A topic, as `chunks.describe_topics` writes it."""
-
-    meaning: Words
-    kind: Literal["rows", "documents", "picture"]
-    row_bytes: int = 0
-    fields: Annotated[list[TopicField], Field(max_length=1000)]
-
-    @model_validator(mode="after")
-    def _agrees(self) -> "ArchivedTopic":
-        if self.kind == "rows":
-            if any(field.code is None or field.code not in CODES for field in self.fields):
-                raise ValueError("its fields have unknown types")
-            codes = "<" + "".join(f"{field.count}{field.code}" for field in self.fields)
-            if self.row_bytes != TIME.size + struct.calcsize(codes):
-                raise ValueError("the length of its rows does not match its fields")
-        return self
-
-
-class ArchivedSession(_Strict):
-    """The session's columns (see `SessionRow`)."""
-
-    identifier: Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
-    name: Annotated[str, Field(min_length=1, max_length=1000)]
-    note: Words
-    state: Literal["complete", "interrupted"]
-    robot: Words
-    version: Words
-    definitions: Words
-    started: Annotated[float, Field(ge=0, le=253e9)]
-    started_steady: Time
-    ended: Annotated[float, Field(ge=0, le=253e9)] | None
-    duration: Annotated[float, Field(ge=0, le=1e12)]
-    configuration: Text
-    robot_state: dict[str, Any] | None
-    topics: dict[Name, ArchivedTopic]
-    boot: Words = ""
-    scenario: Text = ""
-    scenario_name: Words = ""
-    seed: Annotated[int, Field(ge=-(1 << 62), lt=1 << 62)] | None = None
-    firmware: Words = ""
-    software: Words = ""
-
-
-class ArchivedBookmark(_Strict):
-    """The columns of a bookmark (see `BookmarkRow`)."""
-
-    time: Time
-    text: Words
-    made: Time
-
-
-class ArchivedGap(_Strict):
-    """The columns of a gap (see `Gap`)."""
-
-    topic: Words
-    kind: Words
-    time: Time
-    missed: Count
-
-
-class ArchivedDocument(_Strict):
-    """The content of `session.json`."""
-
-    session: ArchivedSession
-    tags: Annotated[list[Annotated[str, Field(min_length=1, max_length=1000)]], Field(max_length=10_000)]
-    markers: Annotated[list[ArchivedBookmark], Field(max_length=100_000)]
-    gaps: Annotated[list[ArchivedGap], Field(max_length=1_000_000)]
-
-
-class ArchivedChunk(NamedTuple):
-    """The columns of a chunk (see `Chunk`)."""
-
-    topic: str
-    number: int
-    first_time: float
-    last_time: float
-    first: int
-    samples: int
-    encoding: str
-    data: bytes
-
-
-class Archive:
-    """An open archive with valid names of members and a valid `session.json`."""
+class ArchiveChunks:
+    """The chunks in an archive with valid names of members; `session.json` is not read."""
 
     def __init__(self, zipped: zipfile.ZipFile, size: int) -> None:
         self._zipped = zipped
         self._names = self._check_members(size)
-        self._sums = self._read_json(CHECKSUMS)
-        if not isinstance(self._sums, dict):
-            raise ArchiveError(f"{CHECKSUMS} is not an object.")
-        self.content, self.described_topics = self._session()
-        """The content of `session.json`, and its descriptions of topics word for word."""
         self.topics = [name.removeprefix(CHUNKS) for name in self._names if name.startswith(CHUNKS)]
-        strange = [name for name in self.topics if name not in self.content.session.topics]
-        if strange:
-            raise ArchiveError(f"It holds chunks of {', '.join(strange)}, which its {SESSION} does not know.")
 
     def chunks(self, topic: str) -> Iterator[ArchivedChunk]:
         """The chunks of a topic with plausible heads; their data is not checked."""
@@ -182,24 +63,6 @@ class Archive:
                 name = encoding.rstrip(b"\0").decode("ascii", "replace")
                 yield ArchivedChunk(topic, number, first_time, last_time, first, count, name, data)
 
-    def verify(self, report: Callable[[float], None]) -> None:
-        """Check the checksums, and every chunk's samples. Raises ArchiveError."""
-        total = sum(info.file_size for info in self._zipped.infolist())
-        done = 0
-        for name in self._names:
-            checksum = hashlib.sha256()
-            with self._zipped.open(name) as file:
-                while piece := file.read(STEP_BYTES):
-                    checksum.update(piece)
-                    done += len(piece)
-                    report(0.5 * done / total)
-            if self._sums.get(name) != checksum.hexdigest():
-                raise ArchiveError(f"{name} is damaged: its checksum is not the one in {CHECKSUMS}.")
-        for place, topic in enumerate(self.topics):
-            for chunk in self.chunks(topic):
-                self._decode(chunk)
-            report(0.5 + 0.5 * (place + 1) / len(self.topics))
-
     def _check_members(self, size: int) -> list[str]:
         infos = self._zipped.infolist()
         names = [info.filename for info in infos]
@@ -215,6 +78,46 @@ class Archive:
         if sum(info.file_size for info in infos) > size:
             raise ArchiveError("Its members are larger than the file.")
         return [name for name in names if name != CHECKSUMS]
+
+
+class Archive(ArchiveChunks):
+    """An open archive with valid names of members and a valid `session.json`.
+
+    Reading a large `session.json` takes seconds and much memory: not for the server's process.
+    """
+
+    def __init__(self, zipped: zipfile.ZipFile, size: int) -> None:
+        super().__init__(zipped, size)
+        self._sums = self._read_json(CHECKSUMS)
+        if not isinstance(self._sums, dict):
+            raise ArchiveError(f"{CHECKSUMS} is not an object.")
+        self.content, self.described_topics = self._session()
+        """The content of `session.json`, and its descriptions of topics word for word."""
+        strange = [name for name in self.topics if name not in self.content.session.topics]
+        if strange:
+            raise ArchiveError(f"It holds chunks of {', '.join(strange)}, which its {SESSION} does not know.")
+
+    def verify(self, report: Callable[[float], None]) -> None:
+        """Check the checksums, and every chunk's samples. Raises ArchiveError."""
+        total = sum(info.file_size for info in self._zipped.infolist())
+        done = 0
+        for name in self._names:
+            checksum = hashlib.sha256()
+            with self._zipped.open(name) as file:
+                while piece := file.read(STEP_BYTES):
+                    checksum.update(piece)
+                    done += len(piece)
+                    report(0.5 * done / total)
+            if self._sums.get(name) != checksum.hexdigest():
+                raise ArchiveError(f"{name} is damaged: its checksum is not the one in {CHECKSUMS}.")
+        session = self.content.session
+        for place, topic in enumerate(self.topics):
+            for chunk in self.chunks(topic):
+                try:
+                    check_chunk(chunk, session.topics[topic], session.started_steady)
+                except ValueError as problem:
+                    raise ArchiveError(f"Chunk {chunk.number} of {topic} is damaged: {problem}.") from problem
+            report(0.5 + 0.5 * (place + 1) / len(self.topics))
 
     def _read_json(self, name: str) -> Any:
         with self._zipped.open(name) as file:
@@ -239,53 +142,41 @@ class Archive:
                 "Install the version of µ-CAT that wrote it, or a newer one."
             )
         try:
-            return ArchivedDocument.model_validate(document), document["session"]["topics"]
+            content = ArchivedDocument.model_validate(document)
         except ValidationError as problem:
             first = problem.errors()[0]
             where = ".".join(str(place) for place in first["loc"])
             raise ArchiveError(f"Its {SESSION} is not valid: {where}: {first['msg']}") from problem
-
-    def _decode(self, chunk: ArchivedChunk) -> None:
-        topic = self.content.session.topics[chunk.topic]
-        where = f"Chunk {chunk.number} of {chunk.topic}"
-        expected = ENCODINGS[topic.kind]
-        if chunk.encoding != expected:
-            raise ArchiveError(f"{where} is encoded as {chunk.encoding!r}, which this version cannot read.")
-        if topic.kind == "picture":
-            _check_pictures(chunk, where)
-            return
-        announced = CHUNK_BYTES_MAX if topic.kind == "documents" else chunk.samples * topic.row_bytes
-        limit = min(CHUNK_BYTES_MAX, announced)
+        described: dict[str, Any] = document["session"]["topics"]
         try:
-            data = unpack(chunk.data, limit)
-        except (ValueError, zlib.error) as problem:
-            raise ArchiveError(f"{where} is damaged: {problem}.") from problem
-        if topic.kind == "rows":
-            if len(data) != announced:
-                raise ArchiveError(f"{where} has {len(data)} bytes, which are not {chunk.samples} samples.")
-            return
-        try:
-            documents = [json.loads(line) for line in data.splitlines()]
-            times = [float(document["time"]) for document in documents]
-        except (ValueError, TypeError, KeyError, RecursionError) as problem:
-            raise ArchiveError(f"{where} does not hold documents with a time: {problem}") from problem
-        if len(times) != chunk.samples or not all(map(isfinite, times)):
-            raise ArchiveError(f"{where} does not hold {chunk.samples} documents with a time.")
+            _check_session(content, described)
+        except ValueError as problem:
+            raise ArchiveError(f"Its {SESSION} is not valid: {problem}.") from problem
+        return content, described
 
 
-def examine(path: Path, report: Callable[[float], None] = lambda _: None) -> None:
-    """Check a whole archive. Raises ArchiveError."""
-    with open_archive(path) as archive:
+Reading = TypeVar("Reading", bound=ArchiveChunks)
+
+
+def examine(path: Path, rows: Path, report: Callable[[float], None] = lambda _: None) -> None:
+    """Check a whole archive, and write the rows of its session to the file `rows`. Raises ArchiveError.
+
+    Lines of JSON: first the columns of the session, then of some bookmarks, gaps or tags each.
+    """
+    with open_archive(path, Archive) as archive:
         archive.verify(report)
+        with rows.open("w", encoding="utf-8") as file:
+            for line in _describe_rows(archive):
+                file.write(json.dumps(line, ensure_ascii=False) + "\n")
 
 
 @contextmanager
-def open_archive(path: Path) -> Iterator[Archive]:
+def open_archive(path: Path, reader: type[Reading]) -> Iterator[Reading]:
     """Open an archive for reading. Raises ArchiveError, also for errors while it is read."""
     try:
         file: IO[bytes]
         with path.open("rb") as file, zipfile.ZipFile(file) as zipped:
-            yield Archive(zipped, path.stat().st_size)
+            yield reader(zipped, path.stat().st_size)
     except zipfile.BadZipFile as problem:
         raise ArchiveError(
             f"It is no zip file, cut off or damaged ({problem}). Copy it again, and compare its checksum."
@@ -294,10 +185,30 @@ def open_archive(path: Path) -> Iterator[Archive]:
         raise ArchiveError(f"It cannot be read: {problem}") from problem
 
 
-def _check_pictures(chunk: ArchivedChunk, where: str) -> None:
-    try:
-        times = [time for time, _ in decode_pictures(chunk.data)]
-    except ValueError as problem:
-        raise ArchiveError(f"{where} is damaged: {problem}") from problem
-    if len(times) != chunk.samples or not all(map(isfinite, times)):
-        raise ArchiveError(f"{where} does not hold {chunk.samples} pictures with a time.")
+def _describe_rows(archive: Archive) -> Iterator[dict[str, Any]]:
+    content = archive.content
+    session = content.session.model_dump(exclude={"topics", "robot_state"})
+    session["topics"] = json.dumps(archive.described_topics, ensure_ascii=False)
+    session["robot_state"] = json.dumps(content.session.robot_state, ensure_ascii=False)
+    yield {"session": session}
+    small: dict[str, list[dict[str, Any]]] = {
+        "tags": [{"tag": tag} for tag in dict.fromkeys(content.tags)],
+        "markers": [one.model_dump() for one in content.markers],
+        "gaps": [one.model_dump() for one in content.gaps],
+    }
+    for table, rows in small.items():
+        for at in range(0, len(rows), ROWS_AT_ONCE):
+            yield {table: rows[at : at + ROWS_AT_ONCE]}
+
+
+def _check_session(content: ArchivedDocument, described: dict[str, Any]) -> None:
+    """Raises ValueError where a session has what this version cannot read."""
+    session = content.session
+    for name, value in {"topics": described, "robot_state": session.robot_state}.items():
+        if len(json.dumps(value)) > DESCRIPTION_BYTES_MAX:
+            raise ValueError(f"{name} is longer than {DESCRIPTION_BYTES_MAX} bytes")
+    if session.robot_state is not None:
+        check_document(session.robot_state, "state")
+    times = [one.time for one in content.markers] + [one.time for one in content.gaps]
+    if any(abs(time - session.started_steady) > SPAN_MAX for time in times):
+        raise ValueError("a bookmark or a gap is far from the session")

@@ -7,7 +7,7 @@ stored. The retention worker removes what does not become whole.
 import asyncio
 import json
 import shutil
-from collections.abc import AsyncIterable, Iterator
+from collections.abc import AsyncIterable, AsyncIterator, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
 from secrets import token_hex
@@ -15,10 +15,11 @@ from typing import Any
 
 from sqlalchemy import insert, update
 from sqlmodel import SQLModel, col, select
+from starlette.requests import ClientDisconnect
 
-from robot_runtime.durable_files import PART
+from robot_runtime.durable_files import PART, make_folder
 from robot_runtime.errors import RefusedError
-from server.features.exports.archive_reader import Archive, ArchiveError, open_archive
+from server.features.exports.archive_reader import ROWS_AT_ONCE, ArchiveChunks, ArchiveError, open_archive
 from server.features.exports.export_process import ExportProcess, ExportProcessError
 from server.features.exports.files import FileWriteError
 from server.features.sessions.session import IMPORTING, REMOVING
@@ -29,10 +30,14 @@ from server.platform.store import Store, insert_row
 
 BATCH_BYTES = 500_000
 """Stored in one transaction."""
-ROWS_AT_ONCE = 2_000
 PIECE_BYTES = 1 << 20
+UPLOADS_MAX = 4
+UPLOAD_SECONDS = 30.0
+UPLOAD_RATE = 10_000
+"""bytes/s after the first `UPLOAD_SECONDS`; a slower upload, or one that hangs, is ended."""
 SPARE_BYTES = 50_000_000
 """Disk space that is left free for recordings."""
+TABLES: Mapping[str, type[SQLModel]] = {"tags": SessionTag, "markers": BookmarkRow, "gaps": Gap}
 COPIES = 2
 """During an import a session is on the disk twice: as the archive and in the database."""
 
@@ -45,6 +50,7 @@ class Imports:
         self._data = folder.path
         self._store = store
         self._busy = asyncio.Lock()
+        self._uploads = 0
 
     async def recover(self) -> None:
         """Remove unfinished imports of a server that was killed. Raises StoreError."""
@@ -60,16 +66,25 @@ class Imports:
         Raises RefusedError if it cannot be imported now, ArchiveError, FileWriteError if the disk fails,
         StoreError.
         """
-        if self._busy.locked():
-            raise RefusedError("Another archive is being imported. Wait for its end.")
-        async with self._busy:
-            self._check_room(COPIES * (size or 0))
-            path = self._folder / (token_hex(8) + PART)
-            try:
-                await self._save(pieces, path)
+        if self._uploads >= UPLOADS_MAX:
+            raise RefusedError(f"{UPLOADS_MAX} archives are being uploaded. Wait for the end of one.")
+        self._check_room(COPIES * (size or 0))
+        path = self._folder / (token_hex(8) + PART)
+        self._uploads += 1
+        try:
+            await self._save(_at_rate(pieces), path)
+        except BaseException:
+            await asyncio.to_thread(path.unlink, missing_ok=True)
+            raise
+        finally:
+            self._uploads -= 1
+        try:
+            if self._busy.locked():
+                raise RefusedError("Another archive is being imported. Wait for its end.")
+            async with self._busy:
                 return await self._take(path)
-            finally:
-                await asyncio.to_thread(path.unlink, missing_ok=True)
+        finally:
+            await asyncio.to_thread(path.unlink, missing_ok=True)
 
     async def take(self, path: Path) -> int:
         """Import the archive in a file. Raises as `receive`."""
@@ -101,24 +116,37 @@ class Imports:
             raise FileWriteError(explain_write_error(problem, path)) from problem
 
     async def _take(self, path: Path) -> int:
+        rows = self._folder / (token_hex(8) + PART)
         try:
-            await ExportProcess(["examine", str(path)], lambda _: None).run()
-        except ExportProcessError as problem:
-            raise ArchiveError(f"The archive cannot be imported. {problem}") from problem
-        with open_archive(path) as archive:
-            self._refuse_known(archive)
-            values = _session_values(archive)
-            number = await self._store.write(lambda connection: insert_row(connection, SessionRow, values))
+            await asyncio.to_thread(make_folder, self._folder)
             try:
-                await self._fill(number, archive)
-            except BaseException:
-                # The retention worker removes the rest.
-                await asyncio.shield(self._change(number, {"state": REMOVING}))
-                raise
+                await ExportProcess(["examine", str(path), str(rows)], lambda _: None).run()
+            except ExportProcessError as problem:
+                raise ArchiveError(f"The archive cannot be imported. {problem}") from problem
+            return await self._store_session(path, rows)
+        except OSError as problem:
+            raise FileWriteError(explain_write_error(problem, rows)) from problem
+        finally:
+            await asyncio.to_thread(rows.unlink, missing_ok=True)
+
+    async def _store_session(self, path: Path, rows: Path) -> int:
+        lines = _read_lines(rows)
+        first = await asyncio.to_thread(next, lines)
+        session: dict[str, Any] = first["session"]
+        await asyncio.to_thread(self._refuse_known, session["identifier"])
+        values = session | {"state": IMPORTING, "origin": "import", "samples": 0, "bytes": 0, "kept": False}
+        number = await self._store.write(lambda connection: insert_row(connection, SessionRow, values))
+        try:
+            await self._fill(number, lines)
+            done = await self._fill_chunks(number, path)
+            await self._change(number, {"state": session["state"], **done})
+        except BaseException:
+            # The retention worker removes the rest.
+            await asyncio.shield(self._change(number, {"state": REMOVING}))
+            raise
         return number
 
-    def _refuse_known(self, archive: Archive) -> None:
-        identifier = archive.content.session.identifier
+    def _refuse_known(self, identifier: str) -> None:
         with self._store.read() as database:
             row = database.exec(select(SessionRow).where(SessionRow.identifier == identifier)).first()
         if row is None:
@@ -128,53 +156,62 @@ class Imports:
         binned = " It is in the bin; restore it there." if row.deleted is not None else ""
         raise RefusedError(f"This session is here already, as number {row.id}: “{row.name}”.{binned}")
 
-    async def _fill(self, number: int, archive: Archive) -> None:
-        content = archive.content
-        session = {"session_id": number}
-        small: list[tuple[type[SQLModel], list[dict[str, Any]]]] = [
-            (SessionTag, [session | {"tag": tag} for tag in dict.fromkeys(content.tags)]),
-            (BookmarkRow, [session | bookmark.model_dump() for bookmark in content.markers]),
-            (Gap, [session | gap.model_dump() for gap in content.gaps]),
-        ]
-        for table, rows in small:
-            for at in range(0, len(rows), ROWS_AT_ONCE):
-                await self._store.execute(insert(table), rows[at : at + ROWS_AT_ONCE])
-        batches = _batches(archive, number)
+    async def _fill(self, number: int, lines: Iterator[dict[str, Any]]) -> None:
+        while line := await asyncio.to_thread(next, lines, None):
+            for name, rows in line.items():
+                owned = [{"session_id": number, **row} for row in rows]
+                await self._store.execute(insert(TABLES[name]), owned)
+
+    async def _fill_chunks(self, number: int, path: Path) -> dict[str, int]:
+        """Store the chunks; returns the number of samples and of bytes."""
+        batches = _batches(path, number)
         samples = size = 0
         while batch := await asyncio.to_thread(next, batches, None):
             await self._store.execute(insert(Chunk), batch)
             samples += sum(row["count"] for row in batch)
             size += sum(len(row["data"]) for row in batch)
-        done = {"state": content.session.state, "samples": samples, "bytes": size}
-        await self._change(number, done)
+        return {"samples": samples, "bytes": size}
 
     async def _change(self, number: int, values: dict[str, Any]) -> None:
         await self._store.execute(update(SessionRow).where(col(SessionRow.id) == number).values(values))
 
 
-def _session_values(archive: Archive) -> dict[str, Any]:
-    session = archive.content.session
-    values = session.model_dump(exclude={"topics", "robot_state", "state"})
-    return values | {
-        "topics": json.dumps(archive.described_topics, ensure_ascii=False),
-        "robot_state": json.dumps(session.robot_state, ensure_ascii=False),
-        "state": IMPORTING,
-        "origin": "import",
-        "samples": 0,
-        "bytes": 0,
-        "kept": False,
-    }
+async def _at_rate(pieces: AsyncIterable[bytes]) -> AsyncIterator[bytes]:
+    """The pieces of an upload. Raises ArchiveError where they come too slowly, or end early."""
+    clock = asyncio.get_running_loop()
+    started, received = clock.time(), 0
+    arriving = aiter(pieces)
+    while True:
+        try:
+            async with asyncio.timeout_at(started + UPLOAD_SECONDS + received / UPLOAD_RATE):
+                piece = await anext(arriving)
+        except StopAsyncIteration:
+            return
+        except TimeoutError as problem:
+            raise ArchiveError(
+                f"The upload was ended: {received} bytes had come. Send it again."
+            ) from problem
+        except ClientDisconnect as problem:
+            raise ArchiveError(f"The upload was cut off after {received} bytes. Send it again.") from problem
+        received += len(piece)
+        yield piece
 
 
-def _batches(archive: Archive, number: int) -> Iterator[list[dict[str, Any]]]:
+def _read_lines(rows: Path) -> Iterator[dict[str, Any]]:
+    with rows.open(encoding="utf-8") as file:
+        yield from map(json.loads, file)
+
+
+def _batches(path: Path, number: int) -> Iterator[list[dict[str, Any]]]:
     batch: list[dict[str, Any]] = []
     size = 0
-    for chunk in chain.from_iterable(archive.chunks(topic) for topic in archive.topics):
-        values = chunk._asdict()
-        batch.append({**values, "count": values.pop("samples"), "session_id": number})
-        size += len(chunk.data)
-        if size >= BATCH_BYTES:
-            yield batch
-            batch, size = [], 0
+    with open_archive(path, ArchiveChunks) as archive:
+        for chunk in chain.from_iterable(archive.chunks(topic) for topic in archive.topics):
+            values = chunk._asdict()
+            batch.append({**values, "count": values.pop("samples"), "session_id": number})
+            size += len(chunk.data)
+            if size >= BATCH_BYTES or len(batch) >= ROWS_AT_ONCE:
+                yield batch
+                batch, size = [], 0
     if batch:
         yield batch

@@ -13,6 +13,7 @@ from sqlmodel import col, desc, func, select
 from server.features.sessions.bookmarks import describe_bookmarks
 from server.features.sessions.chunks import row_layout
 from server.features.sessions.recorder import Recorder
+from server.features.sessions.recording import reading_content
 from server.features.sessions.schemas import RecordedColumn, RecordedTopic, Session, SessionDetail, SessionGap
 from server.features.sessions.session import (
     HIDDEN,
@@ -83,6 +84,7 @@ class Listing:
         with self._reader.read() as database:
             row = database.get_one(SessionRow, session)
             gaps = database.exec(select(Gap).where(Gap.session_id == session).order_by(col(Gap.time))).all()
+            marks = database.exec(select(BookmarkRow).where(BookmarkRow.session_id == session)).all()
             spans = database.exec(
                 select(
                     Chunk.topic, func.sum(Chunk.count), func.min(Chunk.first_time), func.max(Chunk.last_time)
@@ -90,16 +92,15 @@ class Listing:
                 .where(Chunk.session_id == session)
                 .group_by(Chunk.topic)
             ).all()
-            start = row.started_steady
+        start = row.started_steady
+        with reading_content(row):
             return SessionDetail(
                 **found.model_dump(),
                 identifier=row.identifier,
                 scenario=row.scenario,
                 configuration=row.configuration,
                 robot_state=json.loads(row.robot_state or "null"),
-                marks=describe_bookmarks(
-                    database.exec(select(BookmarkRow).where(BookmarkRow.session_id == session)).all(), start
-                ),
+                marks=describe_bookmarks(marks, start),
                 gaps=[
                     SessionGap(**gap.model_dump(include={"topic", "kind", "missed"}), time=gap.time - start)
                     for gap in gaps

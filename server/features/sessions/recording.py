@@ -1,6 +1,7 @@
 """Reads the samples of a session chunk by chunk, so that it is never in memory as a whole."""
 
 import json
+import logging
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
+
+log = logging.getLogger(__name__)
 
 CHUNKS_AT_ONCE = 32
 DATA_AT_ONCE = 512
@@ -254,6 +257,16 @@ class Recording:
             if len(found) < limit:
                 return
             first = found[-1].number + 1
+
+
+@contextmanager
+def reading_content(row: SessionRow) -> Iterator[None]:
+    """Raises RecordingError for content that this version does not expect, as from a foreign archive."""
+    try:
+        yield
+    except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RecursionError) as problem:
+        log.warning("session %s has unexpected content", row.id, exc_info=problem)
+        raise RecordingError(f"its content is not as expected ({problem!r})") from problem
 
 
 def depth_loop(state: Mapping[str, Any]) -> Mapping[str, Any]:

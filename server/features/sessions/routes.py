@@ -11,7 +11,7 @@ from robot_runtime.clock import Clock
 from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
-from server.features.sessions.recording import Recording
+from server.features.sessions.recording import Recording, reading_content
 from server.features.sessions.replay import HISTORY_MAX, read_blocks_between
 from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.schemas import (
@@ -182,7 +182,8 @@ async def remove_mark(
 @router.operation("GET /sessions/{session}/timeline", Need.VIEWER, UnknownSessionError)
 def get_timeline(recording: OpenRecording) -> Timeline:
     """Return a session's events, bookmarks and gaps."""
-    return read_timeline(recording)
+    with reading_content(recording.row):
+        return read_timeline(recording)
 
 
 @router.operation(
@@ -203,7 +204,8 @@ def get_blocks(
     if end < start:
         raise InvalidError(f"The end, {end:g} s, lies before the start, {start:g} s.")
     zero = recording.row.started_steady
-    found = read_blocks_between(recording, zero + start, zero + end, history)
+    with reading_content(recording.row):
+        found = read_blocks_between(recording, zero + start, zero + end, history)
     headers = {LEFT_OUT: str(found.left_out), "Cache-Control": "no-store"}
     return Response(found.data, media_type="application/octet-stream", headers=headers)
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 State = Literal["recording", "complete", "interrupted"]
+GapKind = Literal["missed", "restarted", "not stored", "damaged"]
 Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
 
 
@@ -57,7 +58,7 @@ class SessionGap(BaseModel):
     """Samples that are missing in the session: `missed` of them, noticed at `time`."""
 
     topic: str
-    kind: Literal["missed", "restarted", "not stored", "damaged"]
+    kind: GapKind
     time: float = Field(description="s since the session's start")
     missed: int
 

@@ -17,6 +17,10 @@ class NoCounterpartError(ValueError):
     """A document that this version cannot express."""
 
 
+class MissingFieldError(NoCounterpartError):
+    """A document without a field that this version needs, as an older version may have written it."""
+
+
 def rewrite_rows(rows: bytes, recorded: Mapping[str, Any], topic: Topic) -> bytes:
     """The rows as this version's `topic` has them; `recorded` is what `chunks.describe_topics` said of them.
 
@@ -116,7 +120,7 @@ def _stand_in(owner: Any, name: str, hint: Any) -> Any:
         return []
     if hint is str:
         return ""
-    raise NoCounterpartError(f"{name} is missing")
+    raise MissingFieldError(f"{name} is missing")
 
 
 @cache

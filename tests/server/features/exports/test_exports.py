@@ -334,7 +334,7 @@ def test_pictures_are_exported(store: Store, settings: Settings, tmp_path: Path)
     assert (schema.name, image["format"]) == ("foxglove.CompressedImage", "jpeg")
     whole = tmp_path / "whole"
     whole.write_bytes(write(store, number, format="archive").getvalue())
-    examine(whole)
+    examine(whole, whole.with_suffix(".rows"))
 
 
 def test_the_example_of_the_docs_runs(

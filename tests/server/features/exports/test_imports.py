@@ -184,10 +184,10 @@ BAD = {
     "a checksum that is another": (flip, False, "chunks/depth is damaged: its checksum"),
     "a chunk that does not unpack": (flip, True, "Chunk 0 of depth is damaged"),
     "a chunk that is cut": (cut, True, "Chunk 1 of depth is cut off"),
-    "too many samples": (count, True, "Chunk 0 of depth has 1000 bytes, which are not 51 samples"),
+    "too many samples": (count, True, "Chunk 0 of depth is damaged: it holds 50 samples instead of 51"),
     "a bomb": (bomb, True, "Chunk 0 of debug is damaged: it unpacks to more than 16000000 bytes"),
     "a bomb of rows": (row_bomb, True, "Chunk 0 of depth is damaged: it unpacks to more than 16000000 bytes"),
-    "documents that are none": (nonsense, True, "Chunk 0 of debug does not hold documents"),
+    "documents that are none": (nonsense, True, "Chunk 0 of debug is damaged: a document lacks level"),
     "a time that is none": (endless, True, "Chunk 0 of debug has an invalid time"),
     "a newer format": (tell(version=2), True, "It has format 2; this version of µ-CAT reads format 1"),
     "another program's": (tell(format="x"), True, "is not that of an archive"),
@@ -212,7 +212,7 @@ def test_a_bad_archive_is_refused_with_the_reason(archive: Path, name: str) -> N
     edit, summed, words = BAD[name]
     change(archive, edit, summed=summed)
     with pytest.raises(ArchiveError, match=words):
-        examine(archive)
+        examine(archive, archive.with_suffix(".rows"))
 
 
 def test_a_file_that_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> None:
@@ -221,14 +221,14 @@ def test_a_file_that_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> 
         other = tmp_path / "other"
         other.write_bytes(data)
         with pytest.raises(ArchiveError):
-            examine(other)
+            examine(other, other.with_suffix(".rows"))
     packed = tmp_path / "packed.zip"
     with zipfile.ZipFile(archive) as old, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as new:
         for name in old.namelist():
             new.writestr(name, old.read(name))
     with pytest.raises(ArchiveError, match="compressed or encrypted"):
-        examine(packed)
-    examine(archive)
+        examine(packed, packed.with_suffix(".rows"))
+    examine(archive, archive.with_suffix(".rows"))
 
 
 def test_a_session_that_records_is_not_archived(store: Store, session: int) -> None:

@@ -1,0 +1,118 @@
+"""The content of an archive's `session.json`, and the heads of its chunks, with the limits of every entry."""
+
+import struct
+from typing import Annotated, Any, Literal, NamedTuple
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from robot_runtime.contract.topics import TIME
+from server.features.sessions.schemas import GapKind
+
+CODES = "bBhHiIqQfd?"
+TOPICS_MAX = 200
+
+Text = Annotated[str, Field(max_length=1_000_000)]
+Words = Annotated[str, Field(max_length=10_000)]
+Time = Annotated[float, Field(ge=-1e15, le=1e15, allow_inf_nan=False)]
+Date = Annotated[float, Field(ge=0, le=253e9, allow_inf_nan=False)]
+"""s since 1970, up to the year 9987."""
+Count = Annotated[int, Field(ge=0, lt=1 << 62)]
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,49}$")]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="ignore", allow_inf_nan=False)
+
+
+class TopicField(_Strict):
+    """A field of a topic, as `chunks.describe_topics` writes it; of documents only the name."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,99}$")]
+    code: Annotated[str, Field(min_length=1, max_length=1)] | None = None
+    count: Annotated[int, Field(ge=1, le=1000)] = 1
+    scale: float = 1
+    unit: Annotated[str, Field(max_length=50)] = ""
+    meaning: Words = ""
+
+
+class ArchivedTopic(_Strict):
+    """A topic, as `chunks.describe_topics` writes it."""
+
+    meaning: Words
+    kind: Literal["rows", "documents", "picture"]
+    row_bytes: int = 0
+    fields: Annotated[list[TopicField], Field(max_length=1000)]
+
+    @model_validator(mode="after")
+    def _agrees(self) -> "ArchivedTopic":
+        if self.kind == "rows":
+            if any(field.code is None or field.code not in CODES for field in self.fields):
+                raise ValueError("its fields have unknown types")
+            codes = "<" + "".join(f"{field.count}{field.code}" for field in self.fields)
+            if self.row_bytes != TIME.size + struct.calcsize(codes):
+                raise ValueError("the length of its rows does not match its fields")
+        return self
+
+
+class ArchivedSession(_Strict):
+    """The session's columns (see `SessionRow`)."""
+
+    identifier: Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
+    name: Annotated[str, Field(min_length=1, max_length=1000)]
+    note: Words
+    state: Literal["complete", "interrupted"]
+    robot: Words
+    version: Words
+    definitions: Words
+    started: Date
+    started_steady: Time
+    ended: Date | None
+    duration: Annotated[float, Field(ge=0, le=1e12)]
+    configuration: Text
+    robot_state: dict[str, Any] | None
+    topics: Annotated[dict[Name, ArchivedTopic], Field(max_length=TOPICS_MAX)]
+    boot: Words = ""
+    scenario: Text = ""
+    scenario_name: Words = ""
+    seed: Annotated[int, Field(ge=-(1 << 62), lt=1 << 62)] | None = None
+    firmware: Words = ""
+    software: Words = ""
+
+
+class ArchivedBookmark(_Strict):
+    """The columns of a bookmark (see `BookmarkRow`)."""
+
+    time: Time
+    text: Words
+    made: Date
+
+
+class ArchivedGap(_Strict):
+    """The columns of a gap (see `Gap`)."""
+
+    topic: Words
+    kind: GapKind
+    time: Time
+    missed: Count
+
+
+class ArchivedDocument(_Strict):
+    """The content of `session.json`."""
+
+    session: ArchivedSession
+    tags: Annotated[list[Annotated[str, Field(min_length=1, max_length=1000)]], Field(max_length=10_000)]
+    markers: Annotated[list[ArchivedBookmark], Field(max_length=100_000)]
+    gaps: Annotated[list[ArchivedGap], Field(max_length=1_000_000)]
+
+
+class ArchivedChunk(NamedTuple):
+    """The columns of a chunk (see `Chunk`)."""
+
+    topic: str
+    number: int
+    first_time: float
+    last_time: float
+    first: int
+    samples: int
+    encoding: str
+    data: bytes

@@ -1,0 +1,90 @@
+"""Checks the samples in an archive's chunks: number, times, and documents as this version reads them."""
+
+import json
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from math import isfinite
+from typing import Any
+
+from robot_runtime.contract.documents import Event
+from robot_runtime.contract.topics import BY_NAME, TIME, Kind
+from server.features.exports.archive_models import ArchivedChunk, ArchivedTopic
+from server.features.sessions.chunks import (
+    CHUNK_BYTES_MAX,
+    DOCUMENTS_ENCODING,
+    PICTURES_ENCODING,
+    ROWS_ENCODING,
+    decode_pictures,
+    unpack,
+    unshuffle,
+)
+from server.features.sessions.upgrade import MissingFieldError, rewrite_document
+
+ENCODINGS = {"rows": ROWS_ENCODING, "documents": DOCUMENTS_ENCODING, "picture": PICTURES_ENCODING}
+SPAN_MAX = 1e9
+"""s, some 30 years: the longest time between a session's start and anything in it."""
+EVENT_FIELDS = frozenset(field.name for field in fields(Event))
+
+
+def check_chunk(chunk: ArchivedChunk, topic: ArchivedTopic, origin: float) -> None:
+    """Checks a chunk of a session that starts at `origin` (s, steady clock). Raises ValueError."""
+    if chunk.encoding != ENCODINGS[topic.kind]:
+        raise ValueError(f"it is encoded as {chunk.encoding!r}, which this version cannot read")
+    try:
+        times = _read_times(chunk, topic)
+    except zlib.error as problem:
+        raise ValueError(str(problem)) from problem
+    if len(times) != chunk.samples:
+        raise ValueError(f"it holds {len(times)} samples instead of {chunk.samples}")
+    if not all(isfinite(time) and abs(time - origin) <= SPAN_MAX for time in times):
+        raise ValueError("a sample's time is far from the session's")
+    if (times[0], times[-1]) != (chunk.first_time, chunk.last_time):
+        raise ValueError("its samples have other times than it announces")
+
+
+def check_document(document: object, name: str, described: ArchivedTopic | None = None) -> None:
+    """Checks a document of a topic: the fields that its description names, of types that this version reads.
+
+    A document of another version may lack fields of this one's. Raises ValueError with the reason.
+    """
+    if not isinstance(document, Mapping):
+        raise ValueError("a document is no object")
+    topic = BY_NAME.get(name)
+    known = topic is not None and topic.kind is Kind.DOCUMENTS
+    required = {field.name for field in described.fields} if described is not None else set()
+    if topic is not None and topic.record is Event:
+        required |= EVENT_FIELDS
+    if missing := sorted(required - document.keys()):
+        raise ValueError(f"a document lacks {missing[0]}")
+    if topic is not None and known:
+        try:
+            rewrite_document(document, topic)
+        except MissingFieldError:
+            return
+
+
+def _read_times(chunk: ArchivedChunk, topic: ArchivedTopic) -> Sequence[float]:
+    if topic.kind == "picture":
+        return [time for time, _ in decode_pictures(chunk.data)]
+    if topic.kind == "rows":
+        announced = chunk.samples * topic.row_bytes
+        rows = unshuffle(unpack(chunk.data, min(CHUNK_BYTES_MAX, announced)), topic.row_bytes)
+        return [TIME.unpack_from(rows, place)[0] for place in range(0, len(rows), topic.row_bytes)]
+    return [_read_time(line, chunk.topic, topic) for line in unpack(chunk.data).splitlines()]
+
+
+def _read_time(line: bytes, name: str, topic: ArchivedTopic) -> float:
+    try:
+        document = json.loads(line, parse_constant=_refuse_constant)
+    except RecursionError as problem:
+        raise ValueError("a document is nested too deeply") from problem
+    check_document(document, name, topic)
+    time: Any = document.get("time")
+    if not isinstance(time, int | float) or isinstance(time, bool):
+        raise ValueError("a document has no time")
+    return float(time)
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(f"a document holds {name}")
