@@ -14,7 +14,7 @@ from pathlib import Path
 import httpx
 from playwright.sync_api import sync_playwright
 
-from bench.hour import record_hour
+from bench.hour import copy_hours
 from server.platform.settings import DataFolder
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.shell import ShellToken
@@ -33,7 +33,7 @@ def measure() -> dict[str, float]:
     """
     with tempfile.TemporaryDirectory() as folder:
         data = Path(folder)
-        ids = [record_hour(data, seed=seed, name=f"dive {seed}") for seed in range(1, SESSIONS + 1)]
+        ids = copy_hours(data, SESSIONS)
         (data / "robot.toml").write_text(CONFIG)
         opened, again, zoomed, drawn = [], [], [], []
         for _ in range(TIMES):

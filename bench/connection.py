@@ -14,7 +14,7 @@ from tests.board.host import BAUD, FIRMWARE
 from tests.board.rig import PROGRAM
 
 _ROUNDS = 5
-_SECONDS = 6.0
+_SECONDS = 3.0
 _PERIOD = 0.01
 _CONNECT_SECONDS = 10.0
 _TASKS = Path("/proc/self/task")

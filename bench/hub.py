@@ -5,11 +5,12 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median, quantiles
 from time import monotonic, sleep
+from typing import Self
 
 import psutil
 
@@ -21,12 +22,12 @@ from tests.shell import shell_headers
 from tests.stack import free_port
 
 _VIEWERS = (1, 10, 50)
-_SETTLE = 4.0
-_SECONDS = 8.0
-_ROUNDS = 3
-"""Each is measured so often, one after the other, since a computer is not as quick at all times."""
-_STALL_SECONDS = 15.0
-"""Enough that the buffers on the way are full and the server has noticed."""
+_SETTLE = 3.0
+_SECONDS = 1.5
+_ROUNDS = 9
+"""The median of so many counts, since a computer is not as quick at all times."""
+_BEFORE_SECONDS, _STALL_SECONDS = 8.0, 15.0
+"""The latter is enough that the buffers on the way are full and the server has noticed."""
 _START_SECONDS = 240.0
 _SOCKET_BYTES = 4096
 
@@ -44,7 +45,8 @@ def measure() -> dict[str, float]:
     ms from a sample to a viewer that has it.
 
     foxglove-sdk logs each sample as it is made, in the process that makes them; the server gets them from
-    another process, as it does from the runtime.
+    another process, as it does from the runtime. Both serve as many viewers at the same time, and their
+    ratio is the median of those of several short times.
     """
     found = {(who, many): _Figures() for who in ("hub", "foxglove") for many in _VIEWERS}
     with tempfile.TemporaryDirectory() as folder:
@@ -58,10 +60,18 @@ def measure() -> dict[str, float]:
             ours, theirs = lambda: open_viewer(data, port), lambda: _theirs(other)
             wait_for_samples(ours)
             wait_for_samples(theirs)
-            for _ in range(_ROUNDS):
-                for many in _VIEWERS:
-                    _look(found["hub", many], server, ours, many)
-                    _look(found["foxglove", many], foxglove, theirs, many)
+            for many in _VIEWERS:
+                with (
+                    _Look(found["hub", many], server, ours, many) as hub,
+                    _Look(found["foxglove", many], foxglove, theirs, many) as peer,
+                ):
+                    sleep(_SETTLE)
+                    for _ in range(_ROUNDS):
+                        hub.begin()
+                        peer.begin()
+                        sleep(_SECONDS)
+                        hub.end()
+                        peer.end()
             stalled = _stall(data, port, server)
     return _summary(found) | stalled
 
@@ -80,20 +90,37 @@ def _summary(found: dict[tuple[str, int], _Figures]) -> dict[str, float]:
     return figures
 
 
-def _look(found: _Figures, server: psutil.Process, open_one: Open, many: int) -> None:
-    """Measure for a while with so many viewers: the first is timed, the bytes of the others are counted."""
-    with HealthMonitor(open_one()) as watch, Drain(open_one, many - 1) as drain:
-        sleep(_SETTLE)
-        watch.begin()
-        drain.check()
-        drained, before = drain.bytes, cpu_seconds(server)
-        sleep(_SECONDS)
-        spent = cpu_seconds(server) - before
-        drain.check()
-        samples, size, latencies = watch.end()
-        delivered = samples * (1 + (drain.bytes - drained) / size)
-    found.cpu_ms_per_1000.append(spent * 1e6 / delivered)
-    found.latencies += latencies
+class _Look:
+    """So many viewers of a server: the first is timed, the bytes of the others are counted."""
+
+    def __init__(self, found: _Figures, server: psutil.Process, open_one: Open, many: int) -> None:
+        self._found, self._server = found, server
+        self._open_one, self._many = open_one, many
+        self._before = (0, 0.0)
+
+    def __enter__(self) -> Self:
+        with ExitStack() as opened:
+            self._watch = opened.enter_context(HealthMonitor(self._open_one()))
+            self._drain = opened.enter_context(Drain(self._open_one, self._many - 1))
+            self._opened = opened.pop_all()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._opened.close()
+
+    def begin(self) -> None:
+        """Count from now on."""
+        self._drain.check()
+        self._watch.begin()
+        self._before = self._drain.bytes, cpu_seconds(self._server)
+
+    def end(self) -> None:
+        """Note what was spent since `begin`, and how late each sample was."""
+        spent, drained = cpu_seconds(self._server) - self._before[1], self._drain.bytes - self._before[0]
+        self._drain.check()
+        samples, size, latencies = self._watch.end()
+        self._found.cpu_ms_per_1000.append(spent * 1e6 / (samples * (1 + drained / size)))
+        self._found.latencies += latencies
 
 
 def _stall(data: Path, port: int, server: psutil.Process) -> dict[str, float]:
@@ -107,7 +134,7 @@ def _stall(data: Path, port: int, server: psutil.Process) -> dict[str, float]:
                 stalled.append(open_viewer(data, port, receive_bytes=_SOCKET_BYTES))
             watch.begin()
             memory = server.memory_info().rss
-            sleep(_STALL_SECONDS)
+            sleep(_BEFORE_SECONDS if name == "before" else _STALL_SECONDS)
             figures[f"hub.{name}_latency_ms_p50"] = quantiles(watch.end()[2], n=100)[49] * 1000
             figures[f"hub.{name}_growth_mb"] = (server.memory_info().rss - memory) / 1e6
         for one in stalled:

@@ -15,7 +15,7 @@ from tests.board.host import Robot, start
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
-_SECONDS = 20
+_SECONDS = 10
 _ROWS_PER_SECOND = 50
 _PRESSES = 60
 _KEYS = ("w", "s", "r", "f", "a", "d")

@@ -4,9 +4,10 @@ import re
 import subprocess
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
 from playwright.sync_api import Browser, CDPSession, Page, sync_playwright
 
 from bench.hub import open_viewer, process, wait_for_samples
@@ -16,9 +17,7 @@ from tests.stack import free_port
 
 _SIZE = {"width": 1440, "height": 900}
 _SETTLE = 5.0
-_SECONDS = 15.0
-_HEAP_SECONDS = 150.0
-_HEAP_EVERY = 10.0
+_SECONDS = 10.0
 _BUILT = Path("build/bench_page")
 _PAGE = Path("server/page")
 _DRAWN = """() => [...document.querySelectorAll('canvas')].some((canvas) => {
@@ -49,33 +48,38 @@ _WINDOWS = {"": "", ".10s": "?seconds=10"}
 
 def measure() -> dict[str, float]:
     """Of four charts of three traces: how often they are all drawn anew in a second, ms of the main thread's
-    own processor time for each redraw, all else that the page does included; MB by which the heap grows in an
-    hour; kB of the first view, compressed.
+    own processor time for each redraw, all else included; kB of the first view, compressed.
     """
+    figures: dict[str, float] = {}
+    with serve_charts(_BUILT) as (url, data, browser):
+        for name, path in (("page", ""), ("uplot", "bare.html")):
+            for window, query in _WINDOWS.items():
+                page, devtools = open_charts(browser, url, data, f"{url}/{path}{query}")
+                drawn = _draw(page, devtools)
+                figures |= {f"{name}.{figure}{window}": value for figure, value in drawn.items()}
+                page.context.close()
+    return figures | _first_view()
+
+
+@contextmanager
+def serve_charts(built: Path) -> Iterator[tuple[str, Path, Browser]]:
+    """Serves the charts, built into this folder, with samples: their address, its data folder, a browser."""
     build = ["npx", "vite", "build", "--config", "bench/vite.config.ts", "--logLevel", "error"]
+    build += ["--outDir", str(built.absolute())]
     subprocess.run(build, cwd="frontend", check=True)
     with tempfile.TemporaryDirectory() as folder:
         data, port = Path(folder), free_port()
         url = f"http://127.0.0.1:{port}"
         DataFolder(data).run.mkdir()
         with (
-            process("server", folder, str(port), str(_BUILT)),
+            process("server", folder, str(port), str(built)),
             process("source", folder),
             sync_playwright() as playwright,
         ):
             wait_for_samples(lambda: open_viewer(data, port))
             browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
-            figures: dict[str, float] = {}
-            for name, path in (("page", ""), ("uplot", "bare.html")):
-                for window, query in _WINDOWS.items():
-                    page, devtools = _open(browser, url, data, f"{url}/{path}{query}")
-                    drawn = _draw(page, devtools)
-                    figures |= {f"{name}.{figure}{window}": value for figure, value in drawn.items()}
-                    if name == "page" and not window:
-                        figures["page.heap_growth_mb_per_h"] = _grow(page, devtools)
-                    page.context.close()
+            yield url, data, browser
             browser.close()
-    return figures | _first_view()
 
 
 def _first_view() -> dict[str, float]:
@@ -92,7 +96,8 @@ def _sent(file: Path) -> int:
     return (packed if packed.exists() else file).stat().st_size
 
 
-def _open(browser: Browser, url: str, data: Path, address: str) -> tuple[Page, CDPSession]:
+def open_charts(browser: Browser, url: str, data: Path, address: str) -> tuple[Page, CDPSession]:
+    """A page with drawn charts, and the developer's tools of it."""
     page = browser.new_page(viewport=_SIZE)  # type: ignore[arg-type]
     sign_in(page.context, url, data)
     page.add_init_script(_COUNT)
@@ -115,15 +120,3 @@ def _draw(page: Page, devtools: CDPSession) -> dict[str, float]:
 def _busy(devtools: CDPSession) -> float:
     metrics = {one["name"]: one["value"] for one in devtools.send("Performance.getMetrics")["metrics"]}
     return float(metrics["TaskDuration"])
-
-
-def _grow(page: Page, devtools: CDPSession) -> float:
-    """The slope of what is left on the heap after the garbage is gone."""
-    points = []
-    began = time.monotonic()
-    while time.monotonic() - began < _HEAP_SECONDS:
-        devtools.send("HeapProfiler.collectGarbage")
-        points.append((time.monotonic(), devtools.send("Runtime.getHeapUsage")["usedSize"]))
-        page.wait_for_timeout(1000 * _HEAP_EVERY)
-    times, sizes = zip(*points, strict=True)
-    return float(np.polyfit(times, sizes, 1)[0]) * 3600 / 1e6

@@ -9,40 +9,45 @@ class Part:
 
     name: str
     is_emulated: bool = False
-    """Its figures hang on emulated or simulated time alone, so that it may share the computer with others."""
+    """Its figures do not hang on how much time passes in reality, so that it may share the computer."""
     draws: bool = False
     """It draws in a browser."""
     is_long: bool = False
-    """It takes longer than all others together; `make proofs` runs it, or whoever names it."""
+    """It takes many minutes; `make proofs` runs it, or whoever names it."""
+    prefix: str = ""
+    """Of a long part: the beginning of its figures' names."""
 
 
 PARTS = {
     part.name: part
     for part in (
+        # The longest first, so that no core waits for one at the end.
+        Part("firmware", is_emulated=True, is_long=True, prefix="firmware."),
+        Part("comm_test", is_emulated=True, is_long=True, prefix="link.table6"),
+        Part("heap", is_emulated=True),
+        Part("control", is_emulated=True),
+        Part("fault", is_emulated=True),
         Part("corruption", is_emulated=True),
         Part("chip", is_emulated=True),
-        Part("link", is_emulated=True),
+        Part("hour", is_emulated=True),
         Part("setpoint", is_emulated=True),
-        Part("control", is_emulated=True),
         Part("tuning", is_emulated=True),
-        Part("firmware", is_emulated=True, is_long=True),
-        Part("comm_test", is_emulated=True, is_long=True),
+        Part("link", is_emulated=True),
         Part("emulator"),
         Part("physics"),
         Part("scenario"),
         Part("camera"),
         Part("vision"),
         Part("codec"),
-        Part("fault"),
+        Part("outage"),
         Part("store"),
         Part("export"),
         Part("connection"),
         Part("start"),
-        Part("stack"),
         Part("latency", draws=True),
         Part("compare", draws=True),
         Part("replay", draws=True),
-        Part("jitter"),
+        Part("stack"),
         Part("hub"),
         Part("page", draws=True),
     )

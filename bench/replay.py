@@ -9,7 +9,7 @@ from statistics import quantiles
 import httpx
 from playwright.sync_api import Page, sync_playwright
 
-from bench.hour import SECONDS, record_hour
+from bench.hour import SECONDS, copy_hours
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
@@ -26,7 +26,7 @@ def measure() -> dict[str, float]:
     the depth of that moment, with the whole robot running beside."""
     with tempfile.TemporaryDirectory() as folder:
         data = Path(folder)
-        session = record_hour(data)
+        (session,) = copy_hours(data)
         with Stack(data) as stack:
             by_http = _seek(stack.api, session)
             with sync_playwright() as playwright:

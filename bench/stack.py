@@ -1,4 +1,4 @@
-"""Processor time and memory of runtime and server at full rate, recording, with one viewer."""
+"""Processor time, memory and control jitter of a robot at full rate, recording, with one viewer."""
 
 import tempfile
 import threading
@@ -9,6 +9,8 @@ import psutil
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from bench import jitter
+from bench.hour import copy_hours
 from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
@@ -16,31 +18,56 @@ from tests.stack import Stack
 
 _SETTLE = 5.0
 _SECONDS = 30.0
+_JITTER_SECONDS = 100.0
+"""Of each phase: at 10 Hz a thousand ticks, of which the worst is the p999."""
 
 
 def measure() -> dict[str, float]:
-    """CPU in percent of one core over half a minute; resident memory in MB at its end."""
-    with tempfile.TemporaryDirectory() as folder, Stack(Path(folder)) as stack:
-        viewer = _Viewer(stack)
-        stack.arm()
-        stack.api.post("/sessions", json={"name": "bench"}).raise_for_status()
-        running = running_parts(DataFolder(stack.data).run)
-        parts = {name: psutil.Process(running[name].pid) for name in ("runtime", "board", "simulator")}
-        parts["server"] = stack.server
-        time.sleep(_SETTLE)
-        before = {name: cpu_seconds(process) for name, process in parts.items()}
-        received = viewer.bytes
-        time.sleep(_SECONDS)
-        cpu = {
-            name: (cpu_seconds(process) - before[name]) / _SECONDS * 100 for name, process in parts.items()
-        }
-        figures = {f"cpu.{name}_percent": value for name, value in cpu.items()}
-        figures["cpu.robot_stack_percent"] = cpu["server"] + cpu["runtime"]
-        figures["stream.viewer_kb_per_s"] = (viewer.bytes - received) / _SECONDS / 1000
-        figures["rss.server_mb"] = parts["server"].memory_info().rss / 1e6
-        figures["rss.runtime_mb"] = parts["runtime"].memory_info().rss / 1e6
-        viewer.close()
-        return figures
+    """CPU in percent of one core over half a minute; resident memory in MB at its end; ms by which the time
+    between two control ticks differs from their period, idle and while exporting and rendering.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        data = Path(folder)
+        (hour,) = copy_hours(data)
+        with Stack(data) as stack:
+            viewer = _Viewer(stack)
+            stack.arm()
+            recording = {"name": "bench"}
+            session = stack.api.post("/sessions", json=recording).raise_for_status().json()["id"]
+            time.sleep(_SETTLE)
+            began = time.monotonic()
+            found = _load(stack, viewer)
+            phases = {"idle": _phase(began)}
+            with jitter.busy(stack, hour):
+                time.sleep(_SETTLE)
+                phases["busy"] = _phase(time.monotonic())
+            viewer.close()
+            stack.api.post("/robot/stop").raise_for_status()
+            stack.api.post(f"/sessions/{session}/stop")
+        return found | jitter.figures(data, session, phases)
+
+
+def _load(stack: Stack, viewer: "_Viewer") -> dict[str, float]:
+    running = running_parts(DataFolder(stack.data).run)
+    parts = {name: psutil.Process(running[name].pid) for name in ("runtime", "board", "simulator")}
+    parts["server"] = stack.server
+    before = {name: cpu_seconds(process) for name, process in parts.items()}
+    received = viewer.bytes
+    time.sleep(_SECONDS)
+    cpu = {name: (cpu_seconds(process) - before[name]) / _SECONDS * 100 for name, process in parts.items()}
+    figures = {f"cpu.{name}_percent": value for name, value in cpu.items()}
+    figures["cpu.robot_stack_percent"] = cpu["server"] + cpu["runtime"]
+    figures["stream.viewer_kb_per_s"] = (viewer.bytes - received) / _SECONDS / 1000
+    figures["rss.server_mb"] = parts["server"].memory_info().rss / 1e6
+    figures["rss.runtime_mb"] = parts["runtime"].memory_info().rss / 1e6
+    return figures
+
+
+def _phase(began: float) -> tuple[float, float]:
+    """Waits for the end of a phase that began then; returns its times."""
+    end = began + _JITTER_SECONDS
+    time.sleep(max(end - time.monotonic(), 0.0))
+    return began, end
 
 
 class _Viewer:

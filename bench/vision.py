@@ -25,6 +25,8 @@ _PICTURES = 20
 _ROUNDS = 10
 _RATE = 30
 _CHANGES = 120
+_PAUSE = (0.25, 0.35)
+"""s between two changes: longer than any is on its way, at any moment of a tick of 0.1 s."""
 _SETTINGS: dict[str, dict[str, Any]] = {
     "": {},
     ".grey_world": {"white_balance": "grey_world"},
@@ -91,7 +93,7 @@ def _latencies() -> dict[str, float]:
             robot.subscribe("detection", lambda _, data: looks.extend(read_blocks(data)))
             for change in range(_CHANGES):
                 robot.query("command/card", {"colour": None if change % 2 else "yellow"})
-                time.sleep(chance.uniform(0.4, 0.6))
+                time.sleep(chance.uniform(*_PAUSE))
     return _figures(ticks, looks)
 
 

@@ -31,6 +31,14 @@ def test_parts_have_a_module_each() -> None:
     assert [name for name in PARTS if importlib.util.find_spec(f"bench.{name}") is None] == []
 
 
+def test_each_long_part_has_goals_by_the_beginning_of_their_names() -> None:
+    long = [part for part in PARTS.values() if part.is_long]
+    assert long
+    for part in long:
+        assert part.prefix
+        assert [name for name in GOALS if name.startswith(part.prefix)]
+
+
 @pytest.mark.parametrize(
     ("before", "now", "expected"),
     [

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from bench.__main__ import summarise
+from bench.goals import GOALS
 from bench.results import Results
 
 
@@ -34,6 +35,15 @@ def test_a_failed_part_is_named_and_is_status_1(results: Results, capsys: pytest
     results.fail("stack", "no server comes")
     assert summarise(results, {"stack"}, is_whole=False) == 1
     assert "stack: no server comes" in capsys.readouterr().out
+
+
+def test_a_short_run_names_the_goals_of_the_long_parts_and_does_not_fail_for_them(
+    results: Results, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("bench.__main__.GOALS", {"firmware.missed_ticks": GOALS["firmware.missed_ticks"]})
+    assert summarise(results, set(), is_whole=True, left_out={"firmware", "comm_test"}) == 0
+    assert "firmware.missed_ticks" in capsys.readouterr().out
+    assert summarise(results, set(), is_whole=True) == 1
 
 
 def test_in_a_whole_run_a_goal_without_a_figure_is_named_and_is_status_1(

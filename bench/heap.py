@@ -1,0 +1,34 @@
+"""Growth of the page's heap while twelve live traces at 100 Hz are drawn."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+from playwright.sync_api import CDPSession, Page
+
+from bench.page import open_charts, serve_charts
+
+_SETTLE = 40.0
+_SECONDS = 150.0
+_EVERY = 10.0
+_BUILT = Path("build/bench_heap")
+
+
+def measure() -> dict[str, float]:
+    """MB by which it would grow in an hour, of four charts of three traces over a minute."""
+    with serve_charts(_BUILT) as (url, data, browser):
+        page, devtools = open_charts(browser, url, data, f"{url}/")
+        page.wait_for_timeout(1000 * _SETTLE)
+        return {"page.heap_growth_mb_per_h": _grow(page, devtools)}
+
+
+def _grow(page: Page, devtools: CDPSession) -> float:
+    """The slope of what is left on the heap after the garbage is gone."""
+    points = []
+    began = time.monotonic()
+    while time.monotonic() - began < _SECONDS:
+        devtools.send("HeapProfiler.collectGarbage")
+        points.append((time.monotonic(), devtools.send("Runtime.getHeapUsage")["usedSize"]))
+        page.wait_for_timeout(1000 * _EVERY)
+    times, sizes = zip(*points, strict=True)
+    return float(np.polyfit(times, sizes, 1)[0]) * 3600 / 1e6
