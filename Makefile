@@ -20,13 +20,20 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
 # Files are named, so that nothing else is collected and the order is the one told: a folder would swallow its files.
-# Uploads to the emulated chip come first: beside the checks, which leave them the processor that they need.
-REAL_TIME = $(shell grep -rl --include='test_*.py' mark.stack tests | sort)
-LONGEST := $(wildcard tests/documents/test_*.py tests/proofs/test_*.py)
+# Uploads to the emulated chip in real time lose step beside another robot.
+UPLOADS := $(wildcard tests/board/test_bootloader.py tests/server/features/comm_tests/test_reserved_board.py \
+	tests/server/features/comm_tests/test_thesis_example.py)
+REAL_TIME = $(filter-out $(UPLOADS),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
+# As much as makes both of the lanes in real time equally long.
+BROWSER_LATER := $(wildcard $(addprefix tests/browser/test_,swim.py themes.py tuning.py vision.py))
+BROWSER_FIRST := $(filter-out $(BROWSER_LATER),$(wildcard tests/browser/test_*.py))
+# Those that wait most for processes come first.
+LONGEST := $(wildcard tests/server/processes/test_server_runner.py tests/documents/test_*.py tests/proofs/test_*.py \
+	tests/runtime/experiments/comm_test/test_*.py)
 REST = $(LONGEST) $(filter-out $(LONGEST) tests/browser/%,$(shell find tests -name 'test_*.py' | sort))
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface hours generate firmware \
+.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface hours generate firmware \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -35,27 +42,37 @@ help: ## list the targets
 run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
 	@exec .venv/bin/mucat run --port $(PORT)
 
-test: ## every check and every test; what one of the two lanes says comes when a command of it has ended
+test: ## every check and every test, in lanes; the output of a lane comes when a command of it has ended
 	@$(MAKE) --no-print-directory --jobs 2 setup-test
 	@$(MAKE) --no-print-directory --jobs 2 host-firmware
-	@$(MAKE) --no-print-directory --jobs 2 --output-sync=line test-real-time test-rest
+	@$(MAKE) --no-print-directory --jobs 4 --keep-going --output-sync=line test-real-time test-checks test-rest
 
-# Robots in real time are served first, one at a time. With two of them beside all else, uploads lose step.
+# Robots in real time have the processors first, two robots at a time.
 # A failure does not hide those of what comes after it.
 test-real-time:
 	@status=0; \
-	$(PYTHON) -m pytest -m stack --durations 20 $(REAL_TIME) || status=1; \
-	$(PYTHON) -m pytest --durations 20 tests/browser || status=1; \
+	$(PYTHON) -m pytest -m stack --durations 20 $(UPLOADS) || status=1; \
+	$(MAKE) --no-print-directory --keep-going test-stack test-browser || status=1; \
 	exit $$status
 
-# Three at once: many of them wait for a process.
-test-rest:
-	@nice $(MAKE) --no-print-directory check
+test-stack:
 	@status=0; \
-	(cd frontend && nice npm test --silent) || status=1; \
-	nice $(PYTHON) -m pytest -m "not stack" --numprocesses 3 --dist loadfile --durations 20 --no-loadscope-reorder $(REST) || \
-		status=1; \
+	$(PYTHON) -m pytest -m stack --durations 20 $(REAL_TIME) || status=1; \
+	$(PYTHON) -m pytest --durations 20 $(BROWSER_LATER) || status=1; \
 	exit $$status
+
+test-browser:
+	@$(PYTHON) -m pytest --durations 20 $(BROWSER_FIRST)
+
+test-checks:
+	@status=0; \
+	nice $(MAKE) --no-print-directory check || status=1; \
+	(cd frontend && nice npm test --silent) || status=1; \
+	exit $$status
+
+# Four at once: many of them wait for a process.
+test-rest:
+	@nice $(PYTHON) -m pytest -m "not stack" --numprocesses 4 --dist loadfile --durations 20 --no-loadscope-reorder $(REST)
 
 check: setup-test ## style, types, imports, and whether generated files are current
 	.venv/bin/ruff check

@@ -12,6 +12,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.util import cache_from_source
 from os import environ
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -115,6 +116,16 @@ def read_guards(path: Path = LIST) -> list[Guard]:
     return [Guard(**entry | {name: tuple(entry.get(name, ())) for name in lists}) for entry in entries]
 
 
+def _copy_compiled(source: Path, target: Path) -> None:
+    """Copy a module's compiled form, which names its time of change: a changed module is compiled anew."""
+    if source.suffix == ".py":
+        compiled = Path(cache_from_source(source))
+        if compiled.is_file():
+            there = Path(cache_from_source(target))
+            there.parent.mkdir(exist_ok=True)
+            shutil.copy2(compiled, there)
+
+
 @contextmanager
 def copy_tree() -> Iterator[Tree]:
     """Copy the files that are or would be under version control, as they are now."""
@@ -126,6 +137,7 @@ def copy_tree() -> Iterator[Tree]:
             if source.is_file():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy2(source, target)
+                _copy_compiled(source, target)
         yield Tree(Path(folder))
 
 
