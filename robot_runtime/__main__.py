@@ -7,6 +7,7 @@ from pathlib import Path
 
 from robot_runtime.config import load
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.durable_files import keep_private
 from robot_runtime.robot import Robot
 from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -15,6 +16,7 @@ from robot_runtime.vision.settings_file import VisionSettingsFile
 
 def main() -> int:
     """Runs until SIGTERM or SIGINT. Returns 2 if the configuration or an endpoint cannot be used."""
+    keep_private()
     options = _options()
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if options.with_parent:

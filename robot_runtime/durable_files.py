@@ -47,6 +47,11 @@ def make_folder(path: Path) -> None:
     sync(path.parent)
 
 
+def keep_private() -> None:
+    """Makes what this process and its children create readable and writable by their user alone."""
+    os.umask(0o077)
+
+
 def sync(path: Path) -> None:
     """Flushes a file, or the names in a folder, to the disk. Raises OSError."""
     handle = os.open(path, os.O_RDONLY)

@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.durable_files import keep_private
 from robot_runtime.simulation.water.hil import HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import Simulator
@@ -23,6 +24,7 @@ log = logging.getLogger(__name__)
 
 def main() -> None:
     """Runs until SIGTERM or SIGINT."""
+    keep_private()
     arguments = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(levelname)s simulation: %(message)s")
     if arguments.with_parent:

@@ -3,7 +3,9 @@
 import os
 import re
 import socket
+import stat
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from ipaddress import ip_address
 from pathlib import Path
@@ -16,6 +18,9 @@ from server.platform.pidfile import running_parts
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
+
+OTHERS = stat.S_IRWXG | stat.S_IRWXO
+"""What other users than the owner may do."""
 
 NOWHERE = "192.0.2.1"
 """An address of documentation's own network (RFC 5737)."""
@@ -159,11 +164,14 @@ def read_settings(
 
 
 def make_folders(folder: DataFolder) -> None:
-    """Create the data folder, and empty its `run` where nothing runs. Raises SetupError where it cannot."""
+    """Create the data folder, for this user alone, and empty its `run` where nothing runs.
+
+    Raises SetupError where it cannot.
+    """
     try:
         for path in (folder.path, folder.logs, folder.run):
             make_folder(path)
-        folder.run.chmod(0o700)
+        _make_private(folder)
         # The files belong to processes of a killed server as long as one of them runs.
         if not running_parts(folder.run):
             for file in folder.run.iterdir():
@@ -172,6 +180,17 @@ def make_folders(folder: DataFolder) -> None:
         raise SetupError(
             f"The data folder {folder.path} cannot be used: {problem.strerror}. Choose another with --data."
         ) from problem
+
+
+def _make_private(folder: DataFolder) -> None:
+    """Take away what others may do with the folder: older versions let them read it. Raises OSError."""
+    known = [path for path in vars(folder).values() if path != folder.path and path.is_dir()]
+    files = [file for file in folder.path.iterdir() if not file.is_dir()]
+    for path in (folder.path, *files, *known, *(inner for one in known for inner in one.rglob("*"))):
+        with suppress(FileNotFoundError):  # a process of a killed server may just have removed it
+            status = path.lstat()
+            if status.st_uid == os.geteuid() and status.st_mode & OTHERS and not path.is_symlink():
+                path.chmod(stat.S_IMODE(status.st_mode) & ~OTHERS)
 
 
 def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:

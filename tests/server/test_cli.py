@@ -202,6 +202,38 @@ def test_the_run_folder_is_emptied_and_the_rest_stays(settings: Settings) -> Non
         make_folders(DataFolder(folder.path / "kept"))
 
 
+def test_folders_and_files_of_older_versions_become_private(settings: Settings) -> None:
+    folder = settings.data
+    folder.path.chmod(0o755)
+    outside = folder.path.parent / "outside"
+    outside.mkdir(0o755)
+    (folder.path / "link").symlink_to(outside)
+    for path in (folder.database, folder.logs / "runtime.log", folder.exports / "old" / "a.csv"):
+        path.parent.mkdir(0o755, parents=True, exist_ok=True)
+        path.touch(0o644)
+    make_folders(folder)
+    assert _modes(folder.path) <= {"0700", "0600"}
+    assert outside.stat().st_mode & 0o777 == 0o755
+
+
+def test_what_the_shell_makes_is_private_whatever_it_inherits(settings: Settings) -> None:
+    inherited = os.umask(0o022)
+    try:
+        folder = DataFolder(settings.data.path.parent / "new")
+        assert (
+            cli.main(["sessions", "list", "--data", str(folder.path), "--config", str(settings.config)]) == 0
+        )
+        assert folder.database.exists()
+        assert _modes(folder.path) <= {"0700", "0600"}
+    finally:
+        os.umask(inherited)
+
+
+def _modes(folder: Path) -> set[str]:
+    found = [path for path in (folder, *folder.rglob("*")) if not path.is_symlink()]
+    return {f"{path.stat().st_mode & 0o777:04o}" for path in found}
+
+
 def test_the_run_folder_stays_while_a_process_of_a_killed_server_lives(settings: Settings) -> None:
     folder = settings.data
     (folder.run / "board.sock").touch()

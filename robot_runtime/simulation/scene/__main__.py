@@ -6,6 +6,7 @@ import signal
 import sys
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.durable_files import keep_private
 from robot_runtime.simulation.scene.process import SceneProcess
 from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
@@ -13,6 +14,7 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 def main() -> None:
     """Runs until SIGTERM or SIGINT."""
+    keep_private()
     arguments = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(levelname)s scene: %(message)s")
     # It logs modules that are not needed.
