@@ -19,7 +19,6 @@ INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-byt
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
-# Files are named, so that nothing else is collected and the order is the one told: a folder would swallow its files.
 # Uploads to the emulated chip in real time lose step beside another robot.
 UPLOADS := $(wildcard tests/board/test_bootloader.py tests/server/features/comm_tests/test_reserved_board.py \
 	tests/server/features/comm_tests/test_thesis_example.py)
@@ -27,13 +26,14 @@ REAL_TIME = $(filter-out $(UPLOADS),$(shell grep -rl --include='test_*.py' mark.
 # As much as makes both of the lanes in real time equally long.
 BROWSER_LATER := $(wildcard $(addprefix tests/browser/test_,swim.py themes.py tuning.py vision.py))
 BROWSER_FIRST := $(filter-out $(BROWSER_LATER),$(wildcard tests/browser/test_*.py))
-# Those that wait most for processes come first.
-LONGEST := $(wildcard tests/server/processes/test_server_runner.py tests/documents/test_*.py tests/proofs/test_*.py \
-	tests/runtime/experiments/comm_test/test_*.py)
-REST = $(LONGEST) $(filter-out $(LONGEST) tests/browser/%,$(shell find tests -name 'test_*.py' | sort))
+# All other tests, each folder by a process of its own, the longest first; the last has what no other has.
+FOLDERS := tests/proofs tests/server/features tests/runtime/experiments tests/documents tests/server tests/runtime tests
+
+# With a number of jobs of its own, not what another make leaves over. A failure does not hide those of what comes after it.
+IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface hours generate firmware \
+.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest $(FOLDERS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface hours generate firmware \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -45,14 +45,13 @@ run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 
 test: ## every check and every test, in lanes; the output of a lane comes when a command of it has ended
 	@$(MAKE) --no-print-directory --jobs 2 setup-test
 	@$(MAKE) --no-print-directory --jobs 2 host-firmware
-	@$(MAKE) --no-print-directory --jobs 4 --keep-going --output-sync=line test-real-time test-checks test-rest
+	@$(IN_LANES) --jobs 3 test-real-time test-checks test-rest
 
 # Robots in real time have the processors first, two robots at a time.
-# A failure does not hide those of what comes after it.
 test-real-time:
 	@status=0; \
 	$(PYTHON) -m pytest -m stack --durations 20 $(UPLOADS) || status=1; \
-	$(MAKE) --no-print-directory --keep-going test-stack test-browser || status=1; \
+	$(IN_LANES) --jobs 2 test-stack test-browser || status=1; \
 	exit $$status
 
 test-stack:
@@ -72,7 +71,10 @@ test-checks:
 
 # Four at once: many of them wait for a process.
 test-rest:
-	@nice $(PYTHON) -m pytest -m "not stack" --numprocesses 4 --dist loadfile --durations 20 --no-loadscope-reorder $(REST)
+	@nice $(IN_LANES) --jobs 4 $(FOLDERS:%=test-in-%)
+
+$(FOLDERS:%=test-in-%): test-in-%:
+	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(FOLDERS) tests/browser))
 
 check: setup-test ## style, types, imports, and whether generated files are current
 	.venv/bin/ruff check

@@ -26,24 +26,29 @@ STORED_NAMES = frozenset(
 )
 """Fields of packets, columns and stored documents: they are in recordings and data folders, and stay."""
 
-Modules = dict[str, ast.Module]
+Modules = dict[str, list[ast.AST]]
+"""All nodes of each file."""
 
 
 def find_bad_names(root: Path) -> list[str]:
     """One line for each name or docstring against the rules: place, name and what to do."""
-    modules = _parse(root, PACKAGES)
-    return [*_repeated_classes(modules), *_riddles(_parse(root, DOCUMENTED)), *_dialect(modules)]
+    documented = _parse(root, DOCUMENTED)
+    modules = {place: nodes for place, nodes in documented.items() if place.partition("/")[0] in PACKAGES}
+    return [*_repeated_classes(modules), *_riddles(documented), *_dialect(modules)]
 
 
 def _parse(root: Path, packages: tuple[str, ...]) -> Modules:
     files = sorted(file for package in packages for file in (root / package).rglob("*.py"))
-    return {file.relative_to(root).as_posix(): ast.parse(file.read_text(encoding="utf-8")) for file in files}
+    return {
+        file.relative_to(root).as_posix(): list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+        for file in files
+    }
 
 
 def _repeated_classes(modules: Modules) -> Iterator[str]:
     places: defaultdict[str, list[str]] = defaultdict(list)
-    for place, module in modules.items():
-        for node in ast.walk(module):
+    for place, nodes in modules.items():
+        for node in nodes:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 places[node.name].append(place)
     for name, found in sorted(places.items()):
@@ -52,8 +57,8 @@ def _repeated_classes(modules: Modules) -> Iterator[str]:
 
 
 def _riddles(modules: Modules) -> Iterator[str]:
-    for place, module in modules.items():
-        for node in ast.walk(module):
+    for place, nodes in modules.items():
+        for node in nodes:
             if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
                 words = (ast.get_docstring(node) or "").split()
                 if words and words[0].strip(",.:;") in RIDDLES:
@@ -62,8 +67,8 @@ def _riddles(modules: Modules) -> Iterator[str]:
 
 
 def _dialect(modules: Modules) -> Iterator[str]:
-    for place, module in modules.items():
-        for node in ast.walk(module):
+    for place, nodes in modules.items():
+        for node in nodes:
             name = _bound_name(node)
             if not DIALECT.isdisjoint(name.lower().split("_")) and (place, name) not in STORED_NAMES:
                 yield f"{place}:{getattr(node, 'lineno', 1)}: {name} is private dialect; see the glossary"
