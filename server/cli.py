@@ -9,6 +9,7 @@ import click
 
 from robot_runtime.durable_files import keep_private
 from server import VERSION
+from server.platform.terminal import PlainFormatter
 
 COMMANDS = {
     "run": "server.startup:run",
@@ -46,7 +47,9 @@ class LazyGroup(click.Group):
 @click.version_option(VERSION, message="mucat %(version)s")
 def mucat() -> None:
     """Server and tools of µ-CAT."""
-    logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    printed = logging.StreamHandler()
+    printed.setFormatter(PlainFormatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+    logging.basicConfig(level=logging.WARNING, handlers=[printed])
 
 
 @click.command()

@@ -106,7 +106,7 @@ class Container:
         self.bookmarks = Bookmarks(self.store, self.clock, self.recorder)
         self.retention = RetentionWorker(self.store, self.settings, self.notices, self.clock)
         self.arming = AutoRecorder(self.recorder, self.clock, self.notices, self._armed_row)
-        self.jobs = Jobs(self.settings.data, self.store)
+        self.jobs = Jobs(self.settings.data, self.store, self.clock)
         self.imports = Imports(self.settings.data, self.store)
         self.comparisons = Comparisons(self.store)
 

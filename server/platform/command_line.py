@@ -11,6 +11,7 @@ import click
 from robot_runtime.errors import RefusedError
 from server.platform.errors import ApiError
 from server.platform.settings import SetupError, read_settings
+from server.platform.terminal import plain
 
 FILE = click.Path(path_type=Path)
 
@@ -20,7 +21,7 @@ class CommandError(click.ClickException):
 
     def show(self, file: IO[Any] | None = None) -> None:
         """Print the text to the standard error."""
-        click.echo(f"mucat: {self.message}", file=file, err=True)
+        click.echo(plain(f"mucat: {self.message}"), file=file, err=True)
 
 
 class RowCommand(click.Command):

@@ -2,7 +2,7 @@
 
 import errno
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Literal
@@ -26,7 +26,7 @@ def prepare(folder: DataFolder) -> None:
         if revision == HEAD:
             return
         if revision is not None:
-            refuse_unknown(revision, folder.database)
+            refuse_unknown(revision, folder.database, folder)
             copy_database(folder.database, place(folder, "before", revision))
             thin_out(folder, "before")
             _make_shrinkable(folder.database)
@@ -63,16 +63,42 @@ def read_revision(database: Path, mode: Literal["ro", "rw"] = "ro") -> str | Non
     return None if row is None else str(row[0])
 
 
-def refuse_unknown(revision: str, database: Path) -> None:
-    """Raise SetupError where this version does not know the revision."""
+def refuse_unknown(revision: str, database: Path, folder: DataFolder | None = None) -> None:
+    """Raise SetupError where this version does not know the revision.
+
+    It names the backup in `folder` that fits this version.
+    """
+    known = _known_revisions()
+    if revision in known:
+        return
+    fitting = None if folder is None else _find_copy(folder, known)
+    remedy = (
+        "Install that version, or choose another data folder with --data."
+        if fitting is None
+        else "Install that version. Or go back to the newest backup that fits this one, without what was "
+        f"recorded since: `mucat restore {fitting}`."
+    )
+    raise SetupError(
+        f"The database {database} was written by a newer version (its revision is {revision}, this "
+        f"version's is {HEAD}). {remedy}"
+    )
+
+
+def _known_revisions() -> set[str]:
     from alembic.script import ScriptDirectory
 
-    known = {script.revision for script in ScriptDirectory(_scripts()).walk_revisions()}
-    if revision not in known:
-        raise SetupError(
-            f"The database {database} was written by a newer version (its revision is {revision}, this "
-            f"version's is {HEAD}). Install that version, or choose another data folder with --data."
-        )
+    return {script.revision for script in ScriptDirectory(_scripts()).walk_revisions()}
+
+
+def _find_copy(folder: DataFolder, known: Collection[str]) -> Path | None:
+    """The newest copy in the folder that has one of these revisions."""
+    for copy in sorted(folder.backups.glob("mucat-*.db"), key=lambda path: path.stem[-19:], reverse=True):
+        try:
+            if read_revision(copy) in known:
+                return copy
+        except sqlite3.DatabaseError:
+            continue
+    return None
 
 
 def _make_shrinkable(database: Path) -> None:

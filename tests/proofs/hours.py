@@ -38,13 +38,14 @@ from server.features.exports.tables import write_tables
 from server.features.sessions.recorder import PERIOD, Recorder
 from server.features.sessions.recording import Recording
 from server.features.sessions.replay import read_blocks_between
-from server.features.sessions.retention import DAY, RetentionWorker
+from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.session import find_row, new_row
 from server.platform.models import Chunk, Gap, SessionRow
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
+from server.platform.wall_clock import DAY
 
 OLD_SECONDS = 0.1
 """Length of the older session, as a share of the dive."""

@@ -18,7 +18,7 @@ from typing import Any
 from sqlalchemy import Engine
 from sqlalchemy.pool import Pool
 
-from robot_runtime.clock import SimulatedClock
+from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.experiments.comm_test.document import read_document
 from robot_runtime.transport.blocks import Block, row
@@ -145,7 +145,7 @@ class Work:
         self.acknowledged()
 
     async def _export(self, store: Store, session: int) -> None:
-        jobs = Jobs(self.settings.data, store)
+        jobs = Jobs(self.settings.data, store, SteadyClock())
         jobs.open()
         working = asyncio.create_task(jobs.run())
         found = find_row(store, session)

@@ -21,6 +21,7 @@ from server.platform.database_copies import (
 from server.platform.folder_lock import claim
 from server.platform.schema import explain, read_revision, refuse_unknown
 from server.platform.settings import DataFolder, Settings, SetupError
+from server.platform.terminal import echo
 
 LOGS = ("-wal", "-journal")
 """Files beside a database that may hold a part of it."""
@@ -37,7 +38,7 @@ def backup(settings: Settings, file: Path | None) -> None:
     FILE is a new one in the folder `backups` of the data folder by default.
     """
     os.nice(NICENESS)
-    click.echo(back_up(settings.data, file))
+    echo(back_up(settings.data, file))
 
 
 @click.command("restore")
@@ -49,7 +50,7 @@ def restore(settings: Settings, file: Path) -> None:
     FILE was written by `mucat backup`.
     """
     with claim(settings.data):
-        click.echo(put_back(settings.data, file))
+        echo(put_back(settings.data, file))
 
 
 def back_up(folder: DataFolder, file: Path | None) -> str:

@@ -10,6 +10,7 @@ import click
 from server.platform.command_line import FILE, with_settings
 from server.platform.folder_lock import claim
 from server.platform.settings import Settings, SetupError
+from server.platform.terminal import echo
 
 if TYPE_CHECKING:
     from robot_runtime.experiments.comm_test.document import CommTest
@@ -60,7 +61,7 @@ def list_runs(settings: Settings) -> None:
     from server.features.comm_tests import tables
 
     with _open_runs(settings) as runs:
-        click.echo(tables.show_list(runs.list()))
+        echo(tables.show_list(runs.list()))
 
 
 @commtest.command()
@@ -71,7 +72,7 @@ def show(settings: Settings, run: int) -> None:
     from server.features.comm_tests import tables
 
     with _open_runs(settings) as runs:
-        click.echo(tables.show_run(runs.find(run), runs.cells(run)))
+        echo(tables.show_run(runs.find(run), runs.cells(run)))
 
 
 @commtest.command()
@@ -85,7 +86,7 @@ def compare(settings: Settings, runs: tuple[str, ...]) -> None:
     from server.features.comm_tests import tables
 
     with _open_runs(settings) as runs_store:
-        click.echo(tables.show_comparison({name: _rates(runs_store, name) for name in runs}))
+        echo(tables.show_comparison({name: _rates(runs_store, name) for name in runs}))
 
 
 @commtest.command()
@@ -98,7 +99,7 @@ def export(settings: Settings, run: int, format: str) -> None:  # noqa: A002 - t
 
     write = tables.write_csv if format == "csv" else tables.write_json
     with _open_runs(settings) as runs:
-        click.echo(write(runs.find(run), runs.cells(run)), nl=False)
+        echo(write(runs.find(run), runs.cells(run)), nl=False)
 
 
 @contextmanager

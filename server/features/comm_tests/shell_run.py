@@ -2,7 +2,6 @@
 
 import asyncio
 import signal
-import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,6 +15,7 @@ from server.features.comm_tests.schemas import Place
 from server.platform.models import CommTestRun
 from server.platform.settings import Settings
 from server.platform.shell_store import open_writer
+from server.platform.terminal import echo
 
 
 def run_tests(text: str, tests: list[CommTest], place: Place, settings: Settings) -> int:
@@ -32,7 +32,7 @@ async def _perform(
 ) -> int:
     await runs.mark_interrupted()
     progress = _Progress(tests)
-    board = RobotBoard(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
+    board = RobotBoard(settings, lambda _kind, _severity, words: echo(words, err=True))
     comm_tests = CommTestRunner(settings, runs, SteadyClock(), progress.notify, board.reserve)
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -44,12 +44,12 @@ async def _perform(
 
 def _conclude(done: Sequence[CommTestRun], expected: int, runs: CommTestStore) -> int:
     for run in done:
-        print(f"\n{tables.show_cells(runs.cells(run.id or 0))}")  # noqa: T201 - a command line speaks
+        echo(f"\n{tables.show_cells(runs.cells(run.id or 0))}")
         if run.state == "cancelled":
             words = f"run {run.id} was cancelled; its finished cells are stored"
-            print(f"mucat: {words}", file=sys.stderr)  # noqa: T201
+            echo(f"mucat: {words}", err=True)
         elif run.state != "complete":
-            print(f"mucat: run {run.id} failed: {run.problem}", file=sys.stderr)  # noqa: T201
+            echo(f"mucat: run {run.id} failed: {run.problem}", err=True)
     return 0 if len(done) == expected and all(run.state == "complete" for run in done) else 1
 
 
@@ -66,7 +66,7 @@ class _Progress:
             self._run = active["run"]
             test = self._tests[active["test"]]
             words = f"run {self._run}: {test.name}, framing {test.framing}, {test.direction}"
-            print(f"{words}, {active['cells']} cells", flush=True)  # noqa: T201
+            echo(f"{words}, {active['cells']} cells")
         if active and cell:
             where = f"{cell['baud']:>6} baud, Arduino {cell['arduino_delay']:g} s, Pi {cell['pi_delay']:g} s"
             times = f"{_clock(active['elapsed'])} elapsed, {_clock(active['remaining'] or 0)} remaining"
@@ -74,7 +74,7 @@ class _Progress:
             line = (
                 f"[{active['done']:>3}/{active['cells']}] {where:<42} {cell['rate']:.2f}  {times}  {causes}"
             )
-            print(line.rstrip(), flush=True)  # noqa: T201
+            echo(line.rstrip())
 
 
 def _clock(seconds: float) -> str:

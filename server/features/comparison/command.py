@@ -6,6 +6,7 @@ import click
 
 from server.platform.command_line import FILE, RowCommand, with_settings
 from server.platform.settings import Settings, SetupError
+from server.platform.terminal import echo
 
 
 @click.command(cls=RowCommand)
@@ -64,4 +65,4 @@ def report(
         raise SetupError(f"The report cannot be made: {problem}") from problem
     except OSError as problem:
         raise SetupError(f"{out} cannot be written: {problem.strerror}.") from problem
-    click.echo(out)
+    echo(out)

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from server.features.comparison.alignment import Align
 from server.features.comparison.differences import Difference
@@ -57,10 +57,12 @@ class ReportQuery(BaseModel):
     by: str = "start"
     number: int = 1
     marker: str = ""
-    start: float | None = Field(default=None, description="start of the range for the figures")
-    end: float | None = None
-    view_start: float | None = Field(default=None, description="start of the part that the charts show first")
-    view_end: float | None = None
+    start: FiniteFloat | None = Field(default=None, description="start of the range for the figures")
+    end: FiniteFloat | None = None
+    view_start: FiniteFloat | None = Field(
+        default=None, description="start of the part that the charts show first"
+    )
+    view_end: FiniteFloat | None = None
 
     def parse(self) -> ComparisonQuery:
         """The comparison asked for. Raises ValidationError."""

@@ -11,6 +11,7 @@ from server.platform.command_line import FILE, RowCommand, with_settings
 from server.platform.folder_lock import claim
 from server.platform.running_server import send_file, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
+from server.platform.terminal import echo
 
 FORMATS = ("csv", "csv-grid", "jsonl", "parquet", "mcap", "archive", "report")
 IMPORT_SECONDS = 3600.0
@@ -52,7 +53,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
             put_in_place(part, path)
     except ValidationError as problem:
         raise SetupError("; ".join(_words(error) for error in problem.errors())) from problem
-    click.echo(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
+    echo(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
 
 
 @click.command("import")
@@ -71,7 +72,7 @@ def import_session(settings: Settings, file: Path) -> None:
     else:
         with claim(settings.data):
             number, name = _take(file, settings.data)
-    click.echo(f"session {number}: {name}")
+    echo(f"session {number}: {name}")
 
 
 def _take(file: Path, folder: DataFolder) -> tuple[int, str]:

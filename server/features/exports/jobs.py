@@ -13,6 +13,7 @@ from secrets import token_hex
 
 from pydantic import ValidationError
 
+from robot_runtime.clock import Clock
 from robot_runtime.durable_files import PART, make_folder, write_whole
 from robot_runtime.errors import RefusedError
 from server.features.exports.description import file_name
@@ -26,6 +27,7 @@ from server.platform.errors import NotFoundError
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder
 from server.platform.store import Reader
+from server.platform.wall_clock import WallClock
 
 log = logging.getLogger(__name__)
 
@@ -41,12 +43,16 @@ class UnknownExportError(NotFoundError):
 
 
 class Jobs:
-    """All exports of a server. Methods that use the disk block only briefly."""
+    """All exports of a server. Methods that use the disk block only briefly.
 
-    def __init__(self, folder: DataFolder, store: Reader) -> None:
+    For a day after a jump of the wall clock no file is deleted for its age, since that is unknown.
+    """
+
+    def __init__(self, folder: DataFolder, store: Reader, clock: Clock) -> None:
         self._folder = folder.exports
         self._database = folder.database
         self._store = store
+        self._wall_clock = WallClock(clock)
         self._jobs: dict[str, Job] = {}
         self._wake = asyncio.Event()
         self._running: tuple[str, ExportProcess] | None = None
@@ -117,7 +123,7 @@ class Jobs:
     async def run(self) -> None:
         """Run the jobs one after the other; delete expired files."""
         while True:
-            self._delete_old()
+            self.delete_old(datetime.now(UTC))
             waiting = [job for job in self._jobs.values() if job.state == "waiting"]
             if waiting:
                 await self._make(waiting[0].id)
@@ -175,8 +181,11 @@ class Jobs:
         if job.state == "done" and job.id == described.stem and self.path(job).is_file():
             self._jobs[job.id] = job
 
-    def _delete_old(self) -> None:
-        limit = datetime.now(UTC) - timedelta(days=RETENTION_DAYS)
+    def delete_old(self, now: datetime) -> None:
+        """Delete expired files."""
+        if not self._wall_clock.knows_ages(now.timestamp()):
+            return
+        limit = now - timedelta(days=RETENTION_DAYS)
         for job in [
             job for job in self._jobs.values() if job.made < limit and job.state in ("done", "failed")
         ]:

@@ -13,6 +13,9 @@ from server.features.exports.zip_stream import ZipWriter
 from server.features.sessions.chunks import row_layout
 from server.platform.store import Reader
 
+FORMULA = ("=", "+", "-", "@", "\t", "\n", "＝", "＋", "－", "＠")
+"""Beginnings of what spreadsheets calculate."""
+
 
 def write_tables(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Write a zip file of `session.json`, a CSV file for each topic and JPEG files.
@@ -38,6 +41,13 @@ def csv_text(lines: Iterable[Iterable[str]]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(lines)
     return text.getvalue()
+
+
+def escape_formula(text: str) -> str:
+    """A text behind an apostrophe where a spreadsheet would take it for a formula."""
+    # Python's writer does not quote a carriage return, after which a spreadsheet begins a new cell.
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    return f"'{text}" if text.startswith(FORMULA) else text
 
 
 def _lines(source: ExportSelection, name: str) -> Iterator[str]:
@@ -77,4 +87,4 @@ def _row_writer(
 def _cell(value: object) -> str:
     if value is None:
         return ""
-    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return escape_formula(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False)

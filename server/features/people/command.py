@@ -12,6 +12,7 @@ import click
 from server.platform.command_line import with_settings
 from server.platform.running_server import ask
 from server.platform.settings import DataFolder, Settings
+from server.platform.terminal import echo
 
 ROLE = click.Choice(["viewer", "operator"])
 
@@ -39,7 +40,7 @@ def access() -> None:
 def list_devices(settings: Settings) -> None:
     """List the paired browsers and programs."""
     devices = ask(settings.data, "GET", "/access/devices")
-    click.echo(_tabulate(devices) or "Nobody is paired yet: `mucat pair` prints a link for a browser.")
+    echo(_tabulate(devices) or "Nobody is paired yet: `mucat pair` prints a link for a browser.")
 
 
 @access.command()
@@ -64,7 +65,7 @@ def demote(settings: Settings, device: int) -> None:
 def revoke(settings: Settings, device: int) -> None:
     """Revoke a device's access at once."""
     ask(settings.data, "DELETE", f"/access/devices/{device}")
-    click.echo(f"The access of device {device} is revoked.")
+    echo(f"The access of device {device} is revoked.")
 
 
 @access.command()
@@ -76,8 +77,8 @@ def token(settings: Settings, name: str, role: str) -> None:
     made = ask(settings.data, "POST", "/access/tokens", {"name": name, "role": role})
     device = made["device"]
     # To standard error: another program may read the token from standard output.
-    click.echo(f"“{device['name']}” is device {device['id']}. The token is not shown again:", err=True)
-    click.echo(made["token"])
+    echo(f"“{device['name']}” is device {device['id']}. The token is not shown again:", err=True)
+    echo(made["token"])
 
 
 def _has_operator(folder: DataFolder) -> bool:
@@ -87,7 +88,7 @@ def _has_operator(folder: DataFolder) -> bool:
 
 def _give_role(folder: DataFolder, number: int, role: str) -> None:
     device = ask(folder, "PATCH", f"/access/devices/{number}", {"role": role})
-    click.echo(f"“{device['name']}” is {_named(role)} now.")
+    echo(f"“{device['name']}” is {_named(role)} now.")
 
 
 def _named(role: str) -> str:

@@ -7,6 +7,7 @@ import click
 
 from server.platform.command_line import with_settings
 from server.platform.settings import Settings, SetupError
+from server.platform.terminal import echo
 
 if TYPE_CHECKING:
     from robot_runtime.experiments.scenario.document import Scenario
@@ -29,7 +30,7 @@ def list_all(settings: Settings) -> None:
     from server.features.scenarios.library import list_scenarios
 
     for one in list_scenarios(settings.data.scenarios):
-        click.echo(f"{one.name:<24} {one.title}{'' if one.shipped else ' (your own)'}")
+        echo(f"{one.name:<24} {one.title}{'' if one.shipped else ' (your own)'}")
 
 
 @scenario.command()
@@ -38,7 +39,7 @@ def list_all(settings: Settings) -> None:
 def check(settings: Settings, file: str) -> None:
     """Show what a scenario does, or what is wrong with it."""
     _, scenario = _read(file, settings.data.scenarios)
-    click.echo(_describe(scenario))
+    echo(_describe(scenario))
 
 
 @scenario.command()

@@ -7,8 +7,6 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack
 from time import sleep
 
-import click
-
 from robot_runtime.clock import SteadyClock
 from robot_runtime.experiments.scenario.document import read_scenario
 from server.features.lease.command import in_control, renew_control
@@ -21,6 +19,7 @@ from server.platform.running_server import ask
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.shell_store import open_writer
 from server.platform.store import Store
+from server.platform.terminal import echo
 
 POLL_SECONDS = 0.25
 
@@ -92,7 +91,7 @@ def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedR
 
 def _conclude(last: EndedRun) -> int:
     words = f"{last.title}: {last.state}. {last.problem}".strip()
-    click.echo(words if last.session is None else f"{words} Session {last.session}.")
+    echo(words if last.session is None else f"{words} Session {last.session}.")
     return 0 if last.state == "complete" else 1
 
 
@@ -114,11 +113,11 @@ class _Progress:
             return
         if active.run != self._run:
             self._run, self._events, self._printed = active.run, active.events, 0
-            click.echo(f"run {active.run}: {active.title}, {active.place}, {active.duration:g} s")
+            echo(f"run {active.run}: {active.title}, {active.place}, {active.duration:g} s")
         self._print_until(active.elapsed)
 
     def _print_until(self, time: float) -> None:
         past = [event for event in self._events if event.at <= time]
         for event in past[self._printed :]:
-            click.echo(f"{event.at:8.1f} s  {event.words}")
+            echo(f"{event.at:8.1f} s  {event.words}")
         self._printed = max(self._printed, len(past))

@@ -15,6 +15,7 @@ from server.platform.command_line import with_settings
 from server.platform.folder_lock import claim
 from server.platform.running_server import ask, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
+from server.platform.terminal import echo
 
 if TYPE_CHECKING:
     from server.features.sessions.catalogue import Listing
@@ -44,7 +45,7 @@ def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ..
     With WORDS, only those that have each of them in name, note, tags or scenario.
     """
     with _open_listing(settings) as listing:
-        click.echo(_tabulate(listing.list(" ".join(words), tag, deleted=deleted)))
+        echo(_tabulate(listing.list(" ".join(words), tag, deleted=deleted)))
 
 
 @sessions.command()
@@ -53,7 +54,7 @@ def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ..
 def show(settings: Settings, session: int) -> None:
     """Show a session: contents, bookmarks, gaps."""
     with _open_listing(settings) as listing:
-        click.echo(_describe(listing.detail(session)))
+        echo(_describe(listing.detail(session)))
 
 
 @sessions.command()
@@ -106,7 +107,7 @@ def record() -> None:
 def start(settings: Settings, name: str, note: str) -> None:
     """Start a recording. NAME is the date and time by default."""
     session = ask(settings.data, "POST", "/sessions", {"name": name, "note": note})
-    click.echo(f"Recording of “{session['name']}” has begun; it is session {session['id']}.")
+    echo(f"Recording of “{session['name']}” has begun; it is session {session['id']}.")
 
 
 @record.command()
@@ -118,7 +119,7 @@ def stop(settings: Settings) -> None:
     if not recording:
         raise SetupError("Nothing is being recorded.")
     session = ask(settings.data, "POST", f"/sessions/{recording[0]}/stop")
-    click.echo(f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s.")
+    echo(f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s.")
 
 
 @contextmanager
@@ -152,7 +153,7 @@ def _perform(folder: DataFolder, action: str, session: int, outcome: str, **chan
     else:
         with claim(folder), open_writer(folder) as store:
             name = asyncio.run(getattr(Catalogue(store), action)(session, **changes)).name
-    click.echo(f"“{name}” {outcome}.")
+    echo(f"“{name}” {outcome}.")
 
 
 def _tabulate(found: "list[Session]") -> str:

@@ -23,6 +23,7 @@ from server.platform.notices import Notices
 from server.platform.schema import INCREMENTAL
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
+from server.platform.wall_clock import DAY, WallClock
 
 log = logging.getLogger(__name__)
 
@@ -34,10 +35,6 @@ PAUSE = 0.02
 """s between two such steps, which leave the disk to the recorder."""
 BIN_SECONDS = 3600.0
 """Shortest time in the bin for sessions that a rule deletes, even while space is short."""
-DAY = 86_400.0
-JUMP_SECONDS = 60.0
-"""Difference between wall clock and steady clock that counts as a jump: a robot without a battery-backed
-clock has no correct time before it is set."""
 NAMES_SHOWN = 3
 
 
@@ -61,10 +58,7 @@ class RetentionWorker:
         self._store = store
         self._settings = settings
         self._notices = notices
-        self._clock = clock
-        self._ahead: float | None = None
-        """s by which the wall clock is ahead of the steady clock."""
-        self._ages_known_from = 0.0
+        self._wall_clock = WallClock(clock)
         self._requested = asyncio.Event()
         self._out_of_candidates = False
 
@@ -100,14 +94,10 @@ class RetentionWorker:
         await self._free_pages()
 
     async def _ages_known(self, now: float) -> bool:
-        steady = self._clock.now()
-        if self._ahead is None:
+        if self._wall_clock.ahead is None:
             # It may have jumped before this server was started.
-            self._ahead = await asyncio.to_thread(self._find_ahead)
-        if self._ahead is not None and abs(now - steady - self._ahead) > JUMP_SECONDS:
-            self._ages_known_from = steady + DAY
-        self._ahead = now - steady
-        return steady >= self._ages_known_from
+            self._wall_clock.ahead = await asyncio.to_thread(self._find_ahead)
+        return self._wall_clock.knows_ages(now)
 
     def _find_ahead(self) -> float | None:
         """The difference at the newest session since the computer started; None without one."""

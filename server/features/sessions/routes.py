@@ -139,7 +139,10 @@ async def purge_session(
     "GET /sessions/{session}/thumbnail", Need.VIEWER, UnknownSessionError, media_type="image/jpeg"
 )
 def get_thumbnail(
-    recording: OpenRecording, time: Annotated[float, Query(description="s since the start")]
+    recording: OpenRecording,
+    time: Annotated[
+        float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False, description="s since the start")
+    ],
 ) -> Response:
     """Return the first small camera picture from this time on."""
     for _, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):

@@ -1,4 +1,5 @@
 import errno
+import re
 import sqlite3
 from contextlib import closing
 from pathlib import Path
@@ -16,6 +17,7 @@ from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform import schema
+from server.platform.database_copies import copy_database
 from server.platform.settings import Settings, SetupError
 from server.platform.store import Store
 from tests.server.older import ROWS, fill_tables, make_session, read_tables, upgrade_to
@@ -67,6 +69,22 @@ def test_a_newer_database_is_refused_and_left_alone(settings: Settings) -> None:
     with pytest.raises(SetupError, match=r"newer version .*9999"):
         schema.prepare(settings.data)
     assert settings.data.database.read_bytes() == before
+
+
+def test_a_newer_database_is_refused_with_the_backup_that_fits(settings: Settings) -> None:
+    schema.prepare(settings.data)
+    settings.data.backups.mkdir(exist_ok=True)
+    names = ["before-0006-2026-01-01_00-00-00", "backup-2026-01-02_00-00-00", "backup-2026-01-03_00-00-00"]
+    copies = [settings.data.backups / f"mucat-{name}.db" for name in names]
+    for copy in copies:
+        copy_database(settings.data.database, copy)
+    for database in (settings.data.database, copies[-1]):
+        with closing(sqlite3.connect(database)) as connection:
+            connection.execute("UPDATE alembic_version SET version_num = '9999'")
+            connection.commit()
+    (settings.data.backups / "mucat-backup-2026-01-04_00-00-00.db").write_bytes(b"no database" * 100)
+    with pytest.raises(SetupError, match=re.escape(f"`mucat restore {copies[1]}`")):
+        schema.prepare(settings.data)
 
 
 @pytest.mark.parametrize("content", [b"no database at all, but long enough to look like one" * 20])

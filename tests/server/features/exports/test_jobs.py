@@ -10,12 +10,14 @@ from typing import Any
 import pytest
 from httpx import AsyncClient
 
+from robot_runtime.clock import SimulatedClock
 from server.features.exports import export_process as child_module
-from server.features.exports.jobs import JOBS_MAX, RETENTION_DAYS
+from server.features.exports.jobs import JOBS_MAX, RETENTION_DAYS, Jobs
 from server.features.exports.schemas import ExportOptions, Job
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.platform.wall_clock import DAY
 from tests.server.blocks import debug_block, depth_block
 from tests.server.features.exports.recordings import record
 from tests.server.serving import Served, play
@@ -134,6 +136,21 @@ def test_old_exports_are_deleted(settings: Settings) -> None:
         assert names == {young.id, f"{young.id}.json"}
 
     play(settings, scenario)
+
+
+def test_a_jump_of_the_clock_deletes_no_export(settings: Settings, store: Store) -> None:
+    now = datetime.now(UTC)
+    old = finished(settings, "a" * 16, now)
+    clock = SimulatedClock(50.0)
+    jobs = Jobs(settings.data, store, clock)
+    jobs.open()
+    jobs.delete_old(now)
+    later = now + timedelta(days=3650)
+    jobs.delete_old(later)
+    assert jobs.list() == [old]
+    clock.forward(DAY)
+    jobs.delete_old(later + timedelta(days=1))
+    assert jobs.list() == []
 
 
 SLOW = """

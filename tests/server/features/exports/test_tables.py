@@ -44,6 +44,14 @@ def table(archive: zipfile.ZipFile, name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(archive.read(f"{name}.csv").decode())))
 
 
+@pytest.mark.parametrize("text", ['=HYPERLINK("http://x")', "+1", "-1", "@SUM(1)", "\t=1", "\r=1", "＝1"])
+def test_a_text_is_no_formula_for_a_spreadsheet(store: Store, settings: Settings, text: str) -> None:
+    session = record(store, settings, [debug_block(0, text, f"a{text}")])
+    read = table(unpack(store, make(store, session)), "debug")
+    shown = text.replace("\r", "\n")
+    assert [line["text"] for line in read] == [f"'{shown}", f"a{shown}"]
+
+
 def test_exported_numbers_equal_the_recorded_ones(store: Store, settings: Settings) -> None:
     motor = Motor(
         time=2**32 - 1, wanted=(0.1, -0.2, 3.1, 0), angle=(1.234, 0, 0, -3.2), drive=(-63, 63, 0, 5)

@@ -17,12 +17,13 @@ from robot_runtime.config import SessionsConfig
 from robot_runtime.transport.blocks import Block
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder
-from server.features.sessions.retention import BIN_SECONDS, DAY, RetentionWorker
+from server.features.sessions.retention import BIN_SECONDS, RetentionWorker
 from server.features.sessions.session import REMOVING, new_row
 from server.platform.models import Chunk, SessionRow
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.platform.wall_clock import DAY
 from tests.server.blocks import depth_block
 
 NOW = 1.7e9
