@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.browser.driving import hold_to_arm
 from tests.browser.pages import samples
@@ -37,10 +37,15 @@ def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, t
     order: list[str] = []
     page.on("request", lambda request: order.append(f"ask {request.url}"))
     page.on("response", lambda response: order.append(f"got {response.url}"))
-    with page.expect_request("**/signals"):
-        page.goto(f"{stack.url}/#/sessions/compare/{one},{other}")
+    held = hold_figures(page)
+    page.goto(f"{stack.url}/#/sessions/compare/{one},{other}")
     expect(page.get_by_role("link", name="with fins", exact=True)).to_be_visible(timeout=STEP_MS)
     expect(page.locator(LINES)).to_have_count(4, timeout=STEP_MS)
+    expect(page.get_by_text("Figures are being computed…")).to_be_visible()
+    with page.expect_request("**/signals"):
+        (question,) = held
+        question.continue_()
+    page.unroute("**/api/compare")
     check_order(order)
 
     page.get_by_role("button", name="Figures 14 to 16").click()
@@ -70,6 +75,21 @@ def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, t
     check_files(page, tmp_path)
     check_report(page, browser, tmp_path / "report.html")
     assert complaints == []
+
+
+def hold_figures(page: Page) -> list[Route]:
+    """Keep questions for figures from the server, since no line waits for them. Returns the questions."""
+    held: list[Route] = []
+
+    def look(route: Route) -> None:
+        wanted = route.request.post_data_json or {}
+        if wanted["figures"]:
+            held.append(route)
+        else:
+            route.continue_()
+
+    page.route("**/api/compare", look)
+    return held
 
 
 def check_order(order: list[str]) -> None:

@@ -2236,7 +2236,10 @@ export interface components {
             duration: number;
             /** Events */
             events: components["schemas"]["Moment"][];
-            /** Figures */
+            /**
+             * Figures
+             * @description by name; empty if none were asked for
+             */
             figures: {
                 [key: string]: components["schemas"]["Figure"];
             };
@@ -2317,6 +2320,12 @@ export interface components {
             align: components["schemas"]["Align"];
             /** Band */
             band?: number | null;
+            /**
+             * Figures
+             * @description false: none, and the answer comes sooner
+             * @default true
+             */
+            figures: boolean;
             /**
              * Points
              * @description columns of each line

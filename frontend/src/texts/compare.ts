@@ -78,6 +78,7 @@ export const compare = {
     visibleHint: 'the time range that the charts show',
     zoomFirst: 'Zoom the charts first',
     seconds: (start: string, end: string) => `${start} to ${end} s`,
+    computing: 'Figures are being computed…',
     label: 'Figures of the sessions',
     hint: 'Point at a figure to see its meaning and its place in the depth chart.',
   },

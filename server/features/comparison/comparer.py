@@ -154,7 +154,7 @@ class Comparer:
             markers=one.markers,
             series=self._draw(one, query),
             range=[(span.start, span.end) for span in taken.spans],
-            figures=self._measure(one, taken, query),
+            figures=self._measure(one, taken, query) if query.figures else {},
         )
 
     def _measure(

@@ -46,6 +46,7 @@ class ComparisonQuery(LinesQuery):
 
     range: TimeRange | None = Field(default=None, description="for the figures; the armed time if null")
     band: Annotated[float, Field(gt=0, le=10, description="m, of the settling time")] | None = None
+    figures: bool = Field(default=True, description="false: none, and the answer comes sooner")
 
 
 class ReportQuery(BaseModel):
@@ -117,7 +118,7 @@ class Compared(SessionLines):
     events: list[Moment]
     markers: list[Moment]
     range: list[tuple[float, float]] = Field(description="range of the figures")
-    figures: dict[str, Figure]
+    figures: dict[str, Figure] = Field(description="by name; empty if none were asked for")
 
 
 class Lines(BaseModel):

@@ -10,6 +10,7 @@ from sqlalchemy import insert
 from server.features.comparison.comparer import Comparer
 from server.features.comparison.definitions import FIGURES
 from server.features.comparison.schemas import Comparison, ComparisonQuery
+from server.features.sessions.recording import Recording
 from server.platform.models import BookmarkRow, Gap
 from server.platform.schema import prepare
 from server.platform.settings import Settings
@@ -67,6 +68,26 @@ def test_figures_of_a_known_dive(store: Store, session: int) -> None:
     mark = one.figures["rise_time"].mark
     assert mark is not None
     assert (mark.low, mark.high) == (pytest.approx(0.05, abs=1e-3), pytest.approx(0.45, abs=1e-3))
+
+
+def test_lines_alone_read_nothing_of_the_figures(
+    store: Store, session: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[str] = []
+    columns = Recording.columns
+
+    def note(recording: Recording, topic: str, *others: Any) -> Any:
+        read.append(topic)
+        return columns(recording, topic, *others)
+
+    monkeypatch.setattr(Recording, "columns", note)
+    lines = compare(store, session, figures=False)
+    assert {*read} == {"depth", "control"}
+    whole = compare(store, session)
+    assert {"motor", "link"} <= {*read}
+    assert lines.sessions[0].figures == {}
+    assert lines.sessions[0].series == whole.sessions[0].series
+    assert lines.differences == whole.differences
 
 
 def test_the_aligned_step_is_the_measured_one(store: Store, session: int) -> None:
