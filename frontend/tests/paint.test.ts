@@ -83,4 +83,18 @@ describe('a painted trace', () => {
     expect(painted(columnsOf(Array.from({ length: MANY }, (_, at) => at % 2))).width).toBe(1);
     expect(painted(columnsOf(Array.from({ length: MANY }, () => [0, 1]))).width).toBe(1);
   });
+
+  it('goes each way once where it goes up and down much', () => {
+    const values = Array.from({ length: MANY }, (_, at) => (at % 3 === 0 ? [10, 0] : [0.1 * (at % 2), 9 + 0.1 * (at % 4)]));
+    const [line = []] = painted(columnsOf(values)).lines;
+    const way = line.slice(1).reduce((sum, [, y], at) => sum + Math.abs(y - (line[at]?.[1] ?? y)), 0);
+    const heights = values.reduce((sum, [one = 0, other = 0]) => sum + 10 * Math.abs(other - one), 0);
+    expect(way).toBeGreaterThanOrEqual(heights - 0.01);
+    expect(way).toBeLessThan(1.1 * heights);
+    values.forEach((some, at) => {
+      const reached = line.filter(([x]) => Math.floor(x) === at).map(([, y]) => (100 - y) / 10);
+      expect(Math.min(...reached)).toBeCloseTo(Math.min(...some), 4);
+      expect(Math.max(...reached)).toBeCloseTo(Math.max(...some), 4);
+    });
+  });
 });

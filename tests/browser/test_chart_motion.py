@@ -60,6 +60,26 @@ MOTION = f"""async (chart, seconds) => {{
 }}"""
 """The motion of a chart in some seconds: redraws, frames of the browser, and its trace before and after."""
 
+DRAWN = 20
+"""Redraws of the robot, during which other drawings are watched."""
+CHANGES = f"""() => new Promise((done) => {{
+    const drawn = ['attitude', 'fins', 'robot'].map((name) => `[data-panel=${{name}}] [role=img] > *`);
+    const parts = document.querySelectorAll(drawn);
+    const changes = [];
+    const watch = new MutationObserver((found) => changes.push(...found.map((one) => one.attributeName)));
+    for (const part of parts) watch.observe(part, {{ attributes: true, subtree: true }});
+    const context = document.querySelector('[data-panel=robot] canvas').getContext('2d');
+    let redraws = 0;
+    context.clearRect = function (...area) {{
+        CanvasRenderingContext2D.prototype.clearRect.apply(this, area);
+        redraws++;
+        if (redraws < {DRAWN}) return;
+        delete context.clearRect;
+        queueMicrotask(() => done({{ parts: parts.length, changes }}));
+    }};
+}})"""
+"""The names of attributes that change in three panels' drawings while the robot is drawn some times."""
+
 
 @pytest.fixture
 def moving(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page]:
@@ -87,6 +107,15 @@ def test_charts_move_with_the_data_and_show_its_values(moving: Page) -> None:
 
     panel.get_by_role("button", name="Pause").click()
     check_heights(moving, panel.evaluate(HELD))
+
+
+def test_instruments_move_without_a_change_of_any_element(moving: Page) -> None:
+    """Each change would have the browser lay out the page anew, with every frame."""
+    hold_to_arm(moving)
+    wait_for_depth(moving, 0.2, 1.0)
+    seen = moving.evaluate(CHANGES)
+    assert seen["parts"] >= 3
+    assert seen["changes"] == []
 
 
 def find_shift(before: NDArray[np.float64], after: NDArray[np.float64]) -> int:

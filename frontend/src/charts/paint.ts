@@ -22,7 +22,8 @@ const THIN = 1;
  * Draw a trace: in each column its least and its greatest value in the order in which they came, joined by lines.
  *
  * `before` and `after` are the samples next to the span, to which the line goes on where it does. Where it goes
- * up and down much, as with noise, the line is thin: wide ones that lie so close take a browser ten times as long.
+ * up and down much, as with noise, the line is thin: wide ones that lie so close take a browser ten times as long. It
+ * then begins each column at the nearer end, since the order cannot be seen and the way between is drawn twice else.
  */
 export function paintTrace(
   context: CanvasRenderingContext2D,
@@ -32,7 +33,8 @@ export function paintTrace(
   before: Spot | null,
   after: Spot | null,
 ): void {
-  if (travel(columns, span) * Math.abs(scale.unit) > DENSE) context.lineWidth = THIN;
+  const dense = travel(columns, span) * Math.abs(scale.unit) > DENSE;
+  if (dense) context.lineWidth = THIN;
   const { low, high, order, broken } = columns;
   const { left, column, zero, unit } = scale;
   let open = before !== null;
@@ -66,10 +68,11 @@ export function paintTrace(
       y = least;
     } else {
       rest();
-      const begin = kind === Order.RISING ? least : most;
+      const rising = dense && open ? Math.abs(least - y) < Math.abs(most - y) : kind === Order.RISING;
+      const begin = rising ? least : most;
       if (open) context.lineTo(x + column / 4, begin);
       else context.moveTo(x + column / 4, begin);
-      y = kind === Order.RISING ? most : least;
+      y = rising ? most : least;
       context.lineTo(x + 0.75 * column, y);
     }
     open = true;

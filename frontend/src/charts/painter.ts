@@ -1,5 +1,6 @@
 import type { Live } from '../live/live.svelte';
 import { staleAfter } from '../live/freshness';
+import { Pace } from '../live/pace';
 import type { Column } from '../live/ring';
 import { Columns, spanOf, type Span, type TimedColumns } from './columns';
 import type { Frame } from './frame';
@@ -63,6 +64,9 @@ export class StripPainter {
   #height = 0;
   #range: Range | null = null;
   #drawn = '';
+  #pace = new Pace();
+  /** sum of the rings' ends when it was drawn last */
+  #rows = -1;
 
   constructor(
     private readonly strip: Strip,
@@ -93,17 +97,22 @@ export class StripPainter {
     this.#drawn = '';
   }
 
-  /** Draw where that shows anything else than what was drawn last; to be called at each frame. */
-  draw(shown: Shown): void {
+  /**
+   * Draw where that shows anything else than what was drawn last; to be called at each frame of the screen, and with
+   * `together` where the page's other instruments are drawn, too: new samples are drawn with them.
+   */
+  draw(shown: Shown, together: boolean): void {
     const { view, held, still, marks } = shown;
     if (this.#width < 2 || Number.isNaN(view.end)) return;
     const { seconds } = view;
     const rate = still ? RATE_STILL : Math.min(Math.max((PER_PIXEL * this.#width) / seconds, RATE_LEAST), RATE_MOST);
-    const moment = held ? view.end : Math.floor(view.end * rate);
     const rings = this.#lines.reduce((sum, { ring }) => sum + ring.revision, 0);
-    const picture = `${moment} ${seconds} ${rings} ${marks.length} ${held}`;
-    if (picture === this.#drawn) return;
+    const rows = this.#lines.reduce((sum, { ring }) => sum + ring.end, 0);
+    const picture = `${held ? view.end : ''} ${seconds} ${rings} ${marks.length} ${held}`;
+    const due = !held && this.#pace.isDue(view.end, 1 / rate, together && rows !== this.#rows && !still);
+    if (!due && picture === this.#drawn) return;
     this.#drawn = picture;
+    this.#rows = rows;
     this.#draw(shown);
   }
 

@@ -21,12 +21,14 @@ import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
 import type { Part, ScenarioState, Session, TuningState } from '../api';
 import type { Hello } from './messages';
+import { Pace } from './pace';
 import { PERIODS, THUMBNAIL_PERIOD, type Timed } from './periods';
 import type { Stop } from './stop.svelte';
 import { createRings, Gaps } from './store';
 import { connection } from '../texts/connection';
 
-const FRAME_LEAST = 30;
+/** s from one frame in which something new is drawn to the next */
+const FRAME = 0.03;
 const TICK_EVERY = 125;
 const CONSOLE_LINES = 2000;
 const EVENT_LINES = 500;
@@ -87,8 +89,10 @@ export class Live {
   #detected: number[] = [];
   #frame = $state(0);
   #tick = $state(0);
-  #drawn = 0;
+  readonly #pace = new Pace();
   #awaited = false;
+  /** whether the board's samples came since the last frame: it is drawn with them */
+  #sampled = false;
   readonly #watching: Record<WatchedPicture, number> = { observer: 0, mask: 0, balanced: 0 };
   /** called where `watched` changes; a recording has no such pictures */
   onWatch: (() => void) | null = null;
@@ -230,6 +234,7 @@ export class Live {
     for (const ring of Object.values(this.rings)) {
       if (ring.topic.id !== block.topic) continue;
       ring.append(block.payload, after);
+      this.#sampled ||= ring === this.rings.imu;
       return ring.newest;
     }
     if (block.topic === OTHER_TOPICS.picture) {
@@ -284,12 +289,12 @@ export class Live {
     if (this.#awaited) return;
     this.#awaited = true;
     const draw = (at: number) => {
-      if (at - this.#drawn < FRAME_LEAST) {
+      if (!this.#pace.isDue(at / 1000, FRAME, this.#sampled)) {
         requestAnimationFrame(draw);
         return;
       }
-      this.#drawn = at;
       this.#awaited = false;
+      this.#sampled = false;
       this.#frame += 1;
     };
     requestAnimationFrame(draw);

@@ -126,7 +126,6 @@ export const panels = {
     commanded: 'commanded',
     drive: 'drive',
     label: 'The four fins from above',
-    names: ['front right', 'back right', 'back left', 'front left'],
     none: 'No data yet',
     noneText: 'Commanded and measured angles appear with the first packet of the motor drivers.',
   },

@@ -1,4 +1,3 @@
-import { canvasFont } from '../../theme.svelte';
 import { FLANK, HEAD_FACETS, HULL, LENS, MOUNTS, NECK, finAt, type Facet } from './shape';
 import { dot, eyeOf, FOCAL, turn, turnBack, unit as unitOf, type Camera, type Eye, type Quaternion, type Vector } from './space';
 import { panels as texts } from '../../texts/panels';
@@ -11,8 +10,8 @@ export interface Pose {
   readonly depth: number | null;
 }
 
-/** As #rrggbb. */
-export interface Colours {
+/** Colours as #rrggbb, and fonts. */
+export interface Look {
   readonly shell: string;
   readonly scute: string;
   readonly belly: string;
@@ -23,6 +22,9 @@ export interface Colours {
   readonly ring: string;
   readonly text: string;
   readonly water: string;
+  /** of the points of the compass */
+  readonly letters: string;
+  readonly words: string;
 }
 
 /** m that the surface is drawn above the robot at most; from there on a word says how far it is */
@@ -37,7 +39,7 @@ const LIGHT = unitOf([0.35, 0.5, -1]);
 const LETTERS = ['N', 'E', 'S', 'W'] as const;
 
 /** Draws the robot into a picture of this size (CSS pixels). */
-export function paint(context: CanvasRenderingContext2D, width: number, height: number, camera: Camera, pose: Pose, colours: Colours): void {
+export function paint(context: CanvasRenderingContext2D, width: number, height: number, camera: Camera, pose: Pose, look: Look): void {
   const eye = eyeOf(camera);
   const unit = (Math.min(width / SHOWN[0], height / SHOWN[1]) * camera.distance) / FOCAL;
   const pen = new Pen(context, (place) => {
@@ -45,9 +47,9 @@ export function paint(context: CanvasRenderingContext2D, width: number, height: 
     return [width / 2 + right * unit, height * 0.47 + down * unit];
   });
   context.clearRect(0, 0, width, height);
-  compass(pen, colours);
-  robot(pen, eye, pose, colours);
-  if (pose.depth !== null) surface(pen, height, pose.depth, colours);
+  compass(pen, look);
+  robot(pen, eye, pose, look);
+  if (pose.depth !== null) surface(pen, height, pose.depth, look);
 }
 
 class Pen {
@@ -73,7 +75,7 @@ class Pen {
   }
 }
 
-function robot(pen: Pen, eye: Eye, { attitude, fins }: Pose, colours: Colours): void {
+function robot(pen: Pen, eye: Eye, { attitude, fins }: Pose, look: Look): void {
   pen.context.lineWidth = 0.8;
   pen.context.lineJoin = 'round';
   const from = turnBack(attitude, eye.place);
@@ -82,12 +84,12 @@ function robot(pen: Pen, eye: Eye, { attitude, fins }: Pose, colours: Colours): 
       const [corner] = corners;
       if (corner === undefined || dot(normal, from) <= dot(normal, corner)) continue;
       const light = brightness(turn(attitude, normal));
-      pen.fill(corners.map((one) => turn(attitude, one)), shade(colours[part], light));
+      pen.fill(corners.map((one) => turn(attitude, one)), shade(look[part], light));
     }
   };
   const head = () => {
     facets(HEAD_FACETS);
-    if (from[0] > NECK) pen.fill(LENS.map((one) => turn(attitude, one)), colours.lens);
+    if (from[0] > NECK) pen.fill(LENS.map((one) => turn(attitude, one)), look.lens);
   };
   const side = (right: number) => {
     const own = MOUNTS.map((mount, index) => ({ ...mount, index })).filter((mount) => mount.right === right);
@@ -95,7 +97,7 @@ function robot(pen: Pen, eye: Eye, { attitude, fins }: Pose, colours: Colours): 
     for (const { index } of own.sort((a, b) => far(b) - far(a))) {
       const { corners, normal } = finAt(index, fins[index] ?? 0);
       const light = Math.max(brightness(turn(attitude, normal)), brightness(turn(attitude, [-normal[0], -normal[1], -normal[2]])));
-      pen.fill(corners.map((one) => turn(attitude, one)), shade(colours.fin, light), colours.edge);
+      pen.fill(corners.map((one) => turn(attitude, one)), shade(look.fin, light), look.edge);
     }
   };
   // What lies beyond a plane that parts it from the rest comes first: no piece has to be sorted.
@@ -113,13 +115,13 @@ const circle = (radius: number, down: number): Vector[] =>
     return [radius * Math.cos(angle), radius * Math.sin(angle), down];
   });
 
-function compass(pen: Pen, colours: Colours): void {
+function compass(pen: Pen, look: Look): void {
   const { context } = pen;
   context.lineWidth = 1;
-  context.strokeStyle = colours.ring;
+  context.strokeStyle = look.ring;
   pen.polygon(circle(RING_RADIUS, RING_BELOW));
   context.stroke();
-  context.font = `500 ${canvasFont('tiny')}`;
+  context.font = look.letters;
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   for (let tick = 0; tick < 12; tick += 1) {
@@ -129,29 +131,29 @@ function compass(pen: Pen, colours: Colours): void {
     context.moveTo(...at(RING_RADIUS));
     context.lineTo(...at(RING_RADIUS - (tick % 3 === 0 ? 0.015 : 0.008)));
     context.stroke();
-    context.fillStyle = colours.text;
+    context.fillStyle = look.text;
     if (tick % 3 === 0) context.fillText(LETTERS[tick / 3] ?? '', ...at(RING_RADIUS + 0.02));
   }
 }
 
-function surface(pen: Pen, height: number, depth: number, colours: Colours): void {
+function surface(pen: Pen, height: number, depth: number, look: Look): void {
   const { context } = pen;
   const above = Math.min(Math.max(depth, -SURFACE_MOST), SURFACE_MOST);
   const far = depth > SURFACE_MOST;
   pen.polygon(circle(SURFACE_RADIUS, -above));
-  context.strokeStyle = colours.water;
+  context.strokeStyle = look.water;
   context.lineWidth = 1.2;
   context.setLineDash(far ? [3, 5] : []);
   context.stroke();
   context.setLineDash([]);
   if (!far) {
     context.globalAlpha = 0.16;
-    context.fillStyle = colours.water;
+    context.fillStyle = look.water;
     context.fill();
     context.globalAlpha = 1;
   }
-  context.fillStyle = colours.text;
-  context.font = canvasFont('small');
+  context.fillStyle = look.text;
+  context.font = look.words;
   context.textAlign = 'left';
   context.textBaseline = 'bottom';
   context.fillText(far ? texts.robot.surfaceAbove(depth.toFixed(2)) : texts.robot.surface, 0, height);
