@@ -1,14 +1,34 @@
 """The listening socket and the web server around the application."""
 
+import asyncio
+import errno
+import logging
 import socket
+import sys
+from typing import Any
 
 import uvicorn
 from fastapi import FastAPI
+from uvicorn.config import STARTUP_FAILURE
 
+from robot_runtime.clock import SteadyClock
+from server.http.connections import (
+    CONNECTIONS_MAX,
+    HEAD_SECONDS,
+    Connections,
+    HttpProtocol,
+    raise_file_limit,
+)
 from server.http.websocket_protocol import WebSocketProtocol
 from server.platform.certificate import Certificate
 from server.platform.settings import SetupError
 
+log = logging.getLogger(__name__)
+
+OUT_OF_FILES = frozenset({errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM})
+REPORT_SECONDS = 60.0
+TICKS_PER_SECOND = 10
+"""Of uvicorn's main loop."""
 SEND_BUFFER_BYTES = 65_536
 """Small: with the kernel's default of megabytes, a client that stopped reading goes unnoticed for minutes."""
 USER_TIMEOUT_MS = 10_000
@@ -48,15 +68,76 @@ def open_socket(host: str, port: int) -> socket.socket:
     return listener
 
 
-def make_server(app: FastAPI, certificate: Certificate | None = None) -> uvicorn.Server:
+class WebServer(uvicorn.Server):
+    """uvicorn's server, which ends connections whose clients take too long."""
+
+    def __init__(self, config: uvicorn.Config, connections: Connections) -> None:
+        super().__init__(config)
+        self.connections = connections
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start the application, then accept connections."""
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(OutOfFiles(self.connections).report)
+        await self.lifespan.startup()
+        if self.lifespan.should_exit:
+            sys.exit(STARTUP_FAILURE)
+
+        def make_protocol() -> HttpProtocol:
+            state, options = self.server_state, {"config": self.config, "app_state": self.lifespan.state}
+            return HttpProtocol(self.connections, server_state=state, **options)
+
+        tls = self.config.ssl
+        patience = None if tls is None else HEAD_SECONDS
+        self.servers = [
+            await loop.create_server(
+                make_protocol, sock=one, ssl=tls, backlog=BACKLOG, ssl_handshake_timeout=patience
+            )
+            for one in sockets or []
+        ]
+        self.started = True
+
+    async def on_tick(self, counter: int) -> bool:
+        """Look after the connections; true where the server shall end."""
+        if counter % TICKS_PER_SECOND == 0:
+            self.connections.expire()
+        return await super().on_tick(counter)
+
+
+class OutOfFiles:
+    """Reports that connections cannot be accepted for want of file handles, once a minute.
+
+    asyncio reports it each second for each place in the backlog (python/cpython#151615).
+    """
+
+    def __init__(self, connections: Connections) -> None:
+        self._connections = connections
+        self._reported: float | None = None
+
+    def report(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """The event loop's exception handler."""
+        problem = context.get("exception")
+        if not isinstance(problem, OSError) or problem.errno not in OUT_OF_FILES:
+            loop.default_exception_handler(context)
+            return
+        now = self._connections.now()
+        if self._reported is None or now - self._reported >= REPORT_SECONDS:
+            self._reported = now
+            log.error(
+                "No connection can be accepted: %s. %d are open.", problem.strerror, len(self._connections)
+            )
+
+
+def make_server(app: FastAPI, certificate: Certificate | None = None) -> WebServer:
     """A server for the application, with TLS where it has a certificate; it takes nothing from
     X-Forwarded-*, and compresses no messages.
     """
+    files = raise_file_limit()
+    connections = Connections(SteadyClock(), min(CONNECTIONS_MAX, files // 2))
     config = uvicorn.Config(
         app,
         ssl_certfile=None if certificate is None else certificate.file,
         ssl_keyfile=None if certificate is None else certificate.key,
-        http="h11",
         ws=WebSocketProtocol,
         loop="asyncio",
         lifespan="on",
@@ -70,4 +151,4 @@ def make_server(app: FastAPI, certificate: Certificate | None = None) -> uvicorn
         timeout_graceful_shutdown=GRACE_SECONDS,
         timeout_keep_alive=KEEP_ALIVE_SECONDS,
     )
-    return uvicorn.Server(config)
+    return WebServer(config, connections)

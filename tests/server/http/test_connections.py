@@ -1,0 +1,271 @@
+"""Limits of connections: their number, and the time that a client may take."""
+
+import asyncio
+import errno
+import logging
+import resource
+import socket
+import struct
+import subprocess
+import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import httpx
+import psutil
+import pytest
+from fastapi import FastAPI, Request
+
+from robot_runtime.clock import SimulatedClock
+from server.http.connections import (
+    ADDRESS_MAX,
+    BODY_SECONDS,
+    HEAD_SECONDS,
+    Connections,
+    raise_file_limit,
+)
+from server.http.serving import BACKLOG, REPORT_SECONDS, OutOfFiles, WebServer, make_server, open_socket
+from server.platform.settings import Settings
+from tests.server.serving import Served, next_text, play
+from tests.server.waiting import until
+from tests.shell import shell_headers
+
+Connection = tuple[asyncio.StreamReader, asyncio.StreamWriter]
+
+
+class Site:
+    """A small server in simulated time, which reads bodies piece by piece."""
+
+    def __init__(self, total: int) -> None:
+        self.clock = SimulatedClock()
+        self.limits = Connections(self.clock, total)
+        self.got: list[bytes] = []
+        self.left: list[str] = []
+        self.port = 0
+        self.writers: list[asyncio.StreamWriter] = []
+        self.app = FastAPI()
+        self.app.post("/upload")(self.upload)
+
+    async def upload(self, request: Request) -> str:
+        try:
+            async for piece in request.stream():
+                self.got.append(piece)
+        except Exception as problem:
+            self.left.append(type(problem).__name__)
+        return "done"
+
+    async def open(self) -> Connection:
+        reader, writer = await asyncio.open_connection("127.0.0.1", self.port)
+        self.writers.append(writer)
+        return reader, writer
+
+    async def connect(self, text: str = "") -> Connection:
+        """A connection that the server has admitted, with the first bytes of a request."""
+        before = len(self.limits)
+        reader, writer = await self.open()
+        await until(lambda: len(self.limits) > before, "the connection")
+        writer.write(text.encode())
+        return reader, writer
+
+    def pass_time(self, seconds: float) -> None:
+        self.clock.forward(seconds)
+        self.limits.expire()
+
+
+@asynccontextmanager
+async def site(total: int = 400) -> AsyncIterator[Site]:
+    one = Site(total)
+    server = WebServer(make_server(one.app).config, one.limits)
+    with open_socket("127.0.0.1", 0) as listener:
+        one.port = listener.getsockname()[1]
+        running = asyncio.create_task(server.serve(sockets=[listener]))
+        await until(lambda: server.started, "the server")
+        try:
+            yield one
+        finally:
+            for writer in one.writers:
+                writer.close()
+            server.should_exit = True
+            await running
+
+
+async def has_ended(connection: Connection) -> bool:
+    """True where the server closes this connection, soon."""
+    reader, _ = connection
+    try:
+        async with asyncio.timeout(10):
+            return await reader.read() == b""
+    except ConnectionResetError:
+        return True
+
+
+HALF_BODY = "POST /upload HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n{"
+
+
+def test_a_head_has_ten_seconds_also_where_it_comes_byte_by_byte() -> None:
+    async def scenario() -> None:
+        async with site() as one:
+            silent, slow = await one.connect(), await one.connect("GET / HT")
+            for letter in "TP/":
+                one.pass_time(HEAD_SECONDS / 4)
+                slow[1].write(letter.encode())
+                await slow[1].drain()
+            assert len(one.limits) == 2
+            one.pass_time(HEAD_SECONDS / 4)
+            assert len(one.limits) == 0
+            assert await has_ended(silent)
+            assert await has_ended(slow)
+
+    asyncio.run(scenario())
+
+
+def test_the_head_of_a_further_request_has_ten_seconds_too_and_an_idle_connection_more() -> None:
+    async def scenario() -> None:
+        async with site() as one:
+            request = "GET / HTTP/1.1\r\nHost: x\r\n\r\n"
+            idle, slow = await one.connect(request), await one.connect(request)
+            for reader, _ in (idle, slow):
+                assert b"Not Found" in await reader.readuntil(b"}")
+            slow[1].write(b"GET")
+            later = one.clock.now() + HEAD_SECONDS
+            await until(lambda: any(found.overdue(later) for found in one.limits), "the first bytes")
+            one.pass_time(HEAD_SECONDS)
+            assert await has_ended(slow)
+            idle[1].write(request.encode())
+            assert b"Not Found" in await idle[0].readuntil(b"}")
+
+    asyncio.run(scenario())
+
+
+def test_a_body_may_last_as_long_as_it_progresses() -> None:
+    async def scenario() -> None:
+        async with site() as one:
+            upload, hanging = await one.connect(HALF_BODY), await one.connect(HALF_BODY)
+            await until(lambda: len(one.got) == 2, "both bodies")
+            for number in range(3):
+                one.pass_time(BODY_SECONDS * 0.6)
+                upload[1].write(b"x")
+                await until(lambda: len(one.got) == number + 3, "a further piece")  # noqa: B023
+            assert await has_ended(hanging)
+            await until(lambda: one.left == ["ClientDisconnect"], "the end of the hanging body")
+            upload[1].write(b"12345")
+            assert b"done" in await upload[0].readuntil(b'done"')
+
+    asyncio.run(scenario())
+
+
+def test_a_connection_that_waits_for_its_client_makes_room() -> None:
+    async def scenario() -> None:
+        async with site(total=3) as one:
+            first = await one.connect(HALF_BODY)
+            await until(lambda: one.got, "the body")
+            one.clock.forward(1)
+            for _ in range(2):
+                await one.connect()
+            await one.open()
+            assert await has_ended(first)
+            assert len(one.limits) == 3
+
+    asyncio.run(scenario())
+
+
+def test_requests_that_are_worked_on_are_not_ended_for_others() -> None:
+    async def scenario() -> None:
+        async with site(total=2) as one:
+            release = asyncio.Event()
+
+            async def work() -> str:
+                one.got.append(b"working")
+                await release.wait()
+                return "done"
+
+            one.app.get("/work")(work)
+            request = "GET /work HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n"
+            busy = [await one.connect(request) for _ in range(2)]
+            await until(lambda: len(one.got) == 2, "both requests")
+            assert await has_ended(await one.open())
+            release.set()
+            for reader, _ in busy:
+                assert b"done" in await reader.read()
+
+    asyncio.run(scenario())
+
+
+def test_stop_and_an_open_page_are_served_while_300_silent_connections_hang(settings: Settings) -> None:
+    attack = """if True:
+        import socket, sys
+        sys.stdin.readline()
+        held = [socket.create_connection(("127.0.0.1", int(sys.argv[1]))) for _ in range(300)]
+        print("there", flush=True)
+        sys.stdin.readline()
+    """
+
+    async def scenario(served: Served) -> None:
+        stop = f"{served.api.base_url}robot/stop"
+        # Started first: a process inherits the limit.
+        attacker = subprocess.Popen(
+            [sys.executable, "-c", attack, str(served.settings.port)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
+        limit = resource.getrlimit(resource.RLIMIT_NOFILE)
+        try:
+            async with served.connect() as page:
+                await next_text(page, "hello")
+                few = psutil.Process().num_fds() + ADDRESS_MAX + BACKLOG + 20
+                resource.setrlimit(resource.RLIMIT_NOFILE, (few, limit[1]))
+                assert attacker.stdin is not None
+                assert attacker.stdout is not None
+                attacker.stdin.write(b"go\n")
+                attacker.stdin.flush()
+                assert await asyncio.to_thread(attacker.stdout.readline) == b"there\n"
+                async with httpx.AsyncClient(headers=shell_headers(settings.data), timeout=10) as fresh:
+                    assert (await fresh.post(stop)).status_code == 204
+                await page.send('{"op": "ping", "id": 1}')
+                assert (await next_text(page, "pong"))["id"] == 1
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, limit)
+            attacker.communicate(b"end\n")
+
+    play(settings, scenario)
+
+
+def test_missing_file_handles_are_reported_once_a_minute(caplog: pytest.LogCaptureFixture) -> None:
+    clock = SimulatedClock()
+    report = OutOfFiles(Connections(clock)).report
+    loop = asyncio.new_event_loop()
+    try:
+        for _ in range(1000):
+            report(loop, {"message": "accept", "exception": OSError(errno.EMFILE, "Too many open files")})
+        assert [record.levelno for record in caplog.records] == [logging.ERROR]
+        assert "Too many open files" in caplog.text
+        clock.forward(REPORT_SECONDS)
+        report(loop, {"message": "accept", "exception": OSError(errno.EMFILE, "Too many open files")})
+        report(loop, {"message": "something else"})
+        assert [record.name for record in caplog.records] == [*["server.http.serving"] * 2, "asyncio"]
+    finally:
+        loop.close()
+
+
+def test_the_backlog_is_the_servers_own() -> None:
+    async def scenario() -> None:
+        server = make_server(FastAPI())
+        with open_socket("127.0.0.1", 0) as listener:
+            running = asyncio.create_task(server.serve(sockets=[listener]))
+            await until(lambda: server.started, "the server")
+            described = listener.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 32)
+            # Of a listening socket, `tcpi_sacked` is the greatest backlog.
+            assert struct.unpack_from("I", described, 28) == (BACKLOG,)
+            server.should_exit = True
+            await running
+
+    asyncio.run(scenario())
+
+
+def test_the_limit_of_open_files_is_raised() -> None:
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    try:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (512, before[1]))
+        assert raise_file_limit() == resource.getrlimit(resource.RLIMIT_NOFILE)[0] > 512
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
