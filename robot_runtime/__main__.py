@@ -5,11 +5,12 @@ import logging
 import sys
 from pathlib import Path
 
-from robot_runtime.config import load
+from robot_runtime.config import Config, load
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import keep_private
 from robot_runtime.robot import Robot
 from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
+from robot_runtime.transport.network import LOCAL_ONLY, listen_settings
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.settings_file import VisionSettingsFile
 
@@ -23,9 +24,7 @@ def main() -> int:
         end_with_parent()
     try:
         config = load(options.config)
-        with ZenohTransport(
-            config.robot.name, *_endpoints(options.data, config.zenoh.listen), config.zenoh.scouting
-        ) as messages:
+        with open_transport(config, options.data) as messages:
             port = options.port or config.link.port
             vision_file = VisionSettingsFile(options.data / "vision.json")
             robot = Robot(config, port, messages, heartbeat=options.heartbeat, vision_file=vision_file)
@@ -53,10 +52,17 @@ def _options() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def _endpoints(data: Path, more: list[str]) -> tuple[list[str], list[str]]:
-    run = (data / "run").resolve()
+def open_transport(config: Config, data: Path) -> ZenohTransport:
+    """Opens the runtime's transport. Raises OSError, and ConfigError where certificates are missing."""
+    run, more = (data / "run").resolve(), config.zenoh.listen
     run.mkdir(parents=True, exist_ok=True)
-    return [f"unixsock-stream/{run}/runtime.sock", *more], [f"unixsock-stream/{run}/server.sock"]
+    return ZenohTransport(
+        config.robot.name,
+        [f"unixsock-stream/{run}/runtime.sock", *more],
+        [f"unixsock-stream/{run}/server.sock"],
+        config.zenoh.scouting,
+        network=listen_settings((data / "zenoh").resolve(), config.robot.name) if more else LOCAL_ONLY,
+    )
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """The configuration in robot.toml as typed, checked values, with the default of each entry."""
 
+import re
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Literal
@@ -10,6 +11,8 @@ from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.contract.vision_settings import VisionSettings
 
+NETWORK_ENDPOINT = re.compile(r"tls/[^\s/#?;]+:[0-9]+")
+"""A Zenoh endpoint with certificates. What may follow in one, from ? or # on, could switch them off."""
 HIL_BAUD_MIN = 115_200
 """bit/s from which the line carries the fins' angles at full rate."""
 
@@ -87,10 +90,18 @@ class VisionConfig(VisionSettings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ZenohConfig:
-    """The Zenoh endpoints that other computers may use."""
+    """The Zenoh endpoints that other computers with a certificate of this robot may use."""
 
     listen: list[str] = field(default_factory=list)
     scouting: bool = False
+
+    def __post_init__(self) -> None:
+        for endpoint in self.listen:
+            if not NETWORK_ENDPOINT.fullmatch(endpoint):
+                raise ConfigError(
+                    f"zenoh.listen has {endpoint!r}, which would let the whole network command the robot; "
+                    'use "tls/ADDRESS:PORT", which lets in certificates of this robot alone'
+                )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

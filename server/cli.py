@@ -25,6 +25,7 @@ COMMANDS = {
     "restore": "server.features.backup.command:restore",
     "pair": "server.features.people.command:pair",
     "access": "server.features.people.command:access",
+    "certificate": "server.features.simulator.certificates:certificate",
     "completion": "server.cli:completion",
 }
 """Module and function of each command. Only the called one is loaded: a Raspberry Pi Zero is slow at that."""

@@ -30,12 +30,15 @@ def _serve(settings: Settings) -> int:
     from robot_runtime.simulation.boards.firmware import FirmwareBuildError, build_firmware
     from server.app import create_app
     from server.http.serving import make_server, open_socket
+    from server.platform.authority import Authority
     from server.platform.certificate import prepare_certificate
     from server.platform.running_server import announce
     from server.platform.schema import prepare
     from server.processes.server_runner import ServerRunner
     from server.processes.supervisor import plan
 
+    if settings.zenoh.listen:
+        Authority(settings).prepare()
     if settings.emulated_board:
         try:
             build_firmware(settings.build, settings.link.baud, hil=settings.in_the_loop)

@@ -37,19 +37,28 @@ def main() -> None:
     for before, after in (
         ('\nmode = "emulated"', '\nmode = "hil"'),
         ('\nsimulator = "here"', '\nsimulator = "elsewhere"'),
-        ("\nlisten = []", f'\nlisten = ["tcp/{HERE}:{PORT}"]'),
+        ("\nlisten = []", f'\nlisten = ["tls/{HERE}:{PORT}"]'),
     ):
         assert text.count(before) == 1, before
         text = text.replace(before, after)
     (data / "robot.toml").write_text(text)
     told: dict[str, Any] = {}
+    mucat = str(Path(sys.executable).parent / "mucat")
+    robot = ["--data", str(data / "data"), "--config", str(data / "robot.toml")]
+    subprocess.run(
+        [mucat, "certificate", "issue", "pool", "--to", str(data / "pool"), *robot],
+        check=True,
+        cwd=ROOT,
+        stdout=subprocess.DEVNULL,
+    )
+    there = ["--connect", f"tls/{HERE}:{PORT}", "--certificate", str(data / "pool")]
     with (
         TwoHosts(delay=0.02, jitter=0.01, loss=0.01) as hosts,
         Stack(data / "data", "--config", str(data / "robot.toml")) as stack,
     ):
         told["alone"] = refusals(stack)
         simulator = subprocess.Popen(
-            [str(Path(sys.executable).parent / "mucat"), "simulator", "--connect", f"tcp/{HERE}:{PORT}"],
+            [mucat, "simulator", *there],
             cwd=ROOT,
             preexec_fn=hosts.enter_there,
         )

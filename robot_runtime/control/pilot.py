@@ -20,6 +20,10 @@ Flapping fins take 0.25 s to rest: together less than 0.5 s.
 """
 PILOT_LOOK = 0.05
 """s between two checks of the pilot's silence, at most."""
+EPOCHS_AHEAD = 1000
+"""Epochs by which a lease may be ahead of this clock's milliseconds, which the server's never are."""
+NUMBER_MAX = 2**53
+"""Greatest sequence number, as JavaScript counts them."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 NEUTRAL = Navigation(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
 
@@ -42,7 +46,12 @@ class Pilot:
         self.taken, self._command = self._clock.now(), NEUTRAL
 
     def change_lease(self, epoch: int) -> None:
-        """Accepts only input of this lease from now on. Raises RefusedError for an older epoch."""
+        """Accepts only input of this lease from now on. Raises RefusedError for an older or a future epoch.
+
+        An epoch of the far future would refuse every later one.
+        """
+        if not 0 <= epoch <= self._clock.now() * 1000 + EPOCHS_AHEAD:
+            raise RefusedError("the lease is not of this time")
         if epoch < self.lease:
             raise RefusedError(f"the lease {epoch} is older than {self.lease}, the present one")
         if epoch > self.lease:
@@ -91,6 +100,8 @@ def _read(table: Any) -> tuple[int, int, float, list[float]]:
     lease, sequence, taken, axes = (table[name] for name in ("lease", "sequence", "taken", "axes"))
     if type(lease) is not int or type(sequence) is not int or type(axes) is not list:
         raise TypeError("lease and sequence are whole numbers, axes a list")
+    if not 0 <= sequence <= NUMBER_MAX:
+        raise ValueError("sequence counts from 0")
     numbers = [taken, *axes]
     if len(axes) != len(AXES) or not all(type(one) in (int, float) for one in numbers):
         raise TypeError("taken and six axes are numbers")

@@ -17,6 +17,7 @@ from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
+from robot_runtime.transport.network import LOCAL_ONLY, connect_settings
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 log = logging.getLogger(__name__)
@@ -31,8 +32,9 @@ def main() -> None:
         end_with_parent()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: sys.exit())
+    network = connect_settings(arguments.certificate) if arguments.certificate else LOCAL_ONLY
     joined = (
-        join(arguments.robot, arguments.connect)
+        join(arguments.robot, arguments.connect, network)
         if arguments.in_the_loop
         else ZenohTransport(arguments.robot, connect=arguments.connect)
     )
@@ -60,6 +62,9 @@ def _parser() -> argparse.ArgumentParser:
         default=[],
         metavar="ENDPOINT",
         help="Zenoh endpoint of the robot; may repeat",
+    )
+    parser.add_argument(
+        "--certificate", type=Path, metavar="FOLDER", help="certificate for a robot on another computer"
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sensors' noise")

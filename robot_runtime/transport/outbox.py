@@ -1,6 +1,6 @@
 """Gathers samples into blocks and sends them to the other processes, so that each message carries many.
 
-Everything queued is sent as one message named `STREAM`, blocks one after the other, because waking the
+Everything queued is sent as one message named `stream`, blocks one after the other, because waking the
 receiver costs more than bytes. Each topic with subscribers of its own is sent under its name as well.
 """
 
@@ -14,6 +14,8 @@ from robot_runtime.transport.blocks import Block, pack_documents, row
 from robot_runtime.transport.replay_cache import ReplayCache
 
 STREAM = "stream"
+SIMULATOR_STREAM = "simulator/stream"
+"""The simulator's `STREAM`, a key of its own: a simulator elsewhere may not send under the robot's."""
 
 
 class Outbox:
@@ -27,7 +29,9 @@ class Outbox:
         send: Callable[[str, bytes], None],
         watched: Callable[[str], bool],
         cache: ReplayCache | None = None,
+        stream: str = STREAM,
     ) -> None:
+        self._stream = stream
         self._send = send
         self._watched = watched
         self._cache = cache
@@ -67,7 +71,7 @@ class Outbox:
                 message = b"".join(blocks.values())
                 if self._cache is not None:
                     self._cache.add(message, self._next)
-                self._send(STREAM, message)
+                self._send(self._stream, message)
             for name, block in blocks.items():
                 if self._watched(name):
                     self._send(name, block)

@@ -19,6 +19,15 @@ BYTES_MAX = 4_000_000
 """Some minutes at the robot's full rate; a Raspberry Pi Zero has 512 MB for everything."""
 
 _SIZE = Struct("<I")
+_NOT_A_REPLY = (
+    error,
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    ArithmeticError,
+    RecursionError,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +48,14 @@ class BacklogReply:
         try:
             (size,) = _SIZE.unpack_from(data)
             head = json.loads(data[_SIZE.size : _SIZE.size + size])
-            numbers = {str(name): int(number) for name, number in head["next"].items() if name in BY_NAME}
+            numbers = {
+                str(name): int(number) % NUMBERS for name, number in head["next"].items() if name in BY_NAME
+            }
             run = str(head["run"])
             return cls(run, numbers, read_blocks(data[_SIZE.size + size :], run))
         except LayoutError:
             raise
-        except (error, ValueError, LookupError, TypeError, AttributeError) as problem:
+        except _NOT_A_REPLY as problem:
             raise LayoutError(f"the backlog cannot be read: {problem!r}") from problem
 
 

@@ -14,6 +14,7 @@ from typing import Any, Self
 import zenoh
 
 from robot_runtime.errors import NoAnswerError, RefusedError
+from robot_runtime.transport.network import LOCAL_ONLY
 
 log = logging.getLogger(__name__)
 
@@ -43,9 +44,10 @@ class ZenohTransport:
     """One process's transport.
 
     `listen` and `connect` are Zenoh endpoints, such as "unixsock-stream//run/mucat/runtime.sock" or
-    "tcp/192.168.0.7:7447". Lost peers are tried again for ever. A `client` reaches everybody through the one
-    that it connects to, which must be there when it starts. Raises OSError where an endpoint cannot be
-    listened on, or a client's cannot be reached.
+    "tls/192.168.0.7:7447", which needs the settings of `robot_runtime.transport.network`. Lost peers are
+    tried again for ever. A `client` reaches everybody through the one that it connects to, which must be
+    there when it starts. Raises OSError where an endpoint cannot be listened on, or a client's cannot be
+    reached.
 
     `run` are 16 hexadecimal digits that are new in every process; they travel with all that it publishes.
     """
@@ -57,11 +59,12 @@ class ZenohTransport:
         connect: Sequence[str] = (),
         scouting: bool = False,
         client: bool = False,
+        network: Mapping[str, Any] = LOCAL_ONLY,
     ) -> None:
         self.run = secrets.token_hex(8)
         self._prefix = f"mucat/{robot}/"
         try:
-            self._session = zenoh.open(_configuration(listen, connect, scouting, client))
+            self._session = zenoh.open(_configuration(listen, connect, scouting, client, network))
         except zenoh.ZError as problem:
             does = "reach" if client else "listen on"
             raise OSError(f"cannot {does} {', '.join(connect if client else listen)}: {problem}") from problem
@@ -147,12 +150,12 @@ class ZenohTransport:
         return publisher
 
 
-def join(robot: str, endpoints: Sequence[str]) -> ZenohTransport:
-    """Connects to a robot elsewhere as a client; waits until it answers."""
+def join(robot: str, endpoints: Sequence[str], network: Mapping[str, Any] = LOCAL_ONLY) -> ZenohTransport:
+    """Connects to a robot as a client; waits until it answers."""
     warned = False
     while True:
         try:
-            return ZenohTransport(robot, connect=endpoints, client=True)
+            return ZenohTransport(robot, connect=endpoints, client=True, network=network)
         except OSError as problem:
             if not warned:
                 log.warning("%s; trying again until the robot answers", problem)
@@ -178,12 +181,19 @@ def _reason(name: str, problem: Exception) -> str:
 
 
 def _configuration(
-    listen: Sequence[str], connect: Sequence[str], scouting: bool, client: bool
+    listen: Sequence[str],
+    connect: Sequence[str],
+    scouting: bool,
+    client: bool,
+    network: Mapping[str, Any],
 ) -> zenoh.Config:
     settings: dict[str, Any] = {
+        **network,
         "mode": "client" if client else "peer",
         "scouting/multicast/enabled": scouting,
-        "scouting/gossip/enabled": scouting,
+        # It answers others that look for it. It connects to nobody because of a message from the network.
+        "scouting/multicast/autoconnect": {"router": [], "peer": [], "client": []},
+        "scouting/gossip/enabled": False,
         "listen/endpoints": list(listen),
         "connect/endpoints": list(connect),
         # Batches of some hundred bytes gain nothing from it, and its threads wake thirty times a second.

@@ -1,6 +1,7 @@
 """The camera of a robot in simulated water, rendered by the process of the scene."""
 
 from collections.abc import Callable
+from math import isfinite
 
 from robot_runtime.contract.scene_picture import read_picture, write_request
 from robot_runtime.errors import NoAnswerError, RefusedError
@@ -52,6 +53,9 @@ class SceneCamera(Camera):
         request = write_request(*self._size, card.paint if card else None, marked=bool(card and card.marked))
         try:
             picture = read_picture(self._messages.query_bytes("scene/picture", request, PICTURE_TIMEOUT))
+            height, width = picture.pixels.shape[:2]
+            if (width, height) != self._size or not isfinite(picture.time):
+                raise ValueError(f"it sent {width} × {height} at {picture.time} s")
         except NoAnswerError as problem:
             raise CameraError(
                 "the scene no longer answers; see its log on the System page", PATIENCE

@@ -1,23 +1,14 @@
-"""TLS with a certificate of the robot's own, signed by itself.
-
-It is made by the program `openssl`, which every Linux has: the Python package that could do it is Rust and
-C, without wheels for the Raspberry Pi Zero's ARMv6.
-"""
+"""TLS with a certificate of the robot's own, signed by itself."""
 
 import shutil
 import ssl
-import subprocess
 from dataclasses import dataclass
 from hashlib import sha256
 from ipaddress import ip_address
 from pathlib import Path
 
+from server.platform.openssl import CERTIFICATE, KEY, make_certificate
 from server.platform.settings import DataFolder, Settings, SetupError
-
-DAYS = 36_500
-"""A hundred years: a Raspberry Pi that has never seen a network may take today for some day long past."""
-MAKE_SECONDS = 60.0
-CERTIFICATE, KEY = "certificate.pem", "key.pem"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,30 +49,8 @@ def _make(folder: Path, settings: Settings) -> None:
     shutil.rmtree(part, ignore_errors=True)
     part.mkdir(mode=0o700)
     names = ",".join(_alternative(name) for name in settings.allowed_hosts)
-    command = ["openssl", "req", "-x509", "-nodes"]
-    command += ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1"]
-    command += ["-keyout", str(part / KEY), "-out", str(part / CERTIFICATE), "-days", str(DAYS)]
-    command += ["-subj", f"/CN={settings.robot}", "-addext", f"subjectAltName={names}"]
-    command += ["-addext", "extendedKeyUsage=serverAuth"]
-    try:
-        done = subprocess.run(
-            command,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=MAKE_SECONDS,
-            check=False,
-        )
-    except FileNotFoundError as problem:
-        raise SetupError(
-            "TLS needs the program openssl to make the robot's certificate, and it is not here. "
-            "Install it (apt install openssl), or set server.tls to false in robot.toml."
-        ) from problem
-    except subprocess.TimeoutExpired as problem:
-        raise OSError(f"openssl took more than {MAKE_SECONDS:g} s") from problem
-    if done.returncode != 0:
-        raise OSError(f"openssl refused: {' '.join(done.stderr.split())[-300:]}")
-    (part / KEY).chmod(0o600)
+    extensions = [f"subjectAltName={names}", "extendedKeyUsage=serverAuth"]
+    make_certificate(part / CERTIFICATE, part / KEY, settings.robot, extensions)
     part.rename(folder)
 
 

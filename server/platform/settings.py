@@ -11,7 +11,7 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.config import HilConfig, LinkConfig, SessionsConfig, load
+from robot_runtime.config import HilConfig, LinkConfig, SessionsConfig, ZenohConfig, load
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import make_folder
 from server.platform.pidfile import running_parts
@@ -61,6 +61,8 @@ class DataFolder:
         """The token of this computer's shell for the running server; readable by its user alone."""
         self.tls = path / "tls"
         """The robot's certificate and its key."""
+        self.zenoh = path / "zenoh"
+        """The authority for Zenoh on the network, the robot's certificate, and those that are in force."""
         self.runtime_socket = self.run / "runtime.sock"
         """The runtime's Zenoh endpoint."""
         self.server_socket = self.run / "server.sock"
@@ -94,6 +96,7 @@ class Settings:
     link: LinkConfig = field(default_factory=LinkConfig)
     hil: HilConfig = field(default_factory=HilConfig)
     sessions: SessionsConfig = field(default_factory=SessionsConfig)
+    zenoh: ZenohConfig = field(default_factory=ZenohConfig)
     host: str = "127.0.0.1"
     port: int = 8000
     tls: bool = False
@@ -156,6 +159,7 @@ def read_settings(
         link=loaded.link,
         hil=loaded.hil,
         sessions=loaded.sessions,
+        zenoh=loaded.zenoh,
         host=chosen_host,
         port=chosen_port,
         tls=loaded.server.tls,

@@ -39,7 +39,7 @@ HEARTBEAT_SECONDS = 4.0
 
 SIMULATION = ("simulator", "scene")
 """Processes that may run on another computer."""
-SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT."
+SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT ..."
 
 State = Literal["waiting", "running", "failed", "ended", "paused"]
 Notify = Callable[[str, Severity, str], None]
@@ -271,7 +271,7 @@ def plan(settings: Settings) -> list[ProcessCommand]:
     folder, build = settings.data, settings.build
     runtime = [sys.executable, "-m", "robot_runtime", "--config", str(settings.config)]
     runtime += ["--data", str(folder.path), "--heartbeat", f"{HEARTBEAT_SECONDS:g}"]
-    runtime_files = (settings.config,)
+    runtime_files = (settings.config, *sorted(folder.zenoh.rglob("*.pem")))
     if settings.mode == "robot":
         # Without --server-lock it outlives the server: it must go on controlling a robot under water.
         return [ProcessCommand("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files)]

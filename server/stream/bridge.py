@@ -22,7 +22,7 @@ from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.blocks import Block, read_blocks
 from robot_runtime.transport.lifetime import HEARTBEAT
-from robot_runtime.transport.outbox import STREAM
+from robot_runtime.transport.outbox import SIMULATOR_STREAM, STREAM
 from robot_runtime.transport.replay_cache import BacklogReply, write_question
 from robot_runtime.transport.zenoh_transport import Subscription, ZenohTransport
 from server.platform.errors import ApiError
@@ -47,8 +47,8 @@ BACKLOG_PAUSE = 0.1
 CONTACT_SECONDS = 10.0
 """Time that a starting server waits for the answer of a process that a killed server has left."""
 
-_SIMULATED = frozenset(bytes([topic.id]) for topic in SENT_BY["simulator"])
-"""First bytes of the simulator's messages: the topic of the first block."""
+STREAMS = {STREAM: "runtime", SIMULATOR_STREAM: "simulator"}
+"""The sender of each stream: one that sends topics of the other is not believed."""
 
 QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
 """The query topics at which the processes answer with their backlog."""
@@ -115,7 +115,8 @@ class Bridge:
             )
         except OSError as problem:
             raise SetupError(f"The server cannot listen for the robot's runtime: {problem}") from problem
-        self._messages.subscribe_runs(STREAM, self._receive)
+        for stream in STREAMS:
+            self._messages.subscribe_runs(stream, self._receive)
 
     async def catch_up(self, names: Iterable[str]) -> dict[str, BacklogReply]:
         """The backlogs of the running processes of these names; those that do not answer are left out."""
@@ -236,7 +237,7 @@ class Bridge:
         patience = min(BACKLOG_FIRST_SECONDS, seconds)
         while (began := self._loop.time()) < end:
             try:
-                return await asyncio.to_thread(self._fetch, QUESTIONS[name], first_numbers, patience)
+                return await asyncio.to_thread(self._fetch, name, first_numbers, patience)
             except NoAnswerError:
                 if self._loop.time() - began >= patience:
                     patience = min(4 * patience, seconds)
@@ -246,15 +247,16 @@ class Bridge:
                 break
         return None
 
-    def _fetch(self, question: str, first_numbers: Mapping[str, int], seconds: float) -> BacklogReply:
-        return BacklogReply.from_bytes(
-            self._messages.query_bytes(question, write_question(first_numbers), seconds)
-        )
+    def _fetch(self, name: str, first_numbers: Mapping[str, int], seconds: float) -> BacklogReply:
+        question = write_question(first_numbers)
+        backlog = BacklogReply.from_bytes(self._messages.query_bytes(QUESTIONS[name], question, seconds))
+        _require_sender(backlog.blocks, name)
+        return backlog
 
     def _receive(self, name: str, data: bytes, run: str) -> None:
         """Queue a message. Called in Zenoh's thread."""
         self._queue.append((name, data, run))
-        if name == STREAM and data[:1] in _SIMULATED and len(self._queue) == 1:
+        if name == SIMULATOR_STREAM and len(self._queue) == 1:
             return
         self._due.set()
         if self._resting:
@@ -282,16 +284,15 @@ class Bridge:
             try:
                 if len(data) > BLOCK_BYTES_MAX:
                     raise LayoutError(f"{len(data)} bytes are too many")
-                blocks = read_blocks(data, run)
+                blocks = _read_own_blocks(name, data, run)
             except LayoutError as problem:
                 self.damaged += 1
                 log.warning("an invalid message of %s was dropped: %s", name, problem)
                 continue
-            if name != STREAM:
+            if name in STREAMS:
+                self._fillers[STREAMS[name]].take(run, blocks)
+            else:
                 self._pass_on(blocks)
-            elif blocks:
-                filler = self._fillers.get(blocks[0].topic.sender, self._fillers["runtime"])
-                filler.take(run, blocks)
         self._emptying = False
         self._hand_over()
 
@@ -304,6 +305,22 @@ class Bridge:
         blocks, self._ready = self._ready, []
         if blocks:
             self._deliver(blocks)
+
+
+def _read_own_blocks(name: str, data: bytes, run: str) -> list[Block]:
+    """The blocks of a message. Raises LayoutError where they are damaged, or not of its sender."""
+    blocks = read_blocks(data, run)
+    if name in STREAMS:
+        _require_sender(blocks, STREAMS[name])
+    elif any(block.topic.name != name for block in blocks):
+        raise LayoutError("it holds another topic")
+    return blocks
+
+
+def _require_sender(blocks: Iterable[Block], sender: str) -> None:
+    foreign = {block.topic.name for block in blocks if block.topic.sender != sender}
+    if foreign:
+        raise LayoutError(f"the {sender} does not send {', '.join(sorted(foreign))}")
 
 
 def _silence(name: str, waited: bool) -> str:

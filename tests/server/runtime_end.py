@@ -12,9 +12,14 @@ from robot_runtime.contract.topics import Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block
-from robot_runtime.transport.outbox import STREAM
+from robot_runtime.transport.outbox import SIMULATOR_STREAM, STREAM
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
+
+
+def stream_of(block: Block) -> str:
+    """The stream by which a block's sender sends it."""
+    return SIMULATOR_STREAM if block.topic.sender == "simulator" else STREAM
 
 
 class RuntimeEnd:
@@ -63,8 +68,8 @@ class RuntimeEnd:
     def publish(self, *blocks: Block) -> None:
         """Publish blocks, each on its own."""
         for block in blocks:
-            name = block.topic.name if block.topic.kind is Kind.PICTURE else STREAM
-            if name == STREAM:
+            name = block.topic.name if block.topic.kind is Kind.PICTURE else stream_of(block)
+            if block.topic.kind is not Kind.PICTURE:
                 self._cache.add(block.data, {block.topic.name: block.following})
             self._messages.publish(name, block.data)
 

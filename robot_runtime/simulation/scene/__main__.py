@@ -4,11 +4,13 @@ import argparse
 import logging
 import signal
 import sys
+from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.durable_files import keep_private
 from robot_runtime.simulation.scene.process import SceneProcess
 from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
+from robot_runtime.transport.network import LOCAL_ONLY, connect_settings
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 
@@ -23,8 +25,9 @@ def main() -> None:
         end_with_parent()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: sys.exit())
+    network = connect_settings(arguments.certificate) if arguments.certificate else LOCAL_ONLY
     joined = (
-        join(arguments.robot, arguments.connect)
+        join(arguments.robot, arguments.connect, network)
         if arguments.client
         else ZenohTransport(arguments.robot, arguments.listen, arguments.connect)
     )
@@ -49,6 +52,9 @@ def _parser() -> argparse.ArgumentParser:
         default=[],
         metavar="ENDPOINT",
         help="Zenoh endpoint for the simulator to connect to; may repeat",
+    )
+    parser.add_argument(
+        "--certificate", type=Path, metavar="FOLDER", help="certificate for a robot on another computer"
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--client", action="store_true", help="the robot is on another computer")

@@ -11,7 +11,7 @@ from robot_runtime.simulation.water.faults import Kind, SimulatedFault
 from robot_runtime.simulation.water.parameters import Vector
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water.surroundings import Basin, Current, StartPose, Trim, Waves
-from robot_runtime.transport.outbox import Outbox
+from robot_runtime.transport.outbox import SIMULATOR_STREAM, Outbox
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
@@ -106,7 +106,7 @@ def serve_requests(messages: ZenohTransport, requests: Mapping[str, Change], clo
     for name, change in requests.items():
         messages.serve(f"simulator/{name}", change)
     messages.serve_bytes("simulator/blocks", cache.answer)
-    return Outbox(messages.publish, messages.watched, cache)
+    return Outbox(messages.publish, messages.watched, cache, SIMULATOR_STREAM)
 
 
 def _require(question: Question, *names: str) -> None:

@@ -53,9 +53,7 @@ class ControlArbiter:
         note: Callable[[str], None],
     ) -> None:
         self.clients = ControlClients(clock)
-        # The steady clock never runs back while the computer is up, and nobody changes the holder a thousand
-        # times a second: so the first epoch of a restarted server is above all those of the last one.
-        self.lease = Lease(int(clock.now() * 1000), self._note)
+        self.lease = Lease(clock, self._note)
         self.driving = DriveFilter(clock, publish)
         self._clock = clock
         self._notify = notify

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Literal
 
+from robot_runtime.clock import Clock
 from server.platform.errors import ApiError
 
 Change = Literal["taken", "taken over", "released", "left"]
@@ -17,10 +18,16 @@ class NotInControlError(ApiError):
 
 
 class Lease:
-    """`epoch` grows by one with every change of the holder; what carries an older one no longer counts."""
+    """`epoch` grows with every change of the holder; what carries an older one no longer counts.
 
-    def __init__(self, epoch: int, changed: Changed) -> None:
-        self.epoch = epoch
+    It is at least the clock's time in ms: above every epoch that the runtime has ever accepted, also from a
+    server before this one. The steady clock never runs back while the computer is up, and nobody changes the
+    holder a thousand times a second.
+    """
+
+    def __init__(self, clock: Clock, changed: Changed) -> None:
+        self._clock = clock
+        self.epoch = int(clock.now() * 1000)
         self.holder: int | None = None
         self._changed = changed
 
@@ -43,6 +50,6 @@ class Lease:
 
     def _pass_to(self, client: int | None, change: Change) -> None:
         before = self.holder
-        self.epoch += 1
+        self.epoch = max(self.epoch + 1, int(self._clock.now() * 1000))
         self.holder = client
         self._changed(change, client, before)

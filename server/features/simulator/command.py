@@ -3,8 +3,13 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import click
+
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.transport.network import connect_settings
+from server.platform.command_line import CommandError
 
 
 @click.command()
@@ -12,13 +17,23 @@ import click
     "--connect",
     required=True,
     metavar="ENDPOINT",
-    help="Where that robot listens: zenoh.listen in its robot.toml, such as tcp/192.168.0.7:7447.",
+    help="Where that robot listens: zenoh.listen in its robot.toml, such as tls/192.168.0.7:7447.",
+)
+@click.option(
+    "--certificate",
+    type=click.Path(path_type=Path, file_okay=False, exists=True),
+    required=True,
+    help="The folder that mucat certificate issue has made on that robot.",
 )
 @click.option("--robot", default="turtle", help="The robot's name.")
 @click.option("--seed", type=int, default=1, help="Seed of the sensors' noise.")
-def simulator(connect: str, robot: str, seed: int) -> None:
+def simulator(connect: str, certificate: Path, robot: str, seed: int) -> None:
     """Simulate the water for a robot on another computer."""
-    there = ["--connect", connect, "--robot", robot]
+    try:
+        connect_settings(certificate)
+    except ConfigError as problem:
+        raise CommandError(str(problem)) from problem
+    there = ["--connect", connect, "--certificate", str(certificate), "--robot", robot]
     scene = [sys.executable, "-m", "robot_runtime.simulation.scene", "--client", "--with-parent", *there]
     subprocess.Popen(scene)
     # This process becomes the simulator; the scene ends with it.

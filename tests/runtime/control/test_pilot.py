@@ -61,6 +61,7 @@ def test_the_newest_input_counts_until_it_expires(pilot: Pilot, clock: Simulated
         ("invalid", {"taken": float("inf")}),
         ("invalid", {"taken": None}),
         ("invalid", {"sequence": 7.5}),
+        ("invalid", {"sequence": 2**80}),
         ("invalid", {"lease": "3"}),
     ],
 )
@@ -97,6 +98,13 @@ def test_a_new_holder_begins_with_centred_sticks(pilot: Pilot) -> None:
     assert pilot.command().y == -1.0
     with pytest.raises(RefusedError, match="older than 4"):
         pilot.change_lease(3)
+
+
+@pytest.mark.parametrize("epoch", [2**80, 2**53, 102_001, -1])
+def test_a_lease_that_is_not_of_this_time_locks_nobody_out(pilot: Pilot, epoch: int) -> None:
+    with pytest.raises(RefusedError, match="not of this time"):
+        pilot.change_lease(epoch)
+    assert pilot.take(words())
 
 
 def test_the_start_of_manual_drops_earlier_input(pilot: Pilot) -> None:

@@ -122,3 +122,15 @@ def test_a_truncated_answer_is_refused() -> None:
     answer = writer.cache.answer(json.dumps({"depth": 0}).encode())
     with pytest.raises(LayoutError):
         BacklogReply.from_bytes(answer[:-1])
+
+
+@pytest.mark.parametrize("number", [b"Infinity", b"NaN", b"null", b"[" * 100_000])
+def test_numbers_that_are_none_are_refused(number: bytes) -> None:
+    head = b'{"run": "a", "next": {"depth": %s}}' % number
+    with pytest.raises(LayoutError):
+        BacklogReply.from_bytes(len(head).to_bytes(4, "little") + head)
+
+
+def test_a_number_is_one_that_a_block_can_have() -> None:
+    head = b'{"run": "a", "next": {"depth": %d}}' % (2**80 + 5)
+    assert BacklogReply.from_bytes(len(head).to_bytes(4, "little") + head).next == {"depth": 5}

@@ -4,10 +4,13 @@ from collections.abc import Mapping
 
 import pytest
 
+from robot_runtime.clock import SteadyClock
+from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.errors import NoAnswerError
 from robot_runtime.transport.blocks import Block
-from robot_runtime.transport.replay_cache import BacklogReply
+from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from server.platform.settings import Settings
 from server.stream.bridge import BACKLOG_SECONDS, ROUND_SECONDS, Bridge
 
@@ -73,7 +76,8 @@ def deliveries(settings: Settings, arrivals: list[tuple[float, str]]) -> list[tu
         began = loop.time()
         for at, topic in arrivals:
             await asyncio.sleep(max(began + at / 1000 - loop.time(), 0.0))
-            bridge._receive("stream", message(topic), "")
+            stream = "simulator/stream" if topic == "truth" else "stream"
+            bridge._receive(stream, message(topic), "")
         await asyncio.sleep(3 * ROUND_SECONDS)
 
     asyncio.run(scenario())
@@ -99,3 +103,28 @@ def test_messages_of_a_round_are_delivered_together(settings: Settings) -> None:
     found = deliveries(settings, [(0, "depth"), (1, "imu"), (2, "truth"), (3, "motor")])
     assert [topics for _, topics in found] == [["depth"], ["imu", "truth", "motor"]]
     assert found[1][0] >= 1000 * ROUND_SECONDS
+
+
+@pytest.mark.parametrize(
+    ("name", "topic"), [("simulator/stream", "depth"), ("stream", "truth"), ("observer", "depth")]
+)
+def test_nobody_sends_the_topics_of_another(settings: Settings, name: str, topic: str) -> None:
+    delivered: list[Block] = []
+    bridge = Bridge(settings, delivered.extend)
+    bridge.begin_delivery({})
+    bridge._queue.append((name, message(topic), ""))
+    bridge._empty_queue()
+    assert (delivered, bridge.damaged) == ([], 1)
+
+
+def test_a_backlog_holds_only_its_sender_s_topics(settings: Settings) -> None:
+    bridge = Bridge(settings, lambda _: None)
+    cache = ReplayCache("run", SteadyClock())
+    cache.add(message("depth"), {"depth": 1})
+    with ZenohTransport("tested") as own:
+        bridge._messages = own
+        own.serve_bytes("simulator/blocks", lambda _: cache.answer(write_question({"depth": 0})))
+        own.serve_bytes("query/blocks", lambda _: cache.answer(write_question({"depth": 0})))
+        assert len(bridge._fetch("runtime", {"depth": 0}, 5.0).blocks) == 1
+        with pytest.raises(LayoutError, match="the simulator does not send depth"):
+            bridge._fetch("simulator", {"depth": 0}, 5.0)

@@ -51,14 +51,14 @@ def test_control_passes_between_pages_and_all_clients_and_the_runtime_are_notifi
             refused = await ben.ask("/control/take")
             assert (refused.status_code, "take it over" in refused.json()["detail"]) == (409, True)
             taken = (await ben.ask("/control/take?over=true")).json()
-            assert (await anna.told(ben.client))["epoch"] == taken["epoch"] == first + 1
+            assert (await anna.told(ben.client))["epoch"] == taken["epoch"] > first
             assert (await served.api.get("/control")).json()["holder"]["client"] == ben.client
-            await until(lambda: served.runtime.epochs[-1:] == [first + 1], "the runtime to be told")
+            await until(lambda: served.runtime.epochs[-1:] == [taken["epoch"]], "the runtime to be told")
             assert (await anna.ask("/robot/commands/arm")).status_code == 423
             # Of one that has no control nothing is freed.
             assert (await anna.ask("/control/release")).json()["holder"]["client"] == ben.client
             assert (await ben.ask("/control/release")).json()["holder"] is None
-            assert (await ben.told(None))["epoch"] == first + 2
+            assert (await ben.told(None))["epoch"] > taken["epoch"]
 
     play(settings, scenario)
 

@@ -1,3 +1,5 @@
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.control.pilot import EPOCHS_AHEAD, Pilot
 from server.features.lease.lease import Change, Lease
 
 ANNA, BEN = 1, 2
@@ -8,7 +10,7 @@ class Recorded:
 
     def __init__(self) -> None:
         self.changes: list[tuple[Change, int | None, int | None]] = []
-        self.lease = Lease(7, lambda *change: self.changes.append(change))
+        self.lease = Lease(SimulatedClock(0.007), lambda *change: self.changes.append(change))
 
 
 def test_free_control_is_taken_at_once_and_again_without_a_change() -> None:
@@ -43,3 +45,13 @@ def test_only_the_holder_releases_control() -> None:
     lease.forget(BEN)
     assert (lease.holder, lease.epoch) == (None, 11)
     assert recorded.changes[1:] == [("released", None, ANNA), ("taken", BEN, None), ("left", None, BEN)]
+
+
+def test_an_epoch_is_above_all_that_the_runtime_has_accepted_until_now() -> None:
+    clock = SimulatedClock(5.0)
+    lease, pilot = Lease(clock, lambda *_: None), Pilot(clock)
+    pilot.change_lease(5000 + EPOCHS_AHEAD)
+    clock.forward(EPOCHS_AHEAD / 1000 + 0.001)
+    lease.take(ANNA)
+    pilot.change_lease(lease.epoch)
+    assert pilot.lease == lease.epoch

@@ -1,0 +1,122 @@
+"""Zenoh on the network: TLS with certificates at both ends, and what each certificate's name may do.
+
+The Unix sockets in the data folder stay free: their files say who may open them.
+"""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from robot_runtime.contract.limits import ConfigError
+
+AUTHORITY, CERTIFICATE, KEY = "authority.pem", "certificate.pem", "key.pem"
+"""The files of a certificate's folder: the authority's certificate, its own, and its key."""
+SIMULATORS = "simulators"
+"""Folder of the simulators' certificates that are in force; each file has its certificate's name."""
+
+LOCAL_ONLY: Mapping[str, Any] = {"transport/link/protocols": ["unixsock-stream"]}
+"""Zenoh's settings for a process that neither listens on the network nor connects through it."""
+
+_SENDS = ("sense", "simulator/stream", "truth", "observer")
+_RECEIVES = ("motor", "truth")
+_ANSWERS = ("simulator/**", "scene/**")
+_EVERY_MESSAGE = (
+    "put",
+    "delete",
+    "declare_subscriber",
+    "query",
+    "declare_queryable",
+    "reply",
+    "liveliness_token",
+    "liveliness_query",
+    "declare_liveliness_subscriber",
+)
+
+
+def simulators(folder: Path) -> list[str]:
+    """Returns the names of the simulators' certificates that are in force."""
+    return sorted(path.stem for path in (folder / SIMULATORS).glob("*.pem"))
+
+
+def listen_settings(folder: Path, robot: str) -> Mapping[str, Any]:
+    """Returns Zenoh's settings for a robot that listens on the network with the certificate in `folder`.
+
+    Raises ConfigError where it is not there.
+    """
+    files = _files(folder, "mucat run makes them when zenoh.listen is set in robot.toml.")
+    tls = {
+        "root_ca_certificate": files[AUTHORITY],
+        "listen_certificate": files[CERTIFICATE],
+        "listen_private_key": files[KEY],
+        "enable_mtls": True,
+    }
+    return {
+        "transport/link/protocols": ["unixsock-stream", "tls"],
+        "transport/link/tls": tls,
+        "access_control": _access(robot, simulators(folder)),
+    }
+
+
+def connect_settings(folder: Path) -> Mapping[str, Any]:
+    """Returns Zenoh's settings for a simulator elsewhere with the certificate in `folder`.
+
+    Raises ConfigError where it is not there.
+    """
+    files = _files(folder, "Copy the folder here that mucat certificate issue has made on the robot.")
+    tls = {
+        "root_ca_certificate": files[AUTHORITY],
+        "connect_certificate": files[CERTIFICATE],
+        "connect_private_key": files[KEY],
+        "enable_mtls": True,
+        # Addresses of robots change. Of this authority's certificates only the robot's own is a server's.
+        "verify_name_on_connect": False,
+    }
+    return {"transport/link/protocols": ["tls"], "transport/link/tls": tls}
+
+
+def _files(folder: Path, remedy: str) -> dict[str, str]:
+    files = {name: folder / name for name in (AUTHORITY, CERTIFICATE, KEY)}
+    missing = [name for name, path in files.items() if not path.is_file()]
+    if missing:
+        raise ConfigError(f"{folder} lacks {', '.join(missing)} for Zenoh on the network. {remedy}")
+    return {name: str(path) for name, path in files.items()}
+
+
+def _access(robot: str, names: list[str]) -> dict[str, Any]:
+    """Zenoh's access control: everything here, a simulator's own keys for these names, nothing for others."""
+    both = ("ingress", "egress")
+    rules = [
+        _rule("here", both, _EVERY_MESSAGE, ["**"]),
+        _rule("sends", ("ingress",), ("put",), _keys(robot, _SENDS)),
+        _rule("learns who listens", ("egress",), ("declare_subscriber",), _keys(robot, _SENDS)),
+        _rule("listens", ("ingress",), ("declare_subscriber",), _keys(robot, _RECEIVES)),
+        _rule("receives", ("egress",), ("put",), _keys(robot, _RECEIVES)),
+        _rule("answers", both, ("query", "declare_queryable", "reply"), _keys(robot, _ANSWERS)),
+    ]
+    subjects: list[dict[str, Any]] = [{"id": "here", "link_protocols": ["unixsock-stream"]}]
+    policies: list[dict[str, Any]] = [{"rules": ["here"], "subjects": ["here"]}]
+    if names:
+        # Without names the subject would be everybody.
+        subjects.append({"id": "simulators", "link_protocols": ["tls"], "cert_common_names": names})
+        policies.append({"rules": [rule["id"] for rule in rules[1:]], "subjects": ["simulators"]})
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": rules,
+        "subjects": subjects,
+        "policies": policies,
+    }
+
+
+def _rule(name: str, flows: Iterable[str], messages: Iterable[str], keys: Iterable[str]) -> dict[str, Any]:
+    return {
+        "id": name,
+        "permission": "allow",
+        "flows": list(flows),
+        "messages": list(messages),
+        "key_exprs": list(keys),
+    }
+
+
+def _keys(robot: str, names: Iterable[str]) -> list[str]:
+    return [f"mucat/{robot}/{name}" for name in names]

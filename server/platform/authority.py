@@ -1,0 +1,94 @@
+"""The robot's own authority for Zenoh on the network: its certificate, and those of the simulators."""
+
+import re
+import secrets
+import shutil
+from datetime import datetime
+from pathlib import Path
+from typing import NamedTuple
+
+from robot_runtime.durable_files import make_folder, write_whole
+from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY, SIMULATORS
+from server.platform.openssl import Signer, make_certificate
+from server.platform.settings import Settings, SetupError
+
+AUTHORITY_KEY = "authority.key"
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
+_LEAF = "basicConstraints=critical,CA:FALSE"
+
+
+class IssuedCertificate(NamedTuple):
+    """A certificate in force."""
+
+    name: str
+    issued: datetime
+    file: Path
+
+
+class Authority:
+    """The certificates in the data folder. All raise SetupError where that is not possible.
+
+    A certificate's common name is its file's name in `simulators`. It holds random digits, so that a name
+    that is issued again after it was revoked does not revive the old certificate.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._folder = settings.data.zenoh
+        self._robot = settings.robot
+        self._signer = Signer(self._folder / AUTHORITY, self._folder / AUTHORITY_KEY)
+
+    def prepare(self) -> None:
+        """Make the authority and the robot's certificate, unless they are there."""
+        if self._folder.exists():
+            return
+        part = self._folder.with_suffix(".part")
+        try:
+            shutil.rmtree(part, ignore_errors=True)
+            make_folder(part.parent)
+            part.mkdir(mode=0o700)
+            (part / SIMULATORS).mkdir(mode=0o700)
+            signer = Signer(part / AUTHORITY, part / AUTHORITY_KEY)
+            authority = ("basicConstraints=critical,CA:TRUE", "keyUsage=critical,keyCertSign")
+            make_certificate(signer.certificate, signer.key, f"{self._robot} authority", authority)
+            own = (f"subjectAltName=DNS:{self._robot}", "extendedKeyUsage=serverAuth", _LEAF)
+            make_certificate(part / CERTIFICATE, part / KEY, self._robot, own, signer)
+            part.rename(self._folder)
+        except OSError as problem:
+            raise SetupError(f"The certificates in {self._folder} cannot be made: {problem}.") from problem
+
+    def issue(self, name: str, destination: Path) -> None:
+        """Make a simulator's certificate, with its key, in a new folder."""
+        if not NAME.fullmatch(name):
+            raise SetupError(f"{name!r} is no name of a certificate: use up to 32 of A-Z, a-z, 0-9, - and _.")
+        if any(one.name == name for one in self.issued()):
+            raise SetupError(f"{name} has a certificate. Revoke it first: mucat certificate revoke {name}")
+        self.prepare()
+        common_name = f"{name}.{secrets.token_hex(4)}"
+        try:
+            destination.mkdir(mode=0o700)
+            made = destination / CERTIFICATE
+            extensions = (f"subjectAltName=DNS:{name}", "extendedKeyUsage=clientAuth", _LEAF)
+            make_certificate(made, destination / KEY, common_name, extensions, self._signer)
+            shutil.copyfile(self._signer.certificate, destination / AUTHORITY)
+            write_whole(self._folder / SIMULATORS / f"{common_name}.pem", made.read_bytes(), 0o600)
+        except OSError as problem:
+            raise SetupError(f"The certificate in {destination} cannot be made: {problem}.") from problem
+
+    def revoke(self, name: str) -> None:
+        """Take a certificate out of force."""
+        found = [one for one in self.issued() if one.name == name]
+        if not found:
+            raise SetupError(f"There is no certificate {name}: mucat certificate list shows those in force.")
+        try:
+            for one in found:
+                one.file.unlink()
+        except OSError as problem:
+            raise SetupError(f"The certificate {name} cannot be revoked: {problem}.") from problem
+
+    def issued(self) -> list[IssuedCertificate]:
+        """The certificates in force, by name."""
+        files = sorted((self._folder / SIMULATORS).glob("*.pem"))
+        return [
+            IssuedCertificate(file.stem.partition(".")[0], datetime.fromtimestamp(file.stat().st_mtime), file)
+            for file in files
+        ]

@@ -1,0 +1,45 @@
+"""`mucat certificate` and `mucat simulator`, as somebody types them."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.transport.network import connect_settings
+from server.cli import main
+from server.platform.pidfile import PidFile
+from server.platform.settings import Settings
+
+
+def test_certificates_are_issued_listed_and_revoked(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def shell(*arguments: str, status: int = 0) -> str:
+        common = ("--data", str(settings.data.path), "--config", str(settings.config))
+        assert main(["certificate", *arguments, *common]) == status
+        output = capsys.readouterr()
+        return output.err if status else output.out
+
+    assert shell("list") == "There is none: mucat certificate issue NAME makes one.\n"
+    folder = tmp_path / "lab"
+    issued = shell("issue", "lab", "--to", str(folder))
+    assert "mucat simulator --connect tls/ADDRESS:PORT --certificate lab --robot tested" in issued
+    connect_settings(folder)
+    assert shell("list").endswith("  lab\n")
+    assert "Revoke it first" in shell("issue", "lab", "--to", str(tmp_path / "again"), status=1)
+    # A robot that runs has read the certificates already.
+    PidFile(settings.data.runner).write(os.getpid(), "")
+    assert shell("revoke", "lab") == (
+        "The certificate lab is revoked.\n"
+        "The running robot takes note when mucat run is ended and started again.\n"
+    )
+    assert "There is none" in shell("list")
+    assert "There is no certificate lab" in shell("revoke", "lab", status=1)
+
+
+def test_a_simulator_without_its_files_is_refused_in_words(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    there = ["--connect", "tls/192.0.2.7:7447", "--certificate", str(tmp_path)]
+    assert main(["simulator", *there]) == 1
+    assert "lacks authority.pem, certificate.pem, key.pem" in capsys.readouterr().err
