@@ -35,7 +35,7 @@ def insert(path: Path, before: str, text: str) -> None:
 
 def test_an_added_command_and_topic_are_found_everywhere(tmp_path: Path) -> None:
     for room in ("robot_runtime", "server", "migrations", "tests"):
-        shutil.copytree(ROOT / room, tmp_path / room, ignore=shutil.ignore_patterns("__pycache__", "page"))
+        shutil.copytree(ROOT / room, tmp_path / room, ignore=shutil.ignore_patterns("page"))
     shutil.copy(ROOT / "robot.toml", tmp_path)
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     contract = tmp_path / "robot_runtime/contract"

@@ -1,12 +1,12 @@
 """The pages "add a ...": each step is applied to a copy of the tree, each command is run in it."""
 
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from tests.documents.blocks import apply, read_blocks
+from tests.sources import copy_sources
 
 ROOT = Path(__file__).parents[2]
 LINKED = (".venv", "build", "frontend/node_modules")
@@ -16,12 +16,8 @@ LINKED = (".venv", "build", "frontend/node_modules")
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
     """A copy of the files under version control, with the build products."""
-    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True)
     copy = tmp_path / "tree"
-    for name in filter(None, listed.stdout.split("\0")):
-        if (ROOT / name).is_file():
-            (copy / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(ROOT / name, copy / name)
+    copy_sources(copy)
     for name in LINKED:
         (copy / name).symlink_to(ROOT / name)
     return copy

@@ -4,7 +4,6 @@
 words given, and prints a table; status 1 where a guard is not missed by any of its tests.
 """
 
-import shutil
 import subprocess
 import sys
 import time
@@ -12,13 +11,13 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.util import cache_from_source
 from os import environ
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
 
 from tests.board.rig import ROOT, build
+from tests.sources import copy_sources
 
 LIST = Path(__file__).with_name("guards.toml")
 TEST_SECONDS = 240
@@ -116,28 +115,11 @@ def read_guards(path: Path = LIST) -> list[Guard]:
     return [Guard(**entry | {name: tuple(entry.get(name, ())) for name in lists}) for entry in entries]
 
 
-def _copy_compiled(source: Path, target: Path) -> None:
-    """Copy a module's compiled form, which names its time of change: a changed module is compiled anew."""
-    if source.suffix == ".py":
-        compiled = Path(cache_from_source(source))
-        if compiled.is_file():
-            there = Path(cache_from_source(target))
-            there.parent.mkdir(exist_ok=True)
-            shutil.copy2(compiled, there)
-
-
 @contextmanager
 def copy_tree() -> Iterator[Tree]:
     """Copy the files that are or would be under version control, as they are now."""
-    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
-    names = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\0")
     with TemporaryDirectory(prefix="mucat-guards-") as folder:
-        for name in names:
-            source, target = ROOT / name, Path(folder) / name
-            if source.is_file():
-                target.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(source, target)
-                _copy_compiled(source, target)
+        copy_sources(Path(folder))
         yield Tree(Path(folder))
 
 
