@@ -10,7 +10,7 @@ from os import environ
 
 import pytest
 
-from tests.board.rig import ROOT, build
+from tests.board.rig import ROOT
 from tests.proofs.guarded import list_guarded
 from tests.proofs.guards import Guard, GuardError, Tree, copy_tree, read_guards
 
@@ -55,7 +55,7 @@ def test_the_removal_of_a_guard_is_detected_and_of_unguarded_code_is_not() -> No
 @pytest.fixture(scope="module")
 def tree() -> Iterator[Tree]:
     with copy_tree() as tree:
-        build(tree.root / "firmware/emulator")
+        tree.build_board()
         yield tree
 
 
