@@ -33,7 +33,7 @@ FOLDERS := tests/proofs tests/server/features tests/runtime/experiments tests/do
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest $(FOLDERS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface hours generate firmware \
+.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest $(FOLDERS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface hours generate firmware \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -112,7 +112,7 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 bench: setup-test .venv/.ready-bench ## measure; a part with ONLY=link; against another commit with COMPARE=v0.1.0
 	$(PYTHON) -m bench$(if $(COMPARE),.against $(COMPARE))$(if $(LONG), --long) $(ONLY)
 
-proofs: setup-test .venv/.ready-bench ## every long proof, with one report in build/proofs; goes on where it stopped
+proofs: setup-test .venv/.ready-bench host-firmware ## every long proof, with one report in build/proofs; goes on where it stopped
 	@$(PYTHON) -m tests.proofs.report $(ONLY)
 
 figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in docs/pictures, from a run of its scenario
@@ -143,6 +143,12 @@ power: setup-test ## cut the power ten thousand times while the server stores, a
 
 faults: setup-test host-firmware ## inject every fault a hundred times, and measure how soon the fins stop (FAULTS=100)
 	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS)
+
+robot-faults: setup-test host-firmware ## of these, the faults of robot and chip, in simulated time
+	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS) robot
+
+outages: setup-test ## of these, the processes that are killed or hang, in real time, two robots at once
+	@$(PYTHON) -m tests.proofs.injections $(FAULTS) processes
 
 chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
 	@nice $(PYTHON) -m tests.proofs.chaos $(CHAOS_SECONDS)

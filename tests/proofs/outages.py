@@ -8,7 +8,9 @@ import random
 import signal
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
+from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Literal
@@ -216,6 +218,22 @@ class World:
         except (httpx.TransportError, ValueError):
             return False
         return bool(health["status"] == "ok")
+
+
+def measure_all(times: int, seed: int, robots: int, tell: Callable[[str], None]) -> list[Outcome]:
+    """Run each outage so often altogether, on several robots at once; `tell` is a function of a module."""
+    shares = [times // robots + (number < times % robots) for number in range(robots)]
+    with ProcessPoolExecutor(robots, get_context("spawn")) as pool:
+        runs = [
+            pool.submit(_measure_share, share, seed, number, tell)
+            for number, share in enumerate(shares)
+            if share
+        ]
+        return [outcome for run in runs for outcome in run.result()]
+
+
+def _measure_share(times: int, seed: int, number: int, tell: Callable[[str], None]) -> list[Outcome]:
+    return measure(times, seed + number, lambda text: tell(f"robot {number + 1}: {text}"))
 
 
 def measure(

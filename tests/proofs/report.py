@@ -1,15 +1,20 @@
-"""`python -m tests.proofs.report [PROOF ...]`: every long proof, one after the other, with one report.
+"""`python -m tests.proofs.report [PROOF ...]`: every long proof, with one report.
 
-The report, build/proofs/report.md, is written anew after each proof, also where one fails. Interrupted, it
-goes on where it stopped: what has a result on the same commit is not run again, unless it is named.
+Proofs that mostly wait run beside others that only compute, which get what processor time is left; those that
+measure speed run alone at the end. The report, build/proofs/report.md, is written anew after each proof, also
+where one fails. Interrupted, it goes on where it stopped: what has a result on the same commit is not run
+again, unless it is named.
 """
 
 import json
 import os
+import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -30,19 +35,46 @@ class Proof:
     options: tuple[str, ...] = ()
 
 
-PROOFS = (
-    Proof("hostile", "No word from outside reaches a build, a file name or a path."),
-    Proof("interface", "No request that the interface allows makes the server fail."),
-    Proof("hours", "A recording of hours is whole, and an hour's load leaves no memory behind."),
-    Proof("power", "A power cut loses no row that was acknowledged."),
-    Proof("kills", "A killed server leaves no hole in a recording."),
-    Proof("fuzz", "No bytes bring down the firmware's end of the line."),
-    Proof("soak", "No corrupted frame is believed, and no reset loses a message."),
-    Proof("faults", "Each fault stops the fins in time, and what was killed is back in time."),
-    Proof("chaos", "An hour of faults of all kinds loses nothing that is not counted."),
-    Proof("guards", "Each guard is missed by a test when it is taken away."),
-    Proof("control", "The depth controllers, on each craft."),
-    Proof("bench", "The figures and their goals.", ("LONG=1",)),
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """Proofs that begin in this order, so many at once."""
+
+    proofs: tuple[Proof, ...]
+    at_once: int = 1
+    prefix: tuple[str, ...] = ()
+    """The command that runs `make`."""
+
+
+Stage = tuple[Lane, ...]
+"""Lanes that run beside each other."""
+
+# Robots run in real time and have the processor first; computing takes what they leave.
+STAGES: tuple[Stage, ...] = (
+    (
+        Lane((Proof("chaos", "An hour of faults of all kinds loses nothing that is not counted."),)),
+        Lane(
+            (
+                Proof("outages", "Each process that is killed or hangs stops the fins and is back in time."),
+                Proof("kills", "A killed server leaves no hole in a recording."),
+            )
+        ),
+        Lane(
+            (
+                Proof("robot-faults", "Each fault of robot and chip stops the fins in time."),
+                Proof("guards", "Each guard is missed by a test when it is taken away."),
+                Proof("hours", "A recording of hours is whole, and an hour's load leaves no memory behind."),
+                Proof("interface", "No request that the interface allows makes the server fail."),
+                Proof("hostile", "No word from outside reaches a build, a file name or a path."),
+                Proof("power", "A power cut loses no row that was acknowledged."),
+                Proof("soak", "No corrupted frame is believed, and no reset loses a message."),
+                Proof("fuzz", "No bytes bring down the firmware's end of the line."),
+                Proof("control", "The depth controllers, on each craft."),
+            ),
+            at_once=2,
+            prefix=("chrt", "--idle", "0"),
+        ),
+    ),
+    (Lane((Proof("bench", "The figures and their goals.", ("LONG=1",)),)),),
 )
 
 
@@ -59,28 +91,119 @@ class Outcome:
     said: str
 
 
+class Run:
+    """Proofs on a commit; their outcomes and the report are stored after each."""
+
+    def __init__(self, stages: Sequence[Stage], now: str) -> None:
+        self._stages, self._now = stages, now
+        self._file = FOLDER / "outcomes.json"
+        self._outcomes = _read(self._file)
+        self._proofs = [proof for stage in stages for lane in stage for proof in lane.proofs]
+        self._storing, self._ending = threading.Lock(), threading.Event()
+        self._running: dict[str, subprocess.Popen[str]] = {}
+
+    @property
+    def is_interrupted(self) -> bool:
+        """True after Ctrl-C."""
+        return self._ending.is_set()
+
+    def perform(self, named: Sequence[str]) -> int:
+        """Runs those that are named, or those without a result. Returns the number of failed ones."""
+        wanted = {
+            proof.target
+            for proof in self._proofs
+            if (proof.target in named if named else not self._is_known(proof.target))
+        }
+        for proof in self._proofs:
+            if not named and proof.target not in wanted:
+                print(f"{proof.target}: has a result on {self._now} already", flush=True)
+        before = signal.signal(signal.SIGINT, lambda *_: self._end())
+        try:
+            for stage in self._stages:
+                self._perform_stage(stage, wanted)
+        finally:
+            signal.signal(signal.SIGINT, before)
+        return sum(one.status != 0 for one in self._outcomes.values() if one.commit == self._now)
+
+    def _is_known(self, target: str) -> bool:
+        known = self._outcomes.get(target)
+        return known is not None and known.commit == self._now
+
+    def _perform_stage(self, stage: Stage, wanted: set[str]) -> None:
+        pools = [ThreadPoolExecutor(lane.at_once) for lane in stage]
+        begun = [
+            pool.submit(self._perform, proof, lane.prefix)
+            for pool, lane in zip(pools, stage, strict=True)
+            for proof in lane.proofs
+            if proof.target in wanted
+        ]
+        for one in begun:
+            one.result()
+        for pool in pools:
+            pool.shutdown()
+
+    def _end(self) -> None:
+        """Ends what runs, of which nothing is stored."""
+        self._ending.set()
+        for process in list(self._running.values()):
+            process.terminate()
+
+    def _perform(self, proof: Proof, prefix: Sequence[str]) -> None:
+        if self._ending.is_set():
+            return
+        print(f"\n== {proof.target}: {proof.statement}", flush=True)
+        began, started = datetime.now(UTC).isoformat(timespec="seconds"), time.monotonic()
+        status, said = self._make(proof, prefix)
+        if self._ending.is_set():
+            return
+        seconds = time.monotonic() - started
+        outcome = Outcome(proof.target, self._now, machine(), began, seconds, status, said)
+        with self._storing:
+            self._outcomes[proof.target] = outcome
+            stored = {name: asdict(one) for name, one in self._outcomes.items()}
+            self._file.write_text(json.dumps(stored, indent=2) + "\n")
+            (FOLDER / "report.md").write_text(report(self._proofs, self._outcomes, self._now))
+            done = sum(map(self._is_known, (one.target for one in self._proofs)))
+        minutes = f"{_minutes(outcome)} min; {done} of {len(self._proofs)} have a result"
+        print(f"\n== {proof.target}: {_verdict(outcome)} after {minutes}", flush=True)
+
+    def _make(self, proof: Proof, prefix: Sequence[str]) -> tuple[int, str]:
+        """Exit status and last lines; all lines are printed at once, and stored in a log."""
+        lines: list[str] = []
+        command = [*prefix, "make", "--no-print-directory", proof.target, *proof.options]
+        with (
+            (FOLDER / f"{proof.target}.log").open("w") as output,
+            subprocess.Popen(
+                command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=_environment()
+            ) as process,
+        ):
+            self._running[proof.target] = process
+            if self._ending.is_set():
+                process.terminate()
+            assert process.stdout is not None
+            for line in process.stdout:
+                output.write(line)
+                sys.stdout.write(f"{proof.target:<13}{line}")
+                sys.stdout.flush()
+                lines = [*lines, line.rstrip()][-LINES:]
+        del self._running[proof.target]
+        return process.returncode, "\n".join(lines).strip()
+
+
 def main() -> int:
-    """Exit status: 1 where a proof failed."""
-    unknown = sorted(set(sys.argv[1:]) - {proof.target for proof in PROOFS})
-    if unknown:
-        sys.exit(f"no proof {', '.join(unknown)}; there are {', '.join(proof.target for proof in PROOFS)}")
-    named, now = sys.argv[1:], commit()
-    file = FOLDER / "outcomes.json"
-    outcomes = _read(file)
+    """Exit status: 1 where a proof failed, or was interrupted."""
+    named = sys.argv[1:]
+    known = [proof.target for stage in STAGES for lane in stage for proof in lane.proofs]
+    if unknown := sorted(set(named) - set(known)):
+        sys.exit(f"no proof {', '.join(unknown)}; there are {', '.join(known)}")
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for proof in PROOFS:
-        known = outcomes.get(proof.target)
-        if named and proof.target not in named:
-            continue
-        if not named and known is not None and known.commit == now:
-            print(f"{proof.target}: has a result on {now} already", flush=True)
-            continue
-        outcomes[proof.target] = _run(proof, now)
-        file.write_text(json.dumps({name: asdict(one) for name, one in outcomes.items()}, indent=2) + "\n")
-        (FOLDER / "report.md").write_text(report(PROOFS, outcomes, now))
+    run = Run(STAGES, commit())
+    failed = run.perform(named)
+    if run.is_interrupted:
+        print("\nInterrupted; the same command goes on.")
+        return 1
     print(f"\nThe report is in {FOLDER / 'report.md'}.")
-    mine = [one for one in outcomes.values() if one.commit == now]
-    return 1 if any(one.status for one in mine) else 0
+    return 1 if failed else 0
 
 
 def report(proofs: Sequence[Proof], outcomes: dict[str, Outcome], now: str) -> str:
@@ -110,36 +233,6 @@ def _read(file: Path) -> dict[str, Outcome]:
     if not file.exists():
         return {}
     return {name: Outcome(**one) for name, one in json.loads(file.read_text()).items()}
-
-
-def _run(proof: Proof, now: str) -> Outcome:
-    """Run a proof; its output is printed at once, and stored in a log."""
-    print(f"\n== {proof.target}: {proof.statement}", flush=True)
-    began, started = datetime.now(UTC).isoformat(timespec="seconds"), time.monotonic()
-    log = FOLDER / f"{proof.target}.log"
-    lines: list[str] = []
-    command = ["make", "--no-print-directory", proof.target, *proof.options]
-    with (
-        log.open("w") as output,
-        subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=_environment()
-        ) as process,
-    ):
-        assert process.stdout is not None
-        for line in process.stdout:
-            output.write(line)
-            sys.stdout.write(line)
-            sys.stdout.flush()
-            lines = [*lines, line.rstrip()][-LINES:]
-    return Outcome(
-        proof.target,
-        now,
-        machine(),
-        began,
-        time.monotonic() - started,
-        process.returncode,
-        "\n".join(lines).strip(),
-    )
 
 
 def _environment() -> dict[str, str]:

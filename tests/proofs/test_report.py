@@ -1,23 +1,44 @@
 """The report of the long proofs: their results, and their resumption."""
 
 import json
+import os
 import sys
 from pathlib import Path
 
 import pytest
 
 from tests.proofs import report
-from tests.proofs.report import Outcome, Proof
+from tests.proofs.report import STAGES, Lane, Outcome, Proof, Stage
 
-MAKEFILE = "good:\n\t@echo all is well\nbad:\n\t@echo one was lost; exit 3\nlater:\n\t@date +%N >> ran\n"
+MAKEFILE = """
+good:
+	@echo all is well
+bad:
+	@echo one was lost; exit 3
+later:
+	@date +%N >> ran
+# Each waits for the other: they end only where both run at once.
+left:
+	@mkfifo pipe; echo well > pipe
+right:
+	@until [ -p pipe ]; do sleep 0.01; done; cat pipe
+idle:
+	@chrt --pid $$$$
+halted:
+	@kill -INT $(PROOF_PID); sleep 60
+"""
 PROOFS = (Proof("good", "It works."), Proof("bad", "It never fails."), Proof("later", "It goes on."))
+
+
+def one_lane(*proofs: Proof) -> tuple[Stage, ...]:
+    return ((Lane(proofs),),)
 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "Makefile").write_text(MAKEFILE)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(report, "PROOFS", PROOFS)
+    monkeypatch.setattr(report, "STAGES", one_lane(*PROOFS))
     monkeypatch.setattr(report, "commit", lambda: "c0ffee")
     monkeypatch.setattr(sys, "argv", ["report"])
     return tmp_path
@@ -70,4 +91,51 @@ def test_an_unknown_proof_is_refused_with_the_reason(monkeypatch: pytest.MonkeyP
 
 def test_every_proof_is_a_target_of_the_makefile() -> None:
     targets = Path("Makefile").read_text()
-    assert [proof.target for proof in report.PROOFS if f"\n{proof.target}:" not in targets] == []
+    proofs = [proof for stage in STAGES for lane in stage for proof in lane.proofs]
+    assert [proof.target for proof in proofs if f"\n{proof.target}:" not in targets] == []
+    assert len({proof.target for proof in proofs}) == len(proofs)
+
+
+def test_lanes_run_beside_each_other(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stage = (Lane((Proof("left", "It waits."),)), Lane((Proof("right", "It waits."),)))
+    monkeypatch.setattr(report, "STAGES", (stage,))
+    assert report.main() == 0
+    assert outcomes(folder)["right"].said == "well"
+
+
+def test_a_lane_runs_as_many_at_once_as_it_says(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    lane = Lane((Proof("left", "It waits."), Proof("right", "It waits.")), at_once=2)
+    monkeypatch.setattr(report, "STAGES", ((lane,),))
+    assert report.main() == 0
+    assert set(outcomes(folder)) == {"left", "right"}
+
+
+def test_what_computes_leaves_the_processor_to_the_robots(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (lane,) = (lane for stage in STAGES for lane in stage if lane.prefix)
+    monkeypatch.setattr(report, "STAGES", ((Lane((Proof("idle", "It yields."),), prefix=lane.prefix),),))
+    assert report.main() == 0
+    assert "SCHED_IDLE" in outcomes(folder)["idle"].said
+
+
+def test_the_next_stage_begins_when_all_of_the_first_has_ended(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stages = (one_lane(Proof("bad", "It fails."))[0], one_lane(Proof("later", "It goes on."))[0])
+    monkeypatch.setattr(report, "STAGES", stages)
+    assert report.main() == 1
+    first, second = outcomes(folder).values()
+    assert (first.target, second.target, second.status) == ("bad", "later", 0)
+
+
+def test_an_interrupted_proof_has_no_result_and_none_begins_after_it(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PROOF_PID", f"{os.getpid()}")
+    stages = one_lane(Proof("good", "It works."), Proof("halted", "It waits."), Proof("later", "It goes on."))
+    monkeypatch.setattr(report, "STAGES", stages)
+    assert report.main() == 1
+    assert set(outcomes(folder)) == {"good"}
+    assert not (folder / "ran").exists()
+    assert "Interrupted; the same command goes on." in capsys.readouterr().out
