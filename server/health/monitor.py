@@ -92,6 +92,11 @@ class HealthMonitor:
         if state is not None and state.get("armed"):
             raise RefusedError(f"{why} It is refused while the robot is armed: press STOP first.")
 
+    @property
+    def alive(self) -> bool:
+        """False where the database or the runtime has failed."""
+        return "failed" not in (self._database()[0], self._runtime()[0])
+
     def health(self) -> Health:
         """The health of every part now."""
         conditions: dict[PartName, Condition] = {

@@ -17,6 +17,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import Kind
 from robot_runtime.transport.blocks import Block
 from server.http.security import POLICY_VIOLATION
+from server.http.sign_in.identity import SHELL, Identity
 from server.stream.broadcast import BroadcastBuffer, TopicHistory, Totals
 
 HISTORY_SECONDS = 600.0
@@ -31,6 +32,10 @@ ROWS_MESSAGES, ROWS_BYTES = 200, 1_000_000
 DOCUMENTS_MESSAGES, DOCUMENTS_BYTES = 2_000, 2_000_000
 ANSWERS_MAX = 64
 CLIENTS_MAX = 50
+OPERATORS_ONLY = 10
+"""Of these sockets, so many are for operators alone."""
+DEVICE_MAX = 8
+"""Sockets of one browser or program."""
 STALL_SECONDS = 5.0
 WATCH_SECONDS = 1.0
 TRY_AGAIN_LATER = 1013
@@ -229,14 +234,17 @@ class Hub:
                 self._end(client, EvictedError(reason, POLICY_VIOLATION))
 
     async def serve(
-        self, send: Send, greeting: dict[str, Any], receive: Callable[[Client], Awaitable[None]], device: int
+        self,
+        send: Send,
+        greeting: dict[str, Any],
+        receive: Callable[[Client], Awaitable[None]],
+        caller: Identity,
     ) -> None:
-        """Serve one socket of a device until `receive` returns. Raises EvictedError with the
+        """Serve one socket of a caller until `receive` returns. Raises EvictedError with the
         reason where it is disconnected.
         """
-        if len(self._clients) >= CLIENTS_MAX:
-            raise EvictedError(f"{CLIENTS_MAX} pages are open already; close one.")
-        client = Client(self, send, self._clock, device)
+        self._check_room(caller)
+        client = Client(self, send, self._clock, caller.device)
         client.answer(greeting)
         for kind, text in self._newest.items():
             client.notify(kind, text)
@@ -256,6 +264,15 @@ class Hub:
         for outcome in outcomes:
             if isinstance(outcome, Exception):
                 raise outcome
+
+    def _check_room(self, caller: Identity) -> None:
+        # The shell's programs, such as measurements, share one number.
+        own = sum(client.device == caller.device for client in self._clients)
+        if caller != SHELL and own >= DEVICE_MAX:
+            raise EvictedError(f"This device has {DEVICE_MAX} pages open already; close one.")
+        limit = CLIENTS_MAX if caller.role == "operator" else CLIENTS_MAX - OPERATORS_ONLY
+        if len(self._clients) >= limit:
+            raise EvictedError(f"{limit} pages are open already; close one.")
 
     async def watch(self) -> None:
         """Disconnect clients that have stopped reading; runs for ever."""

@@ -50,6 +50,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/control"): "viewer",
     ("POST", "/api/control/take"): "operator",
     ("POST", "/api/control/release"): "operator",
+    ("GET", "/api/alive"): "anyone",
     ("GET", "/api/health"): "viewer",
     ("GET", "/api/robot"): "viewer",
     ("POST", "/api/robot/stop"): "viewer",
@@ -406,6 +407,8 @@ async def ask_everything(house: House, who: Who) -> list[tuple[object, ...]]:
             control = house.people["control"]
             await house.ask(control, "POST", "/api/control/take", right, query="over=true")
             places, body = house.places(host, origin), await house.fill(probe.body)
+            # The runtime is alive as long as its state is fresh.
+            house.container.monitor.see(state_block(0))
             status, _, told = await house.ask(
                 house.people[who], method, path, places, body, query=probe.query, address=address
             )

@@ -159,6 +159,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/alive": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Answer whether the robot works
+         * @description Answer whether the robot works.
+         *
+         *     Without a sign-in and without data, for programs that watch computers: 204, or 503 where the database or
+         *     the robot's runtime fails.
+         */
+        get: operations["checkAlive"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/backup": {
         parameters: {
             query?: never;
@@ -4992,7 +5015,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Too many wrong codes; Retry-After says how long */
+            /** @description A wrong code was tried a moment ago; Retry-After says how long to wait */
             429: {
                 headers: {
                     [name: string]: unknown;
@@ -5098,6 +5121,42 @@ export interface operations {
                 };
             };
             /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    checkAlive: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The database or the robot's runtime fails */
             503: {
                 headers: {
                     [name: string]: unknown;

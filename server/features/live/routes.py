@@ -3,6 +3,7 @@
 import asyncio
 import json
 from collections.abc import Callable
+from math import isfinite
 from time import time
 from typing import Annotated, Any
 
@@ -87,8 +88,12 @@ class _LiveConnection:
         match op:
             case "ping":
                 number = message.get("id")
-                if not isinstance(number, int | float | str):
+                if isinstance(number, bool) or not isinstance(number, int | float | str):
                     raise InvalidMessageError("A ping needs an id, a number or a text.")
+                if isinstance(number, float) and not isfinite(number):
+                    raise InvalidMessageError(
+                        "A ping's id is a number that JSON can write; this one is too large."
+                    )
                 client.answer({"op": "pong", "id": number})
             case "stop":
                 self._stop(client)
@@ -155,7 +160,7 @@ async def live(
             raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
             listen = _LiveConnection(socket, owner, hub, arbiter, bridge).listen
-            await hub.serve(send, greeting(owner), listen, caller.device)
+            await hub.serve(send, greeting(owner), listen, caller)
     except WebSocketDisconnect:
         return
     except EvictedError as reason:

@@ -47,6 +47,10 @@ class LinkFrames(BaseModel):
     fault: LinkFault | None = Field(description="null if there was none since the runtime started")
 
 
+class NotAliveError(UnavailableError):
+    """The database or the robot's runtime fails"""
+
+
 @router.operation("GET /health", Need.VIEWER, tags=["health"])
 async def get_health(monitor: Provided[HealthMonitor]) -> Health:
     """Return the health of the server and of every part of the robot.
@@ -54,6 +58,17 @@ async def get_health(monitor: Provided[HealthMonitor]) -> Health:
     Answered with 200 while the server runs; `status` sums the parts up.
     """
     return monitor.health()
+
+
+@router.operation("GET /alive", Need.NOTHING, NotAliveError, tags=["health"])
+async def check_alive(monitor: Provided[HealthMonitor]) -> None:
+    """Answer whether the robot works.
+
+    Without a sign-in and without data, for programs that watch computers: 204, or 503 where the database or
+    the robot's runtime fails.
+    """
+    if not monitor.alive:
+        raise NotAliveError("The database or the robot's runtime fails. /api/health says which, and why.")
 
 
 @router.operation("GET /link/frames", Need.VIEWER, RuntimeSilentError, tags=["link"])

@@ -54,7 +54,8 @@ async def pair_browser(
     Sets a cookie. A browser that is signed in already keeps its cookie, and gets the code's role if that is
     higher.
     """
-    identity, secret = await access.pair(body.code, body.name, request.scope[IDENTITY])
+    address = request.client.host if request.client is not None else ""
+    identity, secret = await access.pair(body.code, body.name, request.scope[IDENTITY], address)
     if secret is not None:
         response.set_cookie(
             access.cookie,

@@ -1,6 +1,7 @@
 """Schemas of browsers and programs, and of pairing."""
 
 from typing import Annotated
+from unicodedata import normalize
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
@@ -10,7 +11,7 @@ NAME_LENGTH_MAX = 40
 
 
 def _check_name(name: str) -> str:
-    name = " ".join(name.split())
+    name = " ".join(normalize("NFKC", name).split())
     if not name or not name.isprintable():
         raise ValueError("must have visible characters, and no control characters")
     return name

@@ -11,7 +11,7 @@ from robot_runtime.durable_files import write_whole
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.devices import Device, Devices
 from server.http.sign_in.identity import SHELL, Identity, Role
-from server.http.sign_in.pairing_codes import PairingCodes, TooManyTriesError
+from server.http.sign_in.pairing_codes import PairingCodes, WrongCodeError
 from server.http.sign_in.tokens import digest
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -68,18 +68,20 @@ class Access:
         device = self.devices.find_valid(identity.device)
         return None if device is None else device.identity
 
-    async def pair(self, code: str, name: str, known: Identity | None) -> tuple[Identity, str | None]:
+    async def pair(
+        self, code: str, name: str, known: Identity | None, address: str
+    ) -> tuple[Identity, str | None]:
         """Sign a browser in; its identity and its new cookie, None where it has one, being `known`.
 
         Such a one keeps its name, and its role where the code's is not a higher one.
         Raises WrongCodeError, TooManyTriesError, RefusedError, StoreError.
         """
         try:
-            role = self.codes.use(code)
-        except TooManyTriesError as problem:
-            if not self._limit_reported:
-                self._notify("access", "caution", f"Somebody tries pairing codes. {problem}")
-            self._limit_reported = True
+            role = self.codes.use(code, address)
+        except WrongCodeError:
+            if self.codes.many_wrong and not self._limit_reported:
+                self._notify("access", "caution", f"Somebody at {address} tries pairing codes.")
+                self._limit_reported = True
             raise
         self._limit_reported = False
         if known is not None and known.kind == "browser":

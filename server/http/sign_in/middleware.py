@@ -10,7 +10,7 @@ from server.http.security import SAFE_METHODS, refuse
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import IDENTITY, Identity
 
-OPEN = frozenset({("GET", "/api/access/me"), ("POST", "/api/access/pair")})
+OPEN = frozenset({("GET", "/api/alive"), ("GET", "/api/access/me"), ("POST", "/api/access/pair")})
 """The operations that need no sign-in."""
 PAGE_HEADER, PAGE_VALUE = "x-mucat", "page"
 """A header that a foreign page cannot send: its browser asks this server first, which refuses."""

@@ -1,4 +1,4 @@
-"""Pairing codes, and the limits for wrong ones.
+"""Pairing codes, and the wait after wrong ones.
 
 Both are in memory only: codes become invalid when the server ends.
 """
@@ -16,9 +16,11 @@ from server.platform.errors import ApiError, ForbiddenError
 CODE_SECONDS = 600.0
 CODES_MAX = 20
 """The greatest number of valid codes; a further one replaces the oldest."""
-LIMITS = ((3, 60.0), (10, 3600.0))
-"""Wrong codes within so many seconds. They are counted together, wherever they come from: an address proves
-nothing."""
+TRY_SECONDS = 1.0
+"""From a wrong code to the next try of the same address. A longer wait could be caused by a stranger; and at
+49 bits even a try a millisecond finds no code within its ten minutes."""
+MANY, MANY_SECONDS = 3, 60.0
+"""So many wrong codes within this time are told to the people on the pages."""
 
 
 class WrongCodeError(ForbiddenError):
@@ -32,13 +34,13 @@ class WrongCodeError(ForbiddenError):
 
 
 class TooManyTriesError(ApiError):
-    """Too many wrong codes; Retry-After says how long"""
+    """A wrong code was tried a moment ago; Retry-After says how long to wait"""
 
     status = 429
 
     def __init__(self, seconds: float) -> None:
         wait = ceil(seconds)
-        super().__init__(f"Too many wrong codes have been tried. Try again in {_in_words(wait)}.")
+        super().__init__(f"A wrong code was tried a moment ago. Try again in {wait} s.")
         self.headers = {"retry-after": str(wait)}
 
 
@@ -55,7 +57,9 @@ class PairingCodes:
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
         self._codes: deque[_Code] = deque(maxlen=CODES_MAX)
-        self._wrong: deque[float] = deque(maxlen=max(count for count, _ in LIMITS))
+        self._wrong: deque[float] = deque(maxlen=MANY)
+        self._waiting: dict[str, float] = {}
+        """By address, when it may try again."""
 
     @property
     def any_valid(self) -> bool:
@@ -64,13 +68,9 @@ class PairingCodes:
         return bool(self._codes)
 
     @property
-    def wait(self) -> float:
-        """s until a code may be tried; 0 where it may now."""
-        now = self._clock.now()
-        return max(
-            (self._wrong[-count] + seconds - now for count, seconds in LIMITS if len(self._wrong) >= count),
-            default=0.0,
-        )
+    def many_wrong(self) -> bool:
+        """True where somebody has just tried many wrong codes."""
+        return len(self._wrong) == MANY and self._wrong[0] > self._clock.now() - MANY_SECONDS
 
     def make(self, role: Role) -> str:
         """A new code, for one pairing in this role."""
@@ -78,19 +78,22 @@ class PairingCodes:
         self._codes.append(_Code(digest(normal_code(code)), role, self._clock.now() + CODE_SECONDS))
         return code
 
-    def use(self, typed: str) -> Role:
+    def use(self, typed: str, address: str) -> Role:
         """The role of a code, which is then void.
 
-        Raises WrongCodeError, which counts, and TooManyTriesError.
+        Raises WrongCodeError, after which this address waits, and TooManyTriesError while it does.
         """
-        if (wait := self.wait) > 0:
-            raise TooManyTriesError(wait)
+        now = self._clock.now()
+        self._waiting = {one: until for one, until in self._waiting.items() if until > now}
+        if (until := self._waiting.get(address)) is not None:
+            raise TooManyTriesError(until - now)
         self._forget_old()
         typed_digest = digest(normal_code(typed))
         # Every code is compared in full, so that the time taken reveals nothing.
         found = [code for code in self._codes if compare_digest(code.digest, typed_digest)]
         if not found:
-            self._wrong.append(self._clock.now())
+            self._wrong.append(now)
+            self._waiting[address] = now + TRY_SECONDS
             raise WrongCodeError
         self._codes.remove(found[0])
         return found[0].role
@@ -99,7 +102,3 @@ class PairingCodes:
         now = self._clock.now()
         while self._codes and self._codes[0].expires <= now:
             self._codes.popleft()
-
-
-def _in_words(seconds: int) -> str:
-    return f"{seconds} s" if seconds <= 90 else f"{ceil(seconds / 60)} minutes"

@@ -8,7 +8,7 @@ TOKEN_PREFIX = "mucat_"
 CODE_ALPHABET = "23456789ABCDEFGHJKMNPQRSTUVWXYZ"
 """Without characters that look alike: 0 and O, 1, I and L."""
 CODE_LENGTH = 10
-"""49 bits: with ten tries an hour and ten minutes' life, guessing one takes longer than there is."""
+"""49 bits: guessing one within its ten minutes is hopeless, at any number of tries."""
 
 
 def make_token(prefix: str = "") -> str:

@@ -34,6 +34,19 @@ def test_a_silent_process_is_starting_at_first_and_then_failed(rig: MonitorRig) 
     assert [rig.state(name) for name in ("runtime", "link", "board", "simulator")] == ["failed"] * 4
 
 
+def test_it_is_alive_unless_the_database_or_the_runtime_fails(rig: MonitorRig, store: Store) -> None:
+    rig.run_all()
+    rig.clock.forward(60)
+    assert not rig.monitor.alive
+    rig.monitor.see(state_block(0))
+    assert rig.monitor.alive
+    store.failing = "the disk is full"
+    assert not rig.monitor.alive
+    store.failing = None
+    rig.clock.forward(2.6)
+    assert not rig.monitor.alive
+
+
 @pytest.mark.parametrize(("name", "limit"), [("runtime", 2.5), ("board", 3.0), ("simulator", 2.0)])
 def test_received_data_becomes_stale(rig: MonitorRig, name: str, limit: float) -> None:
     rig.run_all()

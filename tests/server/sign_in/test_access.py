@@ -10,9 +10,12 @@ import pytest
 from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import read_blocks
 from server.http.sign_in.devices import Devices
+from server.http.sign_in.pairing_codes import PairingCodes
 from server.platform.settings import Settings
+from tests.server.blocks import state_block
 from tests.server.serving import Served, next_text, play, serve
 from tests.server.sign_in.browsers import browser, new_code
 from tests.server.waiting import until
@@ -46,6 +49,20 @@ def test_every_operation_needs_a_sign_in(settings: Settings) -> None:
                 "pairing_open": False,
                 "operators_only": [],
             }
+
+    play(settings, scenario)
+
+
+def test_everybody_may_ask_whether_the_robot_works_and_learns_nothing_more(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, None) as stranger:
+            served.container.monitor.see(state_block(0))
+            answer = await stranger.api.get("/alive")
+            assert (answer.status_code, answer.content) == (204, b"")
+            served.container.store.failing = "the disk is full"
+            answer = await stranger.api.get("/alive")
+            assert answer.status_code == 503
+            assert "disk" not in answer.text
 
     play(settings, scenario)
 
@@ -269,23 +286,25 @@ def test_a_paired_browser_is_not_paired_twice(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_too_many_wrong_codes_are_refused_and_reported_once(settings: Settings) -> None:
+def test_a_wrong_code_makes_wait_and_many_are_reported_once(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
+        clock = SimulatedClock(1000.0)
+        served.container.access.codes = PairingCodes(clock)
         code = await new_code(served, "operator")
         async with browser(served, None) as stranger, served.connect() as socket:
-            for _ in range(3):
+            for _ in range(5):
                 assert (await stranger.pair("AAAAA-AAAAA")).status_code == 403
-            for wrong in ("AAAAA-AAAAA", code):
-                answer = await stranger.pair(wrong)
-                assert answer.status_code == 429
-                assert 0 < int(answer.headers["retry-after"]) <= 60
+                answer = await stranger.pair(code)
+                assert (answer.status_code, answer.headers["retry-after"]) == (429, "1")
                 assert "Try again in" in answer.json()["detail"]
+                clock.forward(1.0)
             told = await notices(socket, 1)
             assert told[0]["severity"] == "caution"
-            assert "Too many wrong codes" in told[0]["text"]
+            assert told[0]["text"] == "Somebody at 127.0.0.1 tries pairing codes."
             # Others are not refused, and the next notice is a different one.
             (await served.api.post("/access/tokens", json={"name": "script"})).raise_for_status()
             assert "script" in (await notices(socket, 1))[0]["text"]
+            assert (await stranger.pair(code)).status_code == 200
 
     play(settings, scenario)
 

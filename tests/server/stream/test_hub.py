@@ -8,6 +8,7 @@ import pytest
 import server.stream.hub as hub_module
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import read_blocks
+from server.http.sign_in.identity import SHELL, Identity
 from server.stream.hub import DOCUMENTS_MESSAGES, ROWS_MESSAGES, Client, EvictedError, Hub
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.waiting import until
@@ -16,13 +17,13 @@ from tests.server.waiting import until
 class Page:
     """A page's end of a socket, whose reading can be paused."""
 
-    def __init__(self, hub: Hub) -> None:
+    def __init__(self, hub: Hub, caller: Identity = SHELL) -> None:
         self.received: list[bytes | str] = []
         self.reading = asyncio.Event()
         self.reading.set()
         self.gone = asyncio.Event()
         self.client: Client | None = None
-        self.task = asyncio.create_task(hub.serve(self._send, {"op": "hello"}, self._listen, device=1))
+        self.task = asyncio.create_task(hub.serve(self._send, {"op": "hello"}, self._listen, caller))
 
     @property
     def texts(self) -> list[dict[str, Any]]:
@@ -302,5 +303,23 @@ def test_the_number_of_pages_is_limited() -> None:
         for page in pages:
             await page.leave()
         assert hub.clients == 0
+
+    with_hub(scenario)
+
+
+def test_pages_of_a_device_are_limited_and_some_are_for_operators_alone() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        viewers = [Identity(number, "tablet", "viewer", "browser") for number in range(1, 7)]
+        pages = [Page(hub, one) for one in viewers[:5] for _ in range(8)]
+        await until(lambda: hub.clients == 40, "the viewers' pages")
+        with pytest.raises(EvictedError, match="This device has 8 pages open"):
+            await Page(hub, viewers[0]).task
+        with pytest.raises(EvictedError, match="40 pages are open already"):
+            await Page(hub, viewers[5]).task
+        operators = [Identity(number, "bridge", "operator", "browser") for number in (7, 8)]
+        pages += [Page(hub, one) for one in operators for _ in range(5)]
+        await until(lambda: hub.clients == 50, "the operators' pages")
+        for page in pages:
+            await page.leave()
 
     with_hub(scenario)

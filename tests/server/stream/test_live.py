@@ -113,6 +113,20 @@ def test_ping_and_stop(settings: Settings) -> None:
     play(settings, scenario)
 
 
+def test_a_ping_whose_id_json_cannot_write_is_refused(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with served.connect() as page:
+            await page.send('{"op": "ping", "id": 1e999}')
+            await page.send('{"op": "ping", "id": "after it"}')
+            async with asyncio.timeout(10):
+                async for message in page:
+                    if isinstance(message, str) and '"pong"' in message:
+                        assert "after it" in message
+                        break
+
+    play(settings, scenario)
+
+
 def test_stops_during_a_pending_stop_become_one_more(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as page:
@@ -153,6 +167,7 @@ NONSENSE: list[str | bytes] = [
     '{"op": "ping"}',
     '{"op": "ping", "id": null}',
     '{"op": "ping", "id": NaN}',
+    '{"op": "ping", "id": true}',
     "[" * 4000,
     b'{"op": "stop"}',
 ]
