@@ -26,14 +26,15 @@ REAL_TIME = $(filter-out $(UPLOADS),$(shell grep -rl --include='test_*.py' mark.
 # As much as makes both of the lanes in real time equally long.
 BROWSER_LATER := $(wildcard $(addprefix tests/browser/test_,swim.py themes.py tuning.py vision.py))
 BROWSER_FIRST := $(filter-out $(BROWSER_LATER),$(wildcard tests/browser/test_*.py))
-# All other tests, each folder by a process of its own, the longest first; the last has what no other has.
-FOLDERS := tests/proofs tests/server/features tests/runtime/experiments tests/documents tests/server tests/runtime tests
+# All other tests, each part by a process of its own, the longest first. A part lacks what is a part by itself.
+PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/test_memory.py documents \
+	proofs/test_guards.py server runtime) tests
 
 # With a number of jobs of its own, not what another make leaves over. A failure does not hide those of what comes after it.
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest $(FOLDERS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface hours generate firmware \
+.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface hours generate firmware \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -69,12 +70,12 @@ test-checks:
 	(cd frontend && nice npm test --silent) || status=1; \
 	exit $$status
 
-# Three at once: many of them wait for a process.
+# Four at once: many of them wait for a process.
 test-rest:
-	@nice $(IN_LANES) --jobs 3 $(FOLDERS:%=test-in-%)
+	@nice $(IN_LANES) --jobs 4 $(PARTS:%=test-in-%)
 
-$(FOLDERS:%=test-in-%): test-in-%:
-	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(FOLDERS) tests/browser))
+$(PARTS:%=test-in-%): test-in-%:
+	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))
 
 check: setup-test ## style, types, imports, and whether generated files are current
 	.venv/bin/ruff check
