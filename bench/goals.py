@@ -76,6 +76,9 @@ GOALS = {
     "control.crossing_ratio_max": _most(1.2),
     "control.overshoot_max": _most(0.05),
     "control.steady_cm_max": _most(2),
+    # Missed since it was set, by 3 to 6 %. Zenoh's own threads take some 1.7 % of a core in both processes
+    # together; of the runtime's Python 40 % is the check for faults, of the server's as much the hand-over of
+    # blocks to recorder and viewers.
     "cpu.robot_stack_percent": _most(2, "python"),
     "export.csv_1h_ratio": _most(1.3),
     "export.mcap_1h_ratio": _most(1.3),
