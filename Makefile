@@ -34,7 +34,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface hours generate firmware \
+.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -97,6 +97,9 @@ hostile: setup ## hostile words through every entrance to a build, a file name o
 
 interface: setup ## ask every operation what its description lets one think of (QUESTIONS=300 of each)
 	@nice $(PYTHON) -W ignore -m tests.proofs.interface $(QUESTIONS)
+
+attacks: setup host-firmware ## every attack of the security review on a whole robot, while an operator presses STOP
+	@nice $(PYTHON) -m tests.proofs.attacks
 
 hours: setup host-firmware ## record HOURS=8 of a dive in simulated time and read them; an hour's load on the memory
 	@nice $(PYTHON) -m tests.proofs.hours $(HOURS)

@@ -74,6 +74,7 @@ STAGES: tuple[Stage, ...] = (
             prefix=("chrt", "--idle", "0"),
         ),
     ),
+    (Lane((Proof("attacks", "No attack of the security review holds up STOP or the control loop."),)),),
     (Lane((Proof("bench", "The figures and their goals.", ("LONG=1",)),)),),
 )
 

@@ -1,0 +1,306 @@
+"""The attackers of `attacks.py`, in a process of their own: each repeats one attack until its time is over.
+
+`python -m tests.proofs.attackers URL VIEWER OPERATOR SECONDS`, with two tokens, prints a JSON object: for
+each attack an empty text where it was held, else what went wrong. All loads are bounded, and on the loopback.
+"""
+
+import base64
+import json
+import shutil
+import socket
+import sys
+import tempfile
+import time
+import zlib
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, closing, suppress
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import httpx
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin
+
+from tests.released import ARCHIVE, RELEASED, SIGNALS
+from tests.runtime.contract.test_toml_text import BOMBS, CHEAP
+from tests.server.features.exports.test_imports import change, row_bomb, tell
+from tests.server.features.exports.test_malformed_archives import MALFORMED
+
+HOLD_SECONDS = 3.0
+CONNECTIONS = 260
+SOCKETS = 50
+PATIENCE = 60.0
+TRICKS = [
+    "..",
+    "%2e%2e",
+    "..%2f",
+    "%2e%2e%2f",
+    "..%5c",
+    "....//",
+    "..;/",
+    "%252e%252e",
+    "%c0%ae%c0%ae",
+    "/..//..",
+]
+FILES = ["etc/passwd", "data/mucat.db"]
+HOSTS = [
+    "evil.example",
+    "evil.example:80",
+    "127.0.0.1.evil.example",
+    "",
+    "[::2]",
+    "localhost@evil.example",
+    "0",
+]
+METHODS = ["TRACE", "CONNECT", "PROPFIND", "DELETE"]
+COMMANDS: list[object] = [
+    {},
+    [],
+    {"default": "x"},
+    {"default": 1e999},
+    {"default": None},
+    {"name": "\ud800"},
+    "x",
+    None,
+]
+
+
+class Field:
+    """The attacked robot, and the tokens of a viewer and an operator without control."""
+
+    def __init__(self, url: str, viewer: str, operator: str) -> None:
+        self.url = url
+        parts = urlsplit(url)
+        self.address = parts.hostname or "", parts.port or 0
+        self.viewer = {"authorization": f"Bearer {viewer}"}
+        self.operator = {"authorization": f"Bearer {operator}"}
+
+    def ask(self, method: str, path: str, headers: dict[str, str] | None = None, **options: object) -> int:
+        """The status of an answer, which is no internal error."""
+        with httpx.Client(base_url=self.url, timeout=PATIENCE) as client:
+            answer = client.request(method, path, headers=headers, **options)  # type: ignore[arg-type]
+        assert answer.status_code != 500, (method, path, answer.text[:200])
+        assert "root:x:" not in answer.text
+        return answer.status_code
+
+    def refuse(
+        self, method: str, path: str, headers: dict[str, str] | None = None, **options: object
+    ) -> None:
+        """Ask for something that is refused."""
+        status = self.ask(method, path, headers, **options)
+        assert 400 <= status < 500 or status == 503, (method, path, status)
+
+    def send(self, data: bytes) -> bytes:
+        """The beginning of the answer to these bytes."""
+        with socket.create_connection(self.address, PATIENCE) as line:
+            line.sendall(data)
+            with suppress(ConnectionError):
+                return line.recv(100)
+        return b""
+
+    def open(self, headers: dict[str, str]) -> ClientConnection:
+        """A live socket. Raises OSError, WebSocketException."""
+        address = f"{self.url.replace('http', 'ws', 1)}/api/live"
+        return connect(
+            address,
+            origin=Origin(self.url),
+            additional_headers=headers,
+            max_size=None,
+            ping_interval=None,
+            close_timeout=0.5,
+        )
+
+
+def paths(field: Field) -> None:
+    for trick in TRICKS:
+        for file in FILES:
+            head = f"GET /{trick}/{trick}/{file} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
+            data = field.send(head.encode())
+            assert not data.startswith(b"HTTP/1.1 5"), (trick, data)
+
+
+def hosts(field: Field) -> None:
+    for host in HOSTS:
+        data = field.send(f"GET /api/robot HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
+        assert data.startswith(b"HTTP/1.1 4"), (host, data)
+    for method in METHODS:
+        field.refuse(method, "/api/robot", field.viewer)
+
+
+def authorizations(field: Field) -> None:
+    token = field.viewer["authorization"].removeprefix("Bearer ")
+    basic = base64.b64encode(f"x:{token}".encode()).decode()
+    forms = [
+        f"Basic {basic}",
+        token,
+        f"bearer{token}",
+        f"Token {token}",
+        "Bearer",
+        f"Bearer {token[:-1]}",
+        "Bearer x",
+    ]
+    for form in forms:
+        assert field.ask("GET", "/api/robot", {"authorization": form}) == 401, form
+    assert field.ask("GET", f"/api/robot?token={token}", {"x-forwarded-for": "127.0.0.1"}) == 401
+
+
+def codes(field: Field) -> None:
+    for code in ("0000-0000", "", "x" * 1000, "\ud800"):
+        field.refuse("POST", "/api/access/pair", {"origin": field.url}, content=json.dumps({"code": code}))
+
+
+def forgeries(field: Field) -> None:
+    for origin in ("http://evil.example", "null", "http://127.0.0.1:1"):
+        field.refuse("POST", "/api/robot/commands/arm", {"origin": origin, "cookie": "mucat=x"}, json={})
+
+
+def escalations(field: Field) -> None:
+    for method, path in (
+        ("POST", "/api/robot/commands/arm"),
+        ("POST", "/api/control/take"),
+        ("POST", "/api/access/tokens"),
+        ("POST", "/api/imports"),
+        ("DELETE", "/api/sessions/1"),
+        ("GET", "/api/access/devices"),
+        ("POST", "/api/scenarios/runs"),
+    ):
+        assert field.ask(method, path, field.viewer, json={}) in (403, 404, 405, 422), path
+
+
+def takes(field: Field) -> None:
+    with ThreadPoolExecutor(12) as threads:
+        list(threads.map(lambda _: field.ask("POST", "/api/control/take", field.operator), range(12)))
+    field.ask("POST", "/api/control/release", field.operator)
+
+
+def nonsense(field: Field) -> None:
+    with suppress(OSError, WebSocketException), field.open(field.viewer) as page:
+        for message in ("{", "[]", '{"op": 5}', '{"op": "drive"}', '{"op": "ping", "id": 1e999}', "x" * 5000):
+            page.send(message)
+        for number in range(300):
+            page.send(json.dumps({"op": "ping", "id": number}))
+
+
+def many_sockets(field: Field) -> None:
+    with ExitStack() as opened:
+        for _ in range(SOCKETS):
+            with suppress(OSError, WebSocketException):
+                opened.enter_context(closing(field.open(field.viewer)))
+        with field.open(field.operator) as page:
+            page.recv(PATIENCE)
+
+
+def slow(field: Field) -> None:
+    beginnings = [
+        b"",
+        b"GET /api/robot HT",
+        b"POST /api/access/pair HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99\r\n\r\n{",
+    ]
+    with ExitStack() as opened:
+        for number in range(CONNECTIONS):
+            with suppress(OSError):
+                line = opened.enter_context(socket.create_connection(field.address, 5))
+                line.sendall(beginnings[number % len(beginnings)])
+        time.sleep(HOLD_SECONDS)
+
+
+def bodies(field: Field) -> None:
+    path = "/api/scenarios/check"
+    for content in (
+        b"[" * 100_000,
+        b'{"text": ' + b"[" * 50_000,
+        b'{"text": NaN}',
+        b"\xff",
+        b"x" * 3_000_000,
+    ):
+        field.refuse("POST", path, field.viewer, content=content)
+    head = f"POST {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n".encode()
+    for rest in (b"Content-Length: -1\r\n\r\n", b"X: " + b"x" * 20_000_000 + b"\r\n\r\n"):
+        with suppress(ConnectionError, TimeoutError):
+            data = field.send(head + rest)
+            assert not data.startswith(b"HTTP/1.1 5"), data
+
+
+def toml_bombs(field: Field) -> None:
+    for text in [*BOMBS.values(), *CHEAP.values()]:
+        status = field.ask("POST", "/api/scenarios/check", field.viewer, json={"text": text})
+        assert status in (200, 413, 422, 429, 503), (status, text[:40])
+        field.refuse("POST", "/api/vision/read", field.viewer, json={"text": text[:19_000]})
+        field.refuse("POST", "/api/scenarios/runs", field.operator, json={"text": text, "place": "simulated"})
+
+
+def odd_commands(field: Field) -> None:
+    for body in COMMANDS:
+        field.refuse("POST", "/api/robot/commands/set_points", field.operator, content=json.dumps(body))
+    for number in ("nan", "inf", "1e999", "-1e308", "x", ""):
+        field.ask("GET", f"/api/compare/report?sessions=1&view_start={number}&view_end=1", field.viewer)
+        field.ask("GET", f"/api/sessions/1/blocks?start={number}&end=1", field.viewer)
+
+
+def archives(field: Field) -> None:
+    edits = [row_bomb, *(edit for edit, _ in MALFORMED.values())]
+    gaps = [{"topic": "depth", "kind": "missed", "time": 1.5, "missed": 1}] * 100_000
+    with tempfile.TemporaryDirectory() as folder:
+        for edit in [*edits, tell(gaps=gaps, state="odd")]:
+            path = Path(shutil.copy(RELEASED / "0.2.0" / ARCHIVE, folder))
+            change(path, edit)
+            field.refuse("POST", "/api/imports", field.operator, content=path.read_bytes())
+
+
+def heavy_reading(field: Field) -> None:
+    query = {"sessions": [1], "signals": SIGNALS, "view": {"start": -1e308, "end": 1e308}}
+    field.ask("POST", "/api/compare", field.viewer, json=query)
+    field.ask("GET", f"/api/compare/report?sessions=1&signals={','.join(SIGNALS)}", field.viewer)
+    field.ask("GET", "/api/sessions/1/blocks?start=0&end=120&history=60", field.viewer)
+    field.ask("POST", "/api/exports", field.viewer, json={"session": 1, "format": "csv"})
+
+
+ATTACKS: dict[str, Callable[[Field], None]] = {
+    "path tricks": paths,
+    "hosts and methods": hosts,
+    "forms of Authorization": authorizations,
+    "codes": codes,
+    "forged requests": forgeries,
+    "viewer's escalations": escalations,
+    "twelve takes at once": takes,
+    "odd messages on a socket": nonsense,
+    "fifty sockets": many_sockets,
+    "slow heads and bodies, 260 connections": slow,
+    "odd and large bodies": bodies,
+    "TOML bombs": toml_bombs,
+    "odd commands and numbers": odd_commands,
+    "bombs and lies in archives": archives,
+    "comparisons, reports, replays, exports": heavy_reading,
+}
+
+
+def repeat(attack: Callable[[Field], None], field: Field, end: float) -> str:
+    """Repeats an attack up to a time of the steady clock; returns what went wrong."""
+    while time.monotonic() < end:
+        try:
+            attack(field)
+        except (
+            AssertionError,
+            httpx.HTTPError,
+            OSError,
+            WebSocketException,
+            TimeoutError,
+            zlib.error,
+        ) as problem:
+            return f"{type(problem).__name__}: {problem}"[:300]
+    return ""
+
+
+def main() -> None:
+    """Runs every attack at once."""
+    url, viewer, operator, seconds = sys.argv[1:]
+    field, end = Field(url, viewer, operator), time.monotonic() + float(seconds)
+    with ThreadPoolExecutor(len(ATTACKS)) as threads:
+        found = threads.map(lambda attack: repeat(attack, field, end), ATTACKS.values())
+    print(json.dumps(dict(zip(ATTACKS, found, strict=True))))
+
+
+if __name__ == "__main__":
+    main()
