@@ -40,6 +40,7 @@ from server.features.tuning.runs import TuningStore
 from server.health.faults import FAULTS
 from server.health.monitor import HealthMonitor
 from server.health.watchdog import DOWN, Watchdog
+from server.http.heavy_requests import HeavyRequests
 from server.http.page import Page
 from server.http.sign_in.access import Access
 from server.platform.models import SessionRow
@@ -80,6 +81,7 @@ class Container:
         self._add_comm_tests()
         self._add_tuning()
         self._add_scenarios()
+        self.heavy_requests = HeavyRequests()
         self.downloads = DatabaseDownloads(settings.data)
         self.layouts = Layouts(self.store)
 

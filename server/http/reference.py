@@ -37,7 +37,7 @@ are not valid, `problems` has each of them with its path, see [EntryProblem](#en
 | 413 | a body of more than 64 KiB, or without its length; imports may be larger |
 | 422 | not valid |
 | 423 | only for the page or program that has control |
-| 429 | a wrong pairing code was tried a moment ago |
+| 429 | a wrong pairing code was tried a moment ago; or several long requests of this device are under way |
 | 503 | a part that is needed does not run |
 | 504 | the runtime did not answer within 2 s |
 | 507 | the disk is too full |

@@ -5781,6 +5781,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description This device has several such requests under way already */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Something that the server needs does not work */
             503: {
                 headers: {
@@ -8064,6 +8073,15 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioCheck"];
                 };
             };
+            /** @description This device has several such requests under way already */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Something that the server needs does not work */
             503: {
                 headers: {
@@ -9676,6 +9694,15 @@ export interface operations {
             };
             /** @description There are no settings in it that can be used */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description This device has several such requests under way already */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };

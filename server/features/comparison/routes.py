@@ -12,15 +12,18 @@ from server.features.comparison.schemas import Comparison, ComparisonQuery, Line
 from server.features.comparison.signals import Signal
 from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
+from server.http.heavy_requests import TooManyHeavyError, Turn
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 
 router = Operations(prefix="/api", tags=["comparison"])
 
 
-@router.operation("GET /compare/report", Need.VIEWER, UnknownSessionError, media_type="text/html")
+@router.operation(
+    "GET /compare/report", Need.VIEWER, UnknownSessionError, TooManyHeavyError, media_type="text/html"
+)
 def get_comparison_report(
-    comparisons: Provided[Comparisons], query: Annotated[ReportQuery, Query()]
+    _: Turn, comparisons: Provided[Comparisons], query: Annotated[ReportQuery, Query()]
 ) -> HTMLResponse:
     """Return a comparison as one HTML file with charts, figures and differences; it needs no network."""
     from server.features.comparison.report import write_report  # Plotly is not needed before

@@ -19,6 +19,7 @@ from server.features.scenarios.schemas import (
     summarize,
 )
 from server.http.dependencies import Provided
+from server.http.heavy_requests import TooManyHeavyError, Turn
 from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
@@ -42,8 +43,8 @@ async def keep_scenario(settings: Provided[Settings], document: ScenarioDocument
     return summarize(await run_in_threadpool(library.keep_scenario, folder, document.text))
 
 
-@router.operation("POST /check", Need.VIEWER)
-def check_scenario(document: ScenarioDocument) -> ScenarioCheck:
+@router.operation("POST /check", Need.VIEWER, TooManyHeavyError)
+def check_scenario(_: Turn, document: ScenarioDocument) -> ScenarioCheck:
     """Check a scenario: its problems field by field, or its summary."""
     try:
         return ScenarioCheck(problems=[], summary=summarize(read_scenario(document.text)))

@@ -13,6 +13,7 @@ from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.contract.vision_settings import VisionSettings
 from server.features.vision.schemas import PickedColour, PickPlace, VisionSetup, VisionText
 from server.http.dependencies import Provided
+from server.http.heavy_requests import TooManyHeavyError, Turn
 from server.http.operations import Operations
 from server.http.sign_in.policy import Need
 from server.stream.bridge import Bridge, RuntimeSilentError
@@ -45,8 +46,10 @@ async def download_vision(bridge: Provided[Bridge]) -> PlainTextResponse:
     return PlainTextResponse(tomli_w.dumps({"vision": answer["settings"]}), headers=headers)
 
 
-@router.operation("POST /read", Need.VIEWER, {422: "There are no settings in it that can be used"})
-def read_vision(document: VisionText) -> VisionSettings:
+@router.operation(
+    "POST /read", Need.VIEWER, TooManyHeavyError, {422: "There are no settings in it that can be used"}
+)
+def read_vision(_: Turn, document: VisionText) -> VisionSettings:
     """Read the vision settings in a robot.toml.
 
     Changes nothing.

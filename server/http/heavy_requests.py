@@ -1,0 +1,58 @@
+"""Admission of requests that may cost seconds of processor time: one at a time for each device."""
+
+import asyncio
+from collections import Counter, defaultdict
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Annotated
+
+from fastapi import Depends
+
+from server.http.dependencies import Provided
+from server.http.sign_in.identity import Caller
+from server.platform.errors import ApiError
+
+WAITING_MAX = 3
+"""A page may ask again before its last request was answered, as when somebody types."""
+
+
+class TooManyHeavyError(ApiError):
+    """This device has several such requests under way already"""
+
+    status = 429
+
+
+class HeavyRequests:
+    """The turns of all devices."""
+
+    def __init__(self) -> None:
+        self._turns: defaultdict[int, asyncio.Lock] = defaultdict(asyncio.Lock)
+        self._asked: Counter[int] = Counter()
+
+    @asynccontextmanager
+    async def turn(self, device: int) -> AsyncIterator[None]:
+        """The device's turn, once its earlier requests are done.
+
+        Raises TooManyHeavyError where too many of them wait already.
+        """
+        if self._asked[device] > WAITING_MAX:
+            raise TooManyHeavyError(
+                "Several long requests of this device are under way already. Wait for their answers."
+            )
+        self._asked[device] += 1
+        try:
+            async with self._turns[device]:
+                yield
+        finally:
+            self._asked[device] -= 1
+            if not self._asked[device]:
+                del self._asked[device], self._turns[device]
+
+
+async def _take_turn(caller: Caller, heavy: Provided[HeavyRequests]) -> AsyncIterator[None]:
+    async with heavy.turn(caller.device):
+        yield
+
+
+Turn = Annotated[None, Depends(_take_turn)]
+"""A parameter of a route that may cost seconds: it waits for the turn of its caller's device."""
