@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+import socket
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,6 +16,13 @@ from tests.stack import ROOT, Stack
 NOSY = """
 export const topics = ['depth', 'nothing'];
 export default async function panel(root) {
+  // To the port of the test's own listeners, as STUN over UDP and TURN over TCP.
+  const call = async (Peer) => {
+    const turn = { urls: 'turn:127.0.0.1:PORT?transport=tcp', username: 'a', credential: 'b' };
+    const peer = new Peer({ iceServers: [{ urls: 'stun:127.0.0.1:PORT' }, turn] });
+    peer.createDataChannel('data');
+    await peer.setLocalDescription(await peer.createOffer());
+  };
   const tries = {
     state: () => fetch('/api/robot').then((answer) => answer.text()),
     arm: () => fetch('/api/robot/commands/arm', { method: 'POST', headers: { 'X-Mucat': 'page' } }),
@@ -35,6 +43,13 @@ export default async function panel(root) {
     cookie: () => document.cookie,
     away: () => { top.location.href = 'about:blank'; },
     script: () => (0, eval)('1'),
+    peer: () => call(RTCPeerConnection),
+    webkit: () => call(webkitRTCPeerConnection),
+    frame: () => {
+      const frame = document.createElement('iframe');
+      document.body.append(frame);
+      return call(frame.contentWindow.RTCPeerConnection);
+    },
   };
   const got = [];
   for (const [name, go] of Object.entries(tries)) {
@@ -166,12 +181,23 @@ def test_a_layout_of_another_version_is_refused(fresh: Page, tmp_path: Path) -> 
     expect(page.get_by_role("region", name="sonar")).to_contain_text("which this version does not have")
 
 
+def listen_on_both() -> tuple[socket.socket, socket.socket]:
+    """A TCP and a UDP socket of the loopback with the same port."""
+    tcp = socket.create_server(("127.0.0.1", 0))
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    udp.bind(tcp.getsockname())
+    for one in (tcp, udp):
+        one.setblocking(False)
+    return tcp, udp
+
+
 def test_an_own_panel_gets_samples_and_has_no_other_access(fresh: Page, stack: Stack) -> None:
     page = fresh
     folder = stack.data / "panels"
     folder.mkdir()
     shutil.copy(ROOT / "docs/use/climb-rate.js", folder)
-    (folder / "nosy.js").write_text(NOSY)
+    listeners = listen_on_both()
+    (folder / "nosy.js").write_text(NOSY.replace("PORT", str(listeners[0].getsockname()[1])))
     (folder / "broken.js").write_text("export default 1;")
     answered: list[str] = []
     page.on("response", lambda one: answered.append(one.url) if one.frame.parent_frame else None)
@@ -187,6 +213,9 @@ def test_an_own_panel_gets_samples_and_has_no_other_access(fresh: Page, stack: S
     nosy = page.frame_locator("iframe[title='Nosy']")
     expect(nosy.locator("output")).to_have_text(re.compile(r"\d"))
     expect(nosy.locator("#got")).to_have_text("nothing")
+    for listener, take in zip(listeners, (socket.socket.accept, lambda one: one.recv(1)), strict=True):
+        with listener, pytest.raises(BlockingIOError):
+            take(listener)
     assert {one for one in answered if not one.startswith("blob:")} == {f"{stack.url}/api/panels/frame"}
 
     # Keys go to the page, also after a click into a panel.

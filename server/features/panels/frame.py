@@ -1,4 +1,4 @@
-"""The frame that runs your own panels: a page with an origin of its own, without network or commands.
+"""The frame that runs your own panels: a page with an origin of its own, without requests or commands.
 
 Its policy is set twice: by its header and by the `sandbox` of the page's iframe. So it also holds if somebody
 opens the address directly.

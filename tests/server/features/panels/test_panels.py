@@ -2,12 +2,14 @@
 
 import asyncio
 import re
+import subprocess
 from base64 import b64encode
 from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
+from server.features.panels.frame import FRAME
 from server.features.panels.scripts import SCRIPT_BYTES_MAX, UnknownPanelError, list_panels, read_panel
 from server.platform.settings import Settings
 from tests.server.serving import serve
@@ -45,6 +47,21 @@ def test_no_other_file_is_read(tmp_path: Path, name: str) -> None:
     put(tmp_path, "secret.js")
     with pytest.raises(UnknownPanelError):
         read_panel(folder, name)
+
+
+def test_webrtc_is_gone_before_a_panel_opens() -> None:
+    """The frame's script in Node, with WebRTC as a browser has it; `ready` asks for the panel's script."""
+    (script,) = re.findall(r"<script>(.*)</script>", FRAME, re.DOTALL)
+    browser = """
+        for (const name of ['RTCPeerConnection', 'webkitRTCPeerConnection', 'RTCDataChannel', 'XRTC'])
+          Object.defineProperty(globalThis, name, { value: class {}, configurable: true, writable: true });
+        const left = () => ['RTCPeerConnection', 'webkitRTCPeerConnection', 'RTCDataChannel', 'XRTC']
+          .filter((name) => name in globalThis).join();
+        globalThis.parent = { postMessage: ({ op }) => console.log(op, left()) };
+        globalThis.addEventListener = () => {};
+    """
+    done = subprocess.run(["node", "-e", f"{browser}{script}"], capture_output=True, text=True, check=True)
+    assert done.stdout == "ready XRTC\n"
 
 
 def test_panels_are_listed_and_served(settings: Settings) -> None:
