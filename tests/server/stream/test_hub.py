@@ -313,9 +313,9 @@ def test_pages_of_a_device_are_limited_and_some_are_for_operators_alone() -> Non
         pages = [Page(hub, one) for one in viewers[:5] for _ in range(8)]
         await until(lambda: hub.clients == 40, "the viewers' pages")
         with pytest.raises(EvictedError, match="This device has 8 pages open"):
-            await Page(hub, viewers[0]).task
+            await asyncio.wait_for(Page(hub, viewers[0]).task, 10)
         with pytest.raises(EvictedError, match="40 pages are open already"):
-            await Page(hub, viewers[5]).task
+            await asyncio.wait_for(Page(hub, viewers[5]).task, 10)
         operators = [Identity(number, "bridge", "operator", "browser") for number in (7, 8)]
         pages += [Page(hub, one) for one in operators for _ in range(5)]
         await until(lambda: hub.clients == 50, "the operators' pages")
