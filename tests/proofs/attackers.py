@@ -29,6 +29,8 @@ from tests.server.features.exports.test_imports import change, row_bomb, tell
 from tests.server.features.exports.test_malformed_archives import MALFORMED
 
 HOLD_SECONDS = 3.0
+FROM = "127.0.0.2"
+"""The attackers' address: the operator has another, as on a network."""
 CONNECTIONS = 260
 SOCKETS = 50
 PATIENCE = 60.0
@@ -79,7 +81,9 @@ class Field:
 
     def ask(self, method: str, path: str, headers: dict[str, str] | None = None, **options: object) -> int:
         """The status of an answer, which is no internal error."""
-        with httpx.Client(base_url=self.url, timeout=PATIENCE) as client:
+        with httpx.Client(
+            base_url=self.url, timeout=PATIENCE, transport=httpx.HTTPTransport(local_address=FROM)
+        ) as client:
             answer = client.request(method, path, headers=headers, **options)  # type: ignore[arg-type]
         assert answer.status_code != 500, (method, path, answer.text[:200])
         assert "root:x:" not in answer.text
@@ -92,9 +96,13 @@ class Field:
         status = self.ask(method, path, headers, **options)
         assert 400 <= status < 500 or status == 503, (method, path, status)
 
+    def reach(self, timeout: float) -> socket.socket:
+        """A connection from the attackers' address. Raises OSError."""
+        return socket.create_connection(self.address, timeout, source_address=(FROM, 0))
+
     def send(self, data: bytes) -> bytes:
         """The beginning of the answer to these bytes."""
-        with socket.create_connection(self.address, PATIENCE) as line:
+        with self.reach(PATIENCE) as line:
             line.sendall(data)
             with suppress(ConnectionError):
                 return line.recv(100)
@@ -110,6 +118,7 @@ class Field:
             max_size=None,
             ping_interval=None,
             close_timeout=0.5,
+            sock=self.reach(PATIENCE),
         )
 
 
@@ -201,7 +210,7 @@ def slow(field: Field) -> None:
     with ExitStack() as opened:
         for number in range(CONNECTIONS):
             with suppress(OSError):
-                line = opened.enter_context(socket.create_connection(field.address, 5))
+                line = opened.enter_context(field.reach(5))
                 line.sendall(beginnings[number % len(beginnings)])
         time.sleep(HOLD_SECONDS)
 
