@@ -206,11 +206,14 @@ def test_folders_and_files_of_older_versions_become_private(settings: Settings) 
     folder = settings.data
     folder.path.chmod(0o755)
     outside = folder.path.parent / "outside"
-    outside.mkdir(0o755)
+    outside.mkdir()
+    outside.chmod(0o755)
     (folder.path / "link").symlink_to(outside)
     for path in (folder.database, folder.logs / "runtime.log", folder.exports / "old" / "a.csv"):
-        path.parent.mkdir(0o755, parents=True, exist_ok=True)
-        path.touch(0o644)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.parent.chmod(0o755)
+        path.touch()
+        path.chmod(0o644)
     make_folders(folder)
     assert _modes(folder.path) <= {"0700", "0600"}
     assert outside.stat().st_mode & 0o777 == 0o755
