@@ -18,12 +18,14 @@ from server.features.live import routes as live
 from server.features.operate import routes as robot
 from server.features.panels import routes as panels
 from server.features.parameters import routes as parameters
+from server.features.people import audit
 from server.features.people import routes as access
 from server.features.scenarios import routes as scenarios
 from server.features.sessions import routes as sessions
 from server.features.simulator import routes as simulator
 from server.features.tuning import routes as tuning
 from server.features.vision import routes as vision
+from server.http.audit import AuditMiddleware
 from server.http.error_handlers import add_error_handlers
 from server.http.help_pages import HelpPages, make_help_router
 from server.http.operations import EVERYWHERE
@@ -36,7 +38,7 @@ from server.platform.settings import Settings
 from server.processes.supervisor import ProcessCommand
 
 ROUTES = (
-    *(access, backup, comm_tests, compare, control, exports, layouts, live, panels),
+    *(access, audit, backup, comm_tests, compare, control, exports, layouts, live, panels),
     *(parameters, robot, scenarios, sessions, simulator, tuning, vision),
 )
 
@@ -78,6 +80,7 @@ def create_app(
     # The middleware added last runs first.
     app.add_middleware(SignInMiddleware)
     app.add_middleware(SecurityMiddleware, allowed_hosts=settings.allowed_hosts, port=settings.port)
+    app.add_middleware(AuditMiddleware)
     add_error_handlers(app)
     for module in ROUTES:
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

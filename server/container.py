@@ -40,6 +40,7 @@ from server.features.tuning.runs import TuningStore
 from server.health.faults import FAULTS
 from server.health.monitor import HealthMonitor
 from server.health.watchdog import DOWN, Watchdog
+from server.http.audit import AuditLog
 from server.http.heavy_requests import HeavyRequests
 from server.http.page import Page
 from server.http.sign_in.access import Access
@@ -72,6 +73,7 @@ class Container:
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
+        self.audit = AuditLog(settings.data.audit, self.clock, self._note_act)
         self.access = Access(settings, self.store, self.clock, self.notices.notify, self._dismiss, token)
         self.changes = Changes(self.store, self.bridge)
         self.profiles = Profiles(self.store)
@@ -212,6 +214,7 @@ class Container:
             await self._end_session()
             await self.bridge.close()
             await self.access.devices.close()
+            await asyncio.to_thread(self.audit.close)
             await asyncio.to_thread(self.store.close)
 
     async def _catch_up(self, interrupted: InterruptedSession | None) -> None:
@@ -254,6 +257,12 @@ class Container:
 
     async def _armed_row(self, name: str, state: str) -> SessionRow:
         return await asyncio.to_thread(new_row, self.settings, self.clock, name, "", state, origin="arming")
+
+    def _note_act(self, operation: str, text: str) -> None:
+        if operation == "commandArm" and self.settings.sessions.record_at_arming:
+            self.arming.note_arming(text)
+        else:
+            self.notices.notify("control", "info", text)
 
     def _notify_session(self) -> None:
         session = self.recorder.session

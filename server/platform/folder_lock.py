@@ -1,14 +1,18 @@
 """The lock of a data folder: one process at a time writes in it."""
 
 import fcntl
+import logging
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import IO
 
 from robot_runtime.durable_files import make_folder
+from server.platform.audit_file import append_shell_command
 from server.platform.pidfile import PidFile
 from server.platform.settings import DataFolder, SetupError, make_folders
+
+log = logging.getLogger(__name__)
 
 LOCK_TRIES = 20
 LOCK_SECONDS = 0.02
@@ -34,7 +38,16 @@ def claim(folder: DataFolder) -> Iterator[None]:
                 "--data."
             )
         make_folders(folder)
+        record_command(folder)
         yield
+
+
+def record_command(folder: DataFolder) -> None:
+    """Write the shell's present command into the audit log; one that cannot be written goes on."""
+    try:
+        append_shell_command(folder.audit)
+    except OSError as problem:
+        log.warning("the audit log does not say what this command does: %s", problem)
 
 
 def runner_of(folder: DataFolder) -> int | None:

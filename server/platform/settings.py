@@ -59,6 +59,8 @@ class DataFolder:
         """The address of the server that uses this folder, or used it last."""
         self.token = path / "server.token"
         """The token of this computer's shell for the running server; readable by its user alone."""
+        self.audit = path / "audit"
+        """The audit log: who did what when (platform/audit_file.py)."""
         self.tls = path / "tls"
         """The robot's certificate and its key."""
         self.zenoh = path / "zenoh"

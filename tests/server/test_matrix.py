@@ -47,6 +47,8 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("PATCH", "/api/access/devices/{device}"): "operator",
     ("DELETE", "/api/access/devices/{device}"): "operator",
     ("POST", "/api/access/tokens"): "operator",
+    ("GET", "/api/audit"): "operator",
+    ("GET", "/api/audit/csv"): "operator",
     ("GET", "/api/control"): "viewer",
     ("POST", "/api/control/take"): "operator",
     ("POST", "/api/control/release"): "operator",

@@ -182,6 +182,48 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List who did what when, newest first, at most 200 entries
+         * @description List who did what when, newest first, at most 200 entries.
+         *
+         *     `who` is looked for in name, role and address, `what` in action, its details and its outcome.
+         */
+        get: operations["listAudit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/audit/csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download the entries that fit as CSV, newest first
+         * @description Download the entries that fit as CSV, newest first.
+         */
+        get: operations["exportAudit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/backup": {
         parameters: {
             query?: never;
@@ -1898,6 +1940,49 @@ export interface components {
              * @enum {string}
              */
             mode: "automatic" | "manual";
+        };
+        /**
+         * AuditEntry
+         * @description One act. `time` in s since 1970; `who`, `role` and `address` are empty where nobody was signed in or
+         *     no network was used. `device` is the number of the browser or program, 0 the shell, None nobody.
+         *
+         *     `count` is more than 1 where so many of the same kind follow one another too fast to be listed.
+         */
+        AuditEntry: {
+            /** About */
+            about: string;
+            /** Action */
+            action: string;
+            /** Address */
+            address: string;
+            /**
+             * Count
+             * @default 1
+             */
+            count: number;
+            /** Device */
+            device: number | null;
+            /**
+             * Outcome
+             * @enum {string}
+             */
+            outcome: "done" | "refused" | "failed" | "begun";
+            /** Role */
+            role: string;
+            /** Time */
+            time: number;
+            /** Who */
+            who: string;
+        };
+        /**
+         * AuditList
+         * @description Entries, newest first; `more` is true where there are older ones that fit.
+         */
+        AuditList: {
+            /** Entries */
+            entries: components["schemas"]["AuditEntry"][];
+            /** More */
+            more: boolean;
         };
         /**
          * Bookmark
@@ -5157,6 +5242,96 @@ export interface operations {
                 content?: never;
             };
             /** @description The database or the robot's runtime fails */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listAudit: {
+        parameters: {
+            query?: {
+                who?: string;
+                what?: string;
+                /** @description s since 1970 */
+                since?: number | null;
+                /** @description s since 1970 */
+                until?: number | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditList"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    exportAudit: {
+        parameters: {
+            query?: {
+                who?: string;
+                what?: string;
+                /** @description s since 1970 */
+                since?: number | null;
+                /** @description s since 1970 */
+                until?: number | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": unknown;
+                };
+            };
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;

@@ -18,7 +18,7 @@ from server.platform.database_copies import (
     thin_out,
     write_checksum,
 )
-from server.platform.folder_lock import claim
+from server.platform.folder_lock import claim, record_command
 from server.platform.schema import explain, read_revision, refuse_unknown
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
@@ -38,6 +38,7 @@ def backup(settings: Settings, file: Path | None) -> None:
     FILE is a new one in the folder `backups` of the data folder by default.
     """
     os.nice(NICENESS)
+    record_command(settings.data)
     echo(back_up(settings.data, file))
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from server.platform.command_line import FILE, RowCommand, with_settings
-from server.platform.folder_lock import claim
+from server.platform.folder_lock import claim, record_command
 from server.platform.running_server import send_file, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
@@ -45,6 +45,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
             {name: value for name, value in choice.items() if value not in (None, ())}
         )
         kind = check(options)
+        record_command(settings.data)
         with open_reader(settings.data) as store:
             source = ExportSelection(store, find_row(store, session), options, _Progress().tell)
             path = output or Path(file_name(source, kind.ending))

@@ -11,10 +11,8 @@ from server.features.exports.description import describe_session, dump_readable
 from server.features.exports.selection import ExportSelection
 from server.features.exports.zip_stream import ZipWriter
 from server.features.sessions.chunks import row_layout
+from server.platform.csv_cells import escape_formula
 from server.platform.store import Reader
-
-FORMULA = ("=", "+", "-", "@", "\t", "\n", "＝", "＋", "－", "＠")
-"""Beginnings of what spreadsheets calculate."""
 
 
 def write_tables(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
@@ -41,13 +39,6 @@ def csv_text(lines: Iterable[Iterable[str]]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(lines)
     return text.getvalue()
-
-
-def escape_formula(text: str) -> str:
-    """A text behind an apostrophe where a spreadsheet would take it for a formula."""
-    # Python's writer does not quote a carriage return, after which a spreadsheet begins a new cell.
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    return f"'{text}" if text.startswith(FORMULA) else text
 
 
 def _lines(source: ExportSelection, name: str) -> Iterator[str]:

@@ -18,6 +18,7 @@ from robot_runtime.errors import RefusedError
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.features.lease.driving import DriveCommand
+from server.http.audit import AuditLog, address_of
 from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.page import Page
@@ -25,6 +26,7 @@ from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import MESSAGES, Need, may_say
+from server.platform.audit_file import Outcome
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import Client, EvictedError, Hub
@@ -49,13 +51,20 @@ class _LiveConnection:
     """Reads one page's messages and acts on them."""
 
     def __init__(
-        self, socket: WebSocket, owner: ControlClient, hub: Hub, arbiter: ControlArbiter, bridge: Bridge
+        self,
+        socket: WebSocket,
+        owner: ControlClient,
+        hub: Hub,
+        arbiter: ControlArbiter,
+        bridge: Bridge,
+        audit: AuditLog,
     ) -> None:
         self._socket = socket
         self._owner = owner
         self._hub = hub
         self._arbiter = arbiter
         self._bridge = bridge
+        self._audit = audit
         self._stopping: asyncio.Task[None] | None = None
         self._stop_again = False
 
@@ -84,6 +93,7 @@ class _LiveConnection:
         reason = may_say(self._owner.identity, op)
         if reason is not None:
             client.answer({"op": "error", "text": reason})
+            self._record(op, "refused")
             return
         match op:
             case "ping":
@@ -112,11 +122,18 @@ class _LiveConnection:
     async def _send_stop(self, client: Client) -> None:
         try:
             await self._bridge.command("stop", {})
+            self._record("stop", "done", "stopRobot")
         except (RefusedError, RuntimeSilentError) as problem:
+            self._record("stop", "failed")
             client.answer({"op": "error", "text": f"STOP has not been confirmed: {problem}"})
         if self._stop_again:
             self._stop_again = False
             await self._send_stop(client)
+
+    def _record(self, op: str, outcome: Outcome, operation: str = "") -> None:
+        address = address_of(self._socket.scope)
+        action = "STOP" if op == "stop" else f"Message {op}"
+        self._audit.record(self._owner.identity, address, action, "/api/live", outcome, operation)
 
 
 Greeting = Callable[[ControlClient], dict[str, Any]]
@@ -145,6 +162,7 @@ async def live(
     hub: Provided[Hub],
     arbiter: Provided[ControlArbiter],
     bridge: Provided[Bridge],
+    audit: Provided[AuditLog],
     greeting: Annotated[Greeting, Depends(greet)],
 ) -> None:
     """Serve one page until it leaves."""
@@ -159,7 +177,7 @@ async def live(
         if access.refresh(caller) != caller:
             raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
-            listen = _LiveConnection(socket, owner, hub, arbiter, bridge).listen
+            listen = _LiveConnection(socket, owner, hub, arbiter, bridge, audit).listen
             await hub.serve(send, greeting(owner), listen, caller)
     except WebSocketDisconnect:
         return

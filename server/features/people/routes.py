@@ -56,6 +56,7 @@ async def pair_browser(
     """
     address = request.client.host if request.client is not None else ""
     identity, secret = await access.pair(body.code, body.name, request.scope[IDENTITY], address)
+    request.scope[IDENTITY] = identity
     if secret is not None:
         response.set_cookie(
             access.cookie,

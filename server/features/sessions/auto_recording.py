@@ -18,6 +18,9 @@ log = logging.getLogger(__name__)
 REST_SECONDS = 5.0
 """Time that it records after the robot is disarmed, until the fins rest and the robot begins to rise."""
 
+ARMING_SECONDS = 2.0
+"""Longest wait of the notice who armed for the session: it is written then without one."""
+
 
 class AutoRecorder:
     """Starts a session when the robot is armed and none records, and stops it after the robot is disarmed.
@@ -40,6 +43,14 @@ class AutoRecorder:
         self._armed = False
         self._disarmed_at: float | None = None
         self._task: asyncio.Task[None] | None = None
+        self._armed_by = ""
+        self._armed_by_at = 0.0
+
+    def note_arming(self, text: str) -> None:
+        """Write who armed the robot as a notice, once the session has begun that this starts."""
+        self._armed_by, self._armed_by_at = text, self._clock.now()
+        if self._recorder.session is not None:
+            self._write_arming()
 
     def see(self, block: Block) -> None:
         """Process a block of the topic `state`."""
@@ -54,10 +65,13 @@ class AutoRecorder:
                 self._act(self._begin(json.dumps(state)))
         elif self._armed or self._disarmed_at is None:
             self._disarmed_at = self._clock.now()
+            self._write_arming()
         self._armed = armed
 
     def tick(self) -> None:
         """Stop the session when it is due; called about every second."""
+        if self._clock.now() - self._armed_by_at >= ARMING_SECONDS:
+            self._write_arming()
         session = self._recorder.session
         if session is None or session.origin != "arming" or self._disarmed_at is None:
             return
@@ -80,10 +94,16 @@ class AutoRecorder:
             await self._recorder.start(
                 await self._make_row(f"Armed {datetime.now(UTC):%Y-%m-%d %H:%M} UTC", state)
             )
+            self._write_arming()
         except RecordingRefusedError as problem:
             log.info("arming starts no session: %s", problem)
         except (StoreError, OSError) as problem:
             self._notices.notify("recording", "caution", f"Armed, but not recorded: {problem}.")
+
+    def _write_arming(self) -> None:
+        if self._armed_by:
+            self._notices.notify("control", "info", self._armed_by)
+        self._armed_by = ""
 
     async def _end(self, session: int) -> None:
         try:

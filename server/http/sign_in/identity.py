@@ -6,6 +6,8 @@ from typing import Annotated, Literal
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from server.platform.audit_file import SHELL_NAME
+
 Role = Literal["viewer", "operator"]
 Kind = Literal["browser", "program", "shell"]
 
@@ -33,5 +35,5 @@ async def identify_caller(connection: HTTPConnection) -> Identity:
 Caller = Annotated[Identity, Depends(identify_caller)]
 """A route's parameter that is the caller's identity."""
 
-SHELL = Identity(device=0, name="the shell of this computer", role="operator", kind="shell")
+SHELL = Identity(device=0, name=SHELL_NAME, role="operator", kind="shell")
 """The identity of a shell that can read this computer's data folder."""

@@ -1,0 +1,98 @@
+"""Operations on the audit log: who did what when. Nobody can change it."""
+
+import asyncio
+import csv
+import io
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from itertools import islice
+from typing import Annotated
+
+from fastapi import Depends, Query, Response
+from pydantic import BaseModel, ConfigDict
+
+from server.http.audit import AuditLog
+from server.http.dependencies import Provided
+from server.http.operations import Operations
+from server.http.sign_in.policy import Need
+from server.platform.audit_file import AuditEntry, read_entries
+from server.platform.csv_cells import escape_formula
+
+LISTED_MOST = 200
+WORDS_MAX = 100
+COLUMNS = ("utc", "who", "device", "role", "address", "action", "about", "outcome", "count")
+
+router = Operations(prefix="/api/audit", tags=["access"])
+Words = Annotated[str, Query(max_length=WORDS_MAX)]
+Moment = Annotated[float | None, Query(allow_inf_nan=False, description="s since 1970")]
+
+
+class AuditFilter(BaseModel):
+    """The entries that are wanted."""
+
+    model_config = ConfigDict(frozen=True)
+    who: str
+    what: str
+    since: float | None
+    until: float | None
+
+    def fits(self, entry: AuditEntry) -> bool:
+        """True where the entry is wanted; upper and lower case are the same."""
+        if self.since is not None and entry.time < self.since:
+            return False
+        if self.until is not None and entry.time > self.until:
+            return False
+        named = f"{entry.who} {entry.role} {entry.address}"
+        did = f"{entry.action} {entry.about} {entry.outcome}"
+        return self.who.casefold() in named.casefold() and self.what.casefold() in did.casefold()
+
+
+class AuditList(BaseModel):
+    """Entries, newest first; `more` is true where there are older ones that fit."""
+
+    entries: list[AuditEntry]
+    more: bool
+
+
+async def _choose(
+    who: Words = "", what: Words = "", since: Moment = None, until: Moment = None
+) -> AuditFilter:
+    return AuditFilter(who=who, what=what, since=since, until=until)
+
+
+Chosen = Annotated[AuditFilter, Depends(_choose)]
+
+
+@router.operation("GET", Need.OPERATOR)
+async def list_audit(audit: Provided[AuditLog], chosen: Chosen) -> AuditList:
+    """List who did what when, newest first, at most 200 entries.
+
+    `who` is looked for in name, role and address, `what` in action, its details and its outcome.
+    """
+    found = await asyncio.to_thread(lambda: list(islice(_find(audit, chosen), LISTED_MOST + 1)))
+    return AuditList(entries=found[:LISTED_MOST], more=len(found) > LISTED_MOST)
+
+
+@router.operation("GET /csv", Need.OPERATOR, media_type="text/csv")
+async def export_audit(audit: Provided[AuditLog], chosen: Chosen) -> Response:
+    """Download the entries that fit as CSV, newest first."""
+    text = await asyncio.to_thread(lambda: _write_csv(_find(audit, chosen)))
+    headers = {"Content-Disposition": 'attachment; filename="mucat-audit.csv"'}
+    return Response(text, media_type="text/csv", headers=headers)
+
+
+def _find(audit: AuditLog, chosen: AuditFilter) -> Iterator[AuditEntry]:
+    return (entry for entry in read_entries(audit.folder) if chosen.fits(entry))
+
+
+def _write_csv(entries: Iterator[AuditEntry]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for one in entries:
+        moment = datetime.fromtimestamp(one.time, UTC).isoformat(timespec="milliseconds")
+        device = "" if one.device is None else one.device
+        texts = (one.who, one.role, one.address, one.action, one.about)
+        who, role, address, action, about = map(escape_formula, texts)
+        writer.writerow((moment, who, device, role, address, action, about, one.outcome, one.count))
+    return text.getvalue()

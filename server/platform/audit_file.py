@@ -1,0 +1,113 @@
+"""The audit log's files: who did what when, one JSON document a line, only ever appended to.
+
+It is no part of the database, so that restoring a backup takes nothing from it, and so that a command in a
+shell writes it beside a running server.
+"""
+
+import json
+import os
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Literal, get_args
+
+import click
+
+from robot_runtime.durable_files import make_folder, sync
+
+Outcome = Literal["done", "refused", "failed", "begun"]
+"""How an act ended; "begun" is a command of the shell, which says itself how it ends."""
+FILE_BYTES = 512 * 1024
+"""Size from which on a new file is begun."""
+FILES_MOST = 8
+"""The greatest number of files; the oldest is removed when one more is begun."""
+TEXT_MAX = 400
+WRITTEN = "mucat.audit"
+"""Entry of a command's context that says that it is in the log already."""
+SHELL_NAME = "the shell of this computer"
+
+
+@dataclass(frozen=True, slots=True)
+class AuditEntry:
+    """One act. `time` in s since 1970; `who`, `role` and `address` are empty where nobody was signed in or
+    no network was used. `device` is the number of the browser or program, 0 the shell, None nobody.
+
+    `count` is more than 1 where so many of the same kind follow one another too fast to be listed.
+    """
+
+    time: float
+    who: str
+    device: int | None
+    role: str
+    address: str
+    action: str
+    about: str
+    outcome: Outcome
+    count: int = 1
+
+
+def append_entries(folder: Path, entries: Iterable[AuditEntry]) -> None:
+    """Append entries durably, each whole or not at all. Raises OSError."""
+    lines = "".join(json.dumps(asdict(one), ensure_ascii=False) + "\n" for one in entries)
+    make_folder(folder)
+    path = _current(folder)
+    handle = os.open(path, os.O_RDWR | os.O_APPEND | os.O_CREAT, 0o600)
+    try:
+        size = os.fstat(handle).st_size
+        # A power cut or a full disk may have cut the last line off.
+        torn = size > 0 and os.pread(handle, 1, size - 1) != b"\n"
+        data = ("\n" * torn + lines).encode(errors="replace")
+        if os.write(handle, data) != len(data):
+            raise OSError("the disk is full")
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+    if size == 0:
+        sync(folder)
+
+
+def append_shell_command(folder: Path) -> None:
+    """Append the command of the shell that runs now, if one does. Raises OSError."""
+    context = click.get_current_context(silent=True)
+    if context is None or context.meta.get(WRITTEN) or not folder.parent.is_dir():
+        return
+    context.meta[WRITTEN] = True
+    named = {name: str(value) for name, value in context.params.items() if value not in (None, (), False)}
+    about = json.dumps(named, ensure_ascii=False)
+    append_entries(folder, [_shell_entry(context.command_path, clean(about))])
+
+
+def read_entries(folder: Path) -> Iterator[AuditEntry]:
+    """All entries, newest first. A line that was cut off is left out. Raises OSError."""
+    for path in reversed(_files(folder)):
+        for line in reversed(path.read_text(encoding="utf-8", errors="replace").splitlines()):
+            try:
+                entry = AuditEntry(**json.loads(line))
+            except (ValueError, TypeError):
+                continue
+            if entry.outcome in get_args(Outcome):
+                yield entry
+
+
+def clean(text: str) -> str:
+    """A text without what moves a terminal's cursor or turns the direction of writing, and not too long."""
+    shown = "".join(letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in text)
+    return shown if len(shown) <= TEXT_MAX else shown[:TEXT_MAX] + "…"
+
+
+def _shell_entry(action: str, about: str) -> AuditEntry:
+    return AuditEntry(time.time(), SHELL_NAME, 0, "operator", "", action, about, "begun")
+
+
+def _files(folder: Path) -> list[Path]:
+    return sorted(folder.glob("[0-9]*.jsonl")) if folder.is_dir() else []
+
+
+def _current(folder: Path) -> Path:
+    files = _files(folder)
+    if files and files[-1].stat().st_size < FILE_BYTES:
+        return files[-1]
+    for old in files[: 1 - FILES_MOST] if len(files) >= FILES_MOST else ():
+        old.unlink(missing_ok=True)
+    return folder / f"{int(files[-1].stem) + 1 if files else 1:08}.jsonl"

@@ -1,0 +1,193 @@
+"""The audit log: what the server and its shell write into it, and what nobody can do to it."""
+
+import asyncio
+import json
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from server import cli
+from server.app import create_app
+from server.http import audit
+from server.http.audit import DOWNLOADS, LIMIT, NOTICED, UNCHANGING, WINDOW, AuditLog
+from server.http.sign_in.identity import SHELL, Identity
+from server.http.sign_in.policy import list_needs
+from server.platform import audit_file
+from server.platform.audit_file import AuditEntry, append_entries, read_entries
+from server.platform.settings import Settings
+from tests.server.test_matrix import FAR, House, Somebody, open_house
+
+ANNA = Identity(7, "Anna", "operator", "browser")
+
+
+def entry(number: int) -> AuditEntry:
+    return AuditEntry(float(number), "Anna", 7, "operator", "192.0.2.1", "Arm", f"number {number}", "done")
+
+
+def make_log(folder: Path, clock: SimulatedClock) -> AuditLog:
+    return AuditLog(folder, clock, lambda _operation, _text: None)
+
+
+def test_tables_name_operations_that_exist(settings: Settings) -> None:
+    known = list_needs(create_app(settings).routes).keys()
+    assert known >= UNCHANGING | DOWNLOADS | NOTICED.keys()
+
+
+def test_sign_in_refusals_roles_arm_and_stop_are_written_with_who_and_where(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with open_house(settings) as house:
+            await act(house)
+        acts = [(one.who, one.role, one.address, one.outcome) for one in reversed(written(settings))]
+        what = [one.about for one in reversed(written(settings))]
+        assert acts == [
+            ("the shell of this computer", "operator", FAR, "done"),
+            ("Eve", "viewer", FAR, "done"),
+            ("Eve", "viewer", FAR, "refused"),
+            ("operator", "operator", FAR, "done"),
+            ("operator", "operator", FAR, "refused"),
+            ("operator", "operator", FAR, "done"),
+            ("operator", "operator", FAR, "done"),
+            ("", "", FAR, "refused"),
+        ]
+        assert what[1] == 'POST /api/access/pair {"name": "Eve"}'
+        assert '{"role": "operator"}' in what[3]
+        assert what[-1] == "GET /api/robot"
+
+    asyncio.run(scenario())
+
+
+async def act(house: House) -> None:
+    """One act of each kind, from an address elsewhere; those before it are forgotten."""
+    right, operator, control = (
+        house.places("right", "right"),
+        house.people["operator"],
+        house.people["control"],
+    )
+    await house.ask(control, "POST", "/api/control/take", right, query="over=true")
+    house.container.audit.close()
+    house.container.audit = AuditLog(
+        house.container.settings.data.audit / "own", house.container.clock, house.container._note_act
+    )
+    house.app.state.services[AuditLog] = house.container.audit
+
+    async def ask(who: Somebody, method: str, path: str, body: object = None) -> tuple[int, bytes]:
+        status, headers, told = await house.ask(who, method, path, right, body, address=FAR)
+        if path.endswith("/pair"):
+            who.headers |= {"cookie": headers["set-cookie"].partition(";")[0], "x-mucat": "page"}
+        return status, told
+
+    _, told = await ask(house.shell, "POST", "/api/access/codes", {"role": "viewer"})
+    eve = Somebody()
+    await ask(eve, "POST", "/api/access/pair", {"code": json.loads(told)["code"], "name": "Eve"})
+    await ask(eve, "POST", "/api/sessions", {"name": "mine"})
+    await ask(eve, "GET", "/api/robot")
+    await ask(operator, "PATCH", "/api/access/devices/1", {"role": "operator"})
+    await ask(operator, "POST", "/api/robot/commands/arm")
+    await ask(control, "POST", "/api/robot/commands/arm")
+    await ask(control, "POST", "/api/robot/stop")
+    await ask(Somebody(), "GET", "/api/robot")
+    await ask(operator, "POST", "/api/scenarios/check", {"text": "?"})
+
+
+def written(settings: Settings) -> list[AuditEntry]:
+    return list(read_entries(settings.data.audit / "own"))
+
+
+def test_arm_and_stop_are_notices_that_name_who(tmp_path: Path) -> None:
+    said: list[tuple[str, str]] = []
+    log = AuditLog(tmp_path, SimulatedClock(), lambda operation, text: said.append((operation, text)))
+    for operation, outcome in (("commandArm", "refused"), ("commandArm", "done"), ("stopRobot", "done")):
+        log.record(ANNA, "", "Arm", "", "refused" if outcome == "refused" else "done", operation)
+    log.close()
+    assert said == [("commandArm", "“Anna” armed the robot."), ("stopRobot", "“Anna” pressed STOP.")]
+
+
+def test_a_flood_of_a_stranger_is_counted_and_leaves_others_acts_in_the_log(tmp_path: Path) -> None:
+    clock = SimulatedClock()
+    log = make_log(tmp_path, clock)
+    log.record(SHELL, "", "Make a token", "", "done")
+    for _ in range(LIMIT + 1000):
+        log.record(None, FAR, "Request", "GET /api/robot", "refused")
+    clock.forward(WINDOW)
+    log.record(ANNA, "", "Arm", "", "done")
+    log.close()
+    newest, flood, *rest = read_entries(tmp_path)
+    assert (newest.who, flood.who, flood.count) == ("Anna", "", 1000)
+    assert len(rest) == LIMIT + 1
+    assert rest[-1].action == "Make a token"
+
+
+def test_entries_wait_while_the_disk_takes_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError("full")
+
+    log = make_log(tmp_path, SimulatedClock())
+    with monkeypatch.context() as full:
+        full.setattr(audit, "append_entries", refuse)
+        log.record(ANNA, "", "Arm", "", "done")
+        log._thread.submit(lambda: None).result()
+    log.record(ANNA, "", "Disarm", "", "done")
+    log.close()
+    assert [one.action for one in read_entries(tmp_path)] == ["Disarm", "Arm"]
+
+
+def test_a_line_that_was_cut_off_costs_no_other(tmp_path: Path) -> None:
+    append_entries(tmp_path, [entry(1)])
+    (file,) = tmp_path.iterdir()
+    file.write_bytes(file.read_bytes() + b'{"time": 2')
+    append_entries(tmp_path, [entry(3)])
+    assert list(read_entries(tmp_path)) == [entry(3), entry(1)]
+
+
+def test_the_oldest_file_goes_when_there_are_too_many(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(audit_file, "FILE_BYTES", 1)
+    for number in range(audit_file.FILES_MOST + 2):
+        append_entries(tmp_path, [entry(number)])
+    assert len(list(tmp_path.iterdir())) == audit_file.FILES_MOST
+    assert [one.time for one in read_entries(tmp_path)] == [9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0]
+
+
+def test_texts_of_others_turn_and_move_nothing(tmp_path: Path) -> None:
+    log = make_log(tmp_path, SimulatedClock())
+    log.record(ANNA, "", "Request", "\x1b]52;c;\u202e" + "x" * 1000, "done")
+    log.close()
+    (found,) = read_entries(tmp_path)
+    assert found.about.isprintable()
+    assert len(found.about) <= audit_file.TEXT_MAX + 1
+
+
+def test_a_command_in_the_shell_is_written(settings: Settings) -> None:
+    options = ["--data", str(settings.data.path), "--config", str(settings.config)]
+    assert cli.main(["sessions", "delete", "5", *options]) == 1
+    (found,) = read_entries(settings.data.audit)
+    assert (found.who, found.action, found.outcome) == (SHELL.name, "mucat sessions delete", "begun")
+    assert json.loads(found.about)["session"] == "5"
+
+
+def test_the_list_is_filtered_and_exported_without_formulas(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with open_house(settings) as house:
+            right, operator = house.places("right", "right"), house.people["operator"]
+            found = [entry(1), AuditEntry(2.0, "=1+1", 8, "viewer", "192.0.2.2", "STOP", "", "done")]
+            append_entries(settings.data.audit, found)
+
+            async def ask(path: str, query: str) -> bytes:
+                status, _, told = await house.ask(operator, "GET", path, right, query=query)
+                assert status == 200
+                return told
+
+            for query, times in (
+                ("who=anna&until=9", [1.0]),
+                ("what=stop&until=9", [2.0]),
+                ("since=1.5&until=9", [2.0]),
+                ("until=9", [2.0, 1.0]),
+            ):
+                listed = json.loads(await ask("/api/audit", query))
+                assert ([one["time"] for one in listed["entries"]], listed["more"]) == (times, False)
+            lines = (await ask("/api/audit/csv", "until=9")).decode().splitlines()
+            assert lines[1].startswith("1970-01-01T00:00:02.000+00:00,'=1+1,8,viewer,192.0.2.2,STOP,")
+
+    asyncio.run(scenario())
