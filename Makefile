@@ -19,13 +19,7 @@ INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-byt
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
-# Uploads to the emulated chip in real time lose step beside another robot.
-UPLOADS := $(wildcard tests/board/test_bootloader.py tests/server/features/comm_tests/test_reserved_board.py \
-	tests/server/features/comm_tests/test_thesis_example.py)
-REAL_TIME = $(filter-out $(UPLOADS),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
-# As much as makes both of the lanes in real time equally long.
-BROWSER_LATER := $(wildcard $(addprefix tests/browser/test_,swim.py themes.py tuning.py vision.py))
-BROWSER_FIRST := $(filter-out $(BROWSER_LATER),$(wildcard tests/browser/test_*.py))
+REAL_TIME = $(shell grep -rl --include='test_*.py' mark.stack tests | sort)
 # All other tests, each part by a process of its own, the longest first. A part lacks what is a part by itself.
 PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/test_memory.py documents \
 	proofs/test_guards.py server runtime) tests
@@ -34,7 +28,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-stack test-browser test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware \
+.PHONY: help run test test-real-time test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -48,21 +42,12 @@ test: ## every check and every test, in lanes; the output of a lane comes when a
 	@$(MAKE) --no-print-directory --jobs 2 host-firmware
 	@$(IN_LANES) --jobs 3 test-real-time test-checks test-rest
 
-# Robots in real time have the processors first, two robots at a time.
+# Robots in real time have the processors first, one at a time: with two of them, both are late.
 test-real-time:
 	@status=0; \
-	$(PYTHON) -m pytest -m stack --durations 20 $(UPLOADS) || status=1; \
-	$(IN_LANES) --jobs 2 test-stack test-browser || status=1; \
-	exit $$status
-
-test-stack:
-	@status=0; \
 	$(PYTHON) -m pytest -m stack --durations 20 $(REAL_TIME) || status=1; \
-	$(PYTHON) -m pytest --durations 20 $(BROWSER_LATER) || status=1; \
+	$(PYTHON) -m pytest --durations 20 tests/browser || status=1; \
 	exit $$status
-
-test-browser:
-	@$(PYTHON) -m pytest --durations 20 $(BROWSER_FIRST)
 
 test-checks:
 	@status=0; \
