@@ -112,7 +112,7 @@ def play(
 
 async def next_text(socket: ClientConnection, op: str) -> dict[str, Any]:
     """The next text message with this `op`; others are passed over."""
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(SECONDS):
         async for message in socket:
             if isinstance(message, str) and (found := json.loads(message))["op"] == op:
                 assert isinstance(found, dict)

@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import psutil
 
-SECONDS = 10.0
+SECONDS = 60.0
+"""More than anything takes on a busy computer: only what never happens fails."""
 
 
 async def until(condition: Callable[[], object], what: str, seconds: float = SECONDS) -> None:
