@@ -14,6 +14,7 @@ import httpx
 from websockets.asyncio.client import ClientConnection, connect
 
 from robot_runtime.errors import RefusedError
+from robot_runtime.transport.outbox import SIMULATOR_STREAM, STREAM
 from server.app import create_app
 from server.container import Container
 from server.http.serving import make_server, open_socket
@@ -89,7 +90,8 @@ async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> 
                 verify = trust_only(settings.data) if settings.tls else False
                 async with httpx.AsyncClient(base_url=url, timeout=10, auth=shell, verify=verify) as api:
                     served = Served(settings, app.state.container, api, runtime)
-                    await served.heard("stream")
+                    await served.heard(STREAM)
+                    await served.heard(SIMULATOR_STREAM)
                     await served.reached()
                     await served.take_control()
                     yield served

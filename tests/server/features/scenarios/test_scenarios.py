@@ -163,7 +163,7 @@ def test_a_live_run_is_recorded_and_undoes_its_set_up(stack: Stack) -> None:
     assert (during["set_point_default"], during["vision_rate"]) == (0.3, 10)
     last = ended(stack)
     assert (last["state"], last["problem"], last["name"]) == ("complete", "", "short")
-    wait(lambda: settings_of(stack) == before, "everything to be as before")
+    wait(lambda: settings_of(stack) == before, f"{before}", lambda: f"instead of {settings_of(stack)}")
     # Nothing stays changed, so that the change before the scenario can be undone.
     newest = stack.api.get("/parameters/changes").json()[0]
     assert {one["name"] for one in newest["values"]} == set(points)
@@ -214,6 +214,7 @@ def test_the_end_of_the_simulator_fails_the_run(stack: Stack) -> None:
 
 
 def test_after_a_kill_the_next_server_undoes_the_set_up(stack: Stack) -> None:
+    wait(lambda: not (stack.data / "scenario-before.json").exists(), "the run before to be undone")
     before = settings_of(stack)
     begin_long(stack)
     session = state(stack)["active"]["session"]
