@@ -66,8 +66,11 @@ class RuntimeEnd:
         self._messages.close()
 
     def publish(self, *blocks: Block) -> None:
-        """Publish blocks, each on its own."""
-        for block in blocks:
+        """Publish blocks, each on its own.
+
+        The robot's are last: the server leaves a message of the simulator until the next message.
+        """
+        for block in sorted(blocks, key=lambda one: one.topic.sender != "simulator"):
             name = block.topic.name if block.topic.kind is Kind.PICTURE else stream_of(block)
             if block.topic.kind is not Kind.PICTURE:
                 self._cache.add(block.data, {block.topic.name: block.following})
