@@ -9,9 +9,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from robot_runtime.clock import Clock
+from server.http.dependencies import find_service
 from server.http.security import SAFE_METHODS
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.platform.audit_file import AuditEntry, Outcome, append_entries, clean
@@ -156,7 +158,7 @@ class AuditMiddleware:
         try:
             await self._app(scope, request.receive, request.send)
         finally:
-            audit = scope["app"].state.services[AuditLog]
+            audit = find_service(HTTPConnection(scope), AuditLog)
             if scope["type"] == "http":
                 request.record(audit)
             elif request.status == SOCKET_REFUSED:

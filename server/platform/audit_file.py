@@ -17,7 +17,7 @@ import click
 from robot_runtime.durable_files import make_folder, sync
 
 Outcome = Literal["done", "refused", "failed", "begun"]
-"""How an act ended; "begun" is a command of the shell, which says itself how it ends."""
+"""The end of an act; "begun" is a command of the shell, which says itself how it ends."""
 FILE_BYTES = 512 * 1024
 """Size from which on a new file is begun."""
 FILES_MOST = 8

@@ -20,7 +20,7 @@ SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
 
 OTHERS = stat.S_IRWXG | stat.S_IRWXO
-"""What other users than the owner may do."""
+"""The mode bits of other users than the owner."""
 
 NOWHERE = "192.0.2.1"
 """An address of documentation's own network (RFC 5737)."""

@@ -16,6 +16,7 @@ from server.features.people.schemas import (
     NewToken,
     Pairing,
 )
+from server.http.audit import address_of
 from server.http.dependencies import Provided
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.access import Access
@@ -54,7 +55,7 @@ async def pair_browser(
     Sets a cookie. A browser that is signed in already keeps its cookie, and gets the code's role if that is
     higher.
     """
-    address = request.client.host if request.client is not None else ""
+    address = address_of(request.scope)
     identity, secret = await access.pair(body.code, body.name, request.scope[IDENTITY], address)
     request.scope[IDENTITY] = identity
     if secret is not None:

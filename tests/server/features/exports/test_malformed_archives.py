@@ -210,7 +210,7 @@ STORED = {
     "odd controllers": ("state", lambda one: one["loops"][0].update(controllers=5)),
     "odd parameters": ("parameters", lambda one: one.update(parameters=[5])),
 }
-"""What earlier versions let in."""
+"""Content that earlier versions let in."""
 
 
 @pytest.mark.parametrize("name", STORED)
