@@ -22,6 +22,7 @@ from robot_runtime.contract.limits import (
     RelayCycles,
     SettleSeconds,
     VisionRate,
+    make_strict,
 )
 from robot_runtime.contract.vision_settings import VisionSettings
 
@@ -64,6 +65,13 @@ class RobotCommand:
 
     __pydantic_config__: ClassVar[dict[str, Any]] = {"extra": "forbid", "allow_inf_nan": False}
     policy: ClassVar[CommandPolicy]
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Callable[[Any], Any]) -> Any:
+        """The schema of the HTTP interface: as in the runtime's parser, `true` and "1" are no numbers."""
+        schema = handler(source)
+        make_strict(schema)
+        return schema
 
     @property
     def words(self) -> str:

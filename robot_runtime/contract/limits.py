@@ -1,9 +1,9 @@
 """Limits of quantities, each stated once for configuration, commands, HTTP interface and page."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import pi
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, GroupedMetadata, Le
 
@@ -26,6 +26,28 @@ class ConfigError(ValueError):
         return [one.text for one in self.problems]
 
 
+class StrictNumber:
+    """Has pydantic take numbers alone for numbers, as `contract.parsing` does: no `true`, and no "1"."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], Any]) -> Any:
+        """The schema of the annotated number."""
+        schema = handler(source)
+        make_strict(schema)
+        return schema
+
+
+def make_strict(schema: Any) -> None:
+    """Make the numbers in a schema of pydantic's core strict."""
+    if isinstance(schema, list):
+        for one in schema:
+            make_strict(one)
+    elif isinstance(schema, dict):
+        if schema.get("type") in ("float", "int"):
+            schema["strict"] = True
+        for one in schema.values():
+            make_strict(one)
+
+
 @dataclass(frozen=True, slots=True)
 class Range(GroupedMetadata):
     """Limits of a number, both included; pydantic reads them as `ge` and `le`."""
@@ -33,9 +55,10 @@ class Range(GroupedMetadata):
     minimum: float
     maximum: float
 
-    def __iter__(self) -> Iterator[Ge | Le]:
+    def __iter__(self) -> Iterator[Ge | Le | StrictNumber]:
         yield Ge(self.minimum)
         yield Le(self.maximum)
+        yield StrictNumber()
 
 
 LoopName = Literal["depth", "heading", "pitch", "roll"]

@@ -29,7 +29,7 @@ class TestDocument(BaseModel):
 class DocumentText(BaseModel):
     """The text of a test document."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     text: Annotated[str, Field(max_length=TEXT_MAX)]
 
 

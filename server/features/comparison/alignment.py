@@ -11,7 +11,7 @@ from server.features.sessions.timeline import Moment
 class Align(BaseModel):
     """The moment that becomes 0 s in every session."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
 
     by: Literal["start", "armed", "set_point", "marker"] = "start"
     number: Annotated[int, Field(ge=1, le=1000, description="number of the set-point step")] = 1

@@ -25,7 +25,7 @@ SignalName = Annotated[str, Field(pattern=r"^[a-z_]{1,40}\.[a-z0-9_]{1,60}$")]
 class TimeRange(BaseModel):
     """A time range, s on the common time axis, where the aligned moment is 0."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     start: Annotated[float, Field(allow_inf_nan=False)]
     end: Annotated[float, Field(allow_inf_nan=False)]
 
@@ -33,7 +33,7 @@ class TimeRange(BaseModel):
 class LinesQuery(BaseModel):
     """Sessions, their signals, and their alignment."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     sessions: Annotated[list[Identifier], Field(min_length=1, max_length=SESSIONS_MAX)]
     signals: Annotated[list[SignalName], Field(max_length=SIGNALS_MAX)]
     align: Align = Align()
@@ -69,7 +69,7 @@ class ReportQuery(BaseModel):
         """The comparison asked for. Raises ValidationError."""
         return ComparisonQuery.model_validate(
             {
-                "sessions": self.sessions.split(","),
+                "sessions": [int(one) for one in self.sessions.split(",")],
                 "signals": [name for name in self.signals.split(",") if name],
                 "align": {"by": self.by, "number": self.number, "marker": self.marker},
                 "points": REPORT_POINTS,

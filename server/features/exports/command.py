@@ -42,7 +42,11 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
 
     try:
         options = ExportOptions.model_validate(
-            {name: value for name, value in choice.items() if value not in (None, ())}
+            {
+                name: list(value) if isinstance(value, tuple) else value
+                for name, value in choice.items()
+                if value not in (None, ())
+            }
         )
         kind = check(options)
         record_command(settings.data)

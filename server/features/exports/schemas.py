@@ -20,7 +20,7 @@ Seconds = Annotated[float, Field(ge=-SECONDS_MAX, le=SECONDS_MAX)]
 class ExportOptions(BaseModel):
     """Choice of a session's topics, range and file format."""
 
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
     format: Format
     topics: Annotated[list[Name], Field(min_length=1, max_length=100)] | None = Field(
         default=None, description="names of topics; null for all. Not for csv-grid, archive and report"

@@ -19,7 +19,7 @@ Word = Annotated[str, Field(min_length=1, max_length=60)]
 class ShownChart(BaseModel):
     """A chart's signals, by the names in recordings (`motor.angle_2`), and its length in s."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     signals: Annotated[list[Word], Field(max_length=SIGNALS_MOST)]
     seconds: Annotated[float, Field(ge=1, le=3600, allow_inf_nan=False)]
 
@@ -27,7 +27,7 @@ class ShownChart(BaseModel):
 class PlacedPanel(BaseModel):
     """A panel, and its place in columns and rows of the grid from the upper left corner."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     id: Word
     panel: PanelName
     x: Annotated[int, Field(ge=0, lt=COLUMNS)]
@@ -49,7 +49,7 @@ class PlacedPanel(BaseModel):
 class LayoutDocument(BaseModel):
     """The places of the panels of Operate."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     format: Literal["mucat-layout"]
     version: int
     panels: Annotated[list[PlacedPanel], Field(max_length=PANELS_MOST)]

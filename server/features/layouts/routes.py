@@ -17,7 +17,7 @@ router = Operations(prefix="/api/layouts", tags=["layouts"])
 class NewLayout(BaseModel):
     """A layout to be saved under a name."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=60)]
     document: LayoutDocument
 

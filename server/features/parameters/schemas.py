@@ -39,7 +39,7 @@ class Change(BaseModel):
 class Undo(BaseModel):
     """The change to undo: the newest that is not undone."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     change: int
 
 
@@ -56,7 +56,7 @@ class Profile(BaseModel):
 class NewProfile(BaseModel):
     """The name under which the present parameters are saved."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     name: ProfileName
     note: ProfileNote = ""
 
@@ -78,7 +78,7 @@ class Restored(BaseModel):
 class ProfileText(BaseModel):
     """A profile's file, as text."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     text: Annotated[str, Field(max_length=200_000)]
 
 

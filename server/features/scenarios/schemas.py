@@ -29,7 +29,7 @@ class ScenarioText(BaseModel):
 class ScenarioDocument(BaseModel):
     """The text of a scenario."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     text: Text
 
 
@@ -67,7 +67,7 @@ class ScenarioStart(BaseModel):
     `board`, in simulated time alone: the firmware built for this computer, or on the emulated board.
     """
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     text: Text
     place: Place
     board: BoardKind = "host"

@@ -98,7 +98,7 @@ class SessionDetail(Session):
 class SessionChanges(BaseModel):
     """Changes of a session's texts; null leaves a field unchanged."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     name: Annotated[Name, Field(min_length=1)] | None = None
     note: Note | None = None
     tags: Annotated[list[Tag], Field(max_length=20)] | None = None
@@ -108,7 +108,7 @@ class SessionChanges(BaseModel):
 class NewSession(BaseModel):
     """A new session; its default name is its date and time."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     name: Name = ""
     note: Note = ""
 
@@ -120,7 +120,7 @@ Moment = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 class NewBookmark(BaseModel):
     """A new bookmark; its time in s since the session's start, or null for now."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     time: Moment | None = None
     text: Text = ""
 
@@ -128,6 +128,6 @@ class NewBookmark(BaseModel):
 class BookmarkChanges(BaseModel):
     """Changes of a bookmark; null leaves a field unchanged."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     time: Moment | None = None
     text: Text | None = None

@@ -18,14 +18,14 @@ router = Operations(prefix="/api")
 class SimulatorPlace(BaseModel):
     """The computer of the simulator; `here` is true for this one."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     here: bool
 
 
 class SceneView(BaseModel):
     """The bystander's view; all pages share it."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     name: Annotated[
         Literal["follow", "side", "top"], Field(description="follow turns with the robot, the others do not")
     ]

@@ -31,7 +31,7 @@ Value = Annotated[FiniteFloat, Field(ge=-20, le=20, description="m, of an angle 
 class Limits(BaseModel):
     """Limits of the value; once inside them, leaving them ends the experiment at once."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     low: Value
     high: Value
 
@@ -151,7 +151,7 @@ class TuningStarted(BaseModel):
 class TuningName(BaseModel):
     """A run's new name."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     name: RunName
 
 

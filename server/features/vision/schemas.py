@@ -19,7 +19,7 @@ class VisionSetup(BaseModel):
 class PickPlace(BaseModel):
     """A point of the picture that was clicked."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     x: Annotated[Share, Field(description="share of the picture's width")]
     y: Annotated[Share, Field(description="share of its height")]
     radius: Annotated[
@@ -38,5 +38,5 @@ class PickedColour(BaseModel):
 class VisionText(BaseModel):
     """robot.toml, or a piece of it with the table [vision]."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     text: Annotated[str, Field(max_length=TEXT_MAX)]

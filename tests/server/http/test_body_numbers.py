@@ -1,0 +1,95 @@
+"""Numbers in bodies: only a finite number of JSON is one."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from fastapi.routing import iter_route_contexts
+from pydantic import TypeAdapter, ValidationError
+
+from server.app import create_app
+from server.platform.settings import DataFolder, Settings
+
+NO_NUMBERS = [True, "1", "1.5", float("inf"), float("nan")]
+NUMBERS = {"number", "integer"}
+DEPTH_MAX = 8
+
+Place = tuple[str | int, ...]
+
+
+def bodies() -> Iterator[tuple[str, TypeAdapter[Any]]]:
+    """The name and the schema of each operation's body."""
+    app = create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml")))
+    for route in iter_route_contexts([*app.routes]):
+        field = getattr(route, "body_field", None)
+        if field is not None:
+            yield str(getattr(route, "operation_id", "")), TypeAdapter(field.field_info.annotation)
+
+
+def list_numbers(schema: dict[str, Any], whole: dict[str, Any], place: Place = ()) -> Iterator[Place]:
+    """The places of the numbers in documents of a schema; keys and items are the first ones."""
+    if len(place) > DEPTH_MAX:
+        return
+    if "$ref" in schema:
+        schema = whole["$defs"][schema["$ref"].rsplit("/", 1)[1]]
+    options = schema.get("anyOf", schema.get("oneOf", [schema]))
+    if any(one.get("type") in ("string", "boolean") for one in options):
+        return
+    for one in options:
+        if one.get("type") in NUMBERS:
+            yield place
+        if one is not schema:
+            yield from list_numbers(one, whole, place)
+    for name, inner in schema.get("properties", {}).items():
+        yield from list_numbers(inner, whole, (*place, name))
+    if isinstance(inner := schema.get("additionalProperties"), dict):
+        yield from list_numbers(inner, whole, (*place, "key"))
+    if "items" in schema:
+        yield from list_numbers(schema["items"], whole, (*place, 0))
+    for index, inner in enumerate(schema.get("prefixItems", [])):
+        yield from list_numbers(inner, whole, (*place, index))
+
+
+def document(place: Place, value: object) -> object:
+    """A document with nothing but the value at its place."""
+    for step in reversed(place):
+        value = {step: value} if isinstance(step, str) else [value] * (step + 1)
+    return value
+
+
+def kinds(adapter: TypeAdapter[Any], content: object, place: Place) -> set[str]:
+    """The errors at a place, without those that a document has anyway."""
+    try:
+        adapter.validate_python(content)
+    except ValidationError as problem:
+        return {
+            str(one["type"])
+            for one in problem.errors(include_url=False)
+            # Unions add their alternatives to the places.
+            if tuple(step for step in one["loc"] if step in place) == place
+        }
+    return set()
+
+
+def test_what_is_no_finite_number_is_refused_in_every_body() -> None:
+    accepted, asked = [], set()
+    for name, adapter in bodies():
+        for place in dict.fromkeys(list_numbers(schema := adapter.json_schema(), schema)):
+            asked.add((name, *place))
+            for value in NO_NUMBERS:
+                content = document(place, value)
+                if name == "startTuning":
+                    assert isinstance(content, dict)
+                    content["kind"] = "step" if "start" in place or "target" in place else "relay"
+                if not kinds(adapter, content, place):
+                    accepted.append((name, place, str(value)[:10]))
+    assert accepted == []
+    assert {
+        ("commandArm", "alone"),
+        ("commandLoop", "set_point"),
+        ("commandLoop", "gains", "key"),
+        ("commandVisionSettings", "colours", "key", "hue", 1),
+        ("saveLayout", "document", "panels", 0, "chart", "seconds"),
+        ("compareSessions", "view", "start"),
+        ("addMark", "time"),
+    } <= asked
