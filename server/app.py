@@ -2,8 +2,10 @@
 
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
+from functools import cache
 
 from fastapi import Depends, FastAPI
+from starlette.routing import BaseRoute
 
 from server import VERSION
 from server.container import Container
@@ -82,8 +84,15 @@ def create_app(
     app.add_middleware(SecurityMiddleware, allowed_hosts=settings.allowed_hosts, port=settings.port)
     app.add_middleware(AuditMiddleware)
     add_error_handlers(app)
-    for module in ROUTES:
-        app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
+    app.router.routes.extend(_build_routes())
     app.include_router(make_help_router(HelpPages(settings.help_pages)))
     app.include_router(make_router(Page(settings.page)))
     return app
+
+
+@cache
+def _build_routes() -> list[BaseRoute]:
+    """The routes of every feature, each behind admission; the same for all servers of a process."""
+    return [
+        route for module in ROUTES for route in module.router.build([Depends(admit)], responses=EVERYWHERE)
+    ]

@@ -154,7 +154,7 @@ async def greet(settings: Provided[Settings], clock: Provided[Clock], page: Prov
     }
 
 
-@router.websocket("/api/live")
+@router.socket("/api/live")
 async def live(
     socket: WebSocket,
     caller: Caller,

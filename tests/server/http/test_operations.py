@@ -20,12 +20,12 @@ class TeapotError(ApiError):
 def describe(router: Operations) -> tuple[FastAPI, dict[str, Any]]:
     """An application with these operations, and the paths of its document."""
     app = FastAPI()
-    app.include_router(router, prefix="/api")
+    app.router.routes.extend(router.build())
     return app, app.openapi()["paths"]
 
 
 def test_an_operation_is_named_by_its_function_and_described_by_its_docstring() -> None:
-    router = Operations()
+    router = Operations(prefix="/api")
 
     @router.operation("GET /things", Need.OPERATOR)
     def list_all_things() -> list[int]:
@@ -49,7 +49,7 @@ def test_an_operation_is_named_by_its_function_and_described_by_its_docstring() 
 
 
 def test_documented_answers_come_from_the_errors() -> None:
-    router = Operations()
+    router = Operations(prefix="/api")
 
     @router.operation(
         "GET /tea", Need.VIEWER, TeapotError, UnknownSessionError, {409: "Refused now"}, media_type="text/tea"
