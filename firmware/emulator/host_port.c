@@ -101,6 +101,13 @@ bool host_port_busy(const struct host_port *port) {
   return port->send_next.armed || port->to_board->receiving || port->to_host.receiving || port->silence.armed;
 }
 
+void host_port_drop(struct host_port *port) {
+  pty_drop(port->pty);
+  port->send_count = port->send_done = 0;
+  chip_timer_stop(&port->send_next);
+  line_clear(port->to_board);
+}
+
 void host_port_serve(struct host_port *port) {
   unsigned baud = pty_baud(port->pty);
   if (baud != port->baud) {

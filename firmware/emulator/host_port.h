@@ -50,6 +50,10 @@ void host_port_stall(struct host_port *port, enum direction direction, double se
 // True if bytes are on the line, either way, or wait for delivery.
 bool host_port_busy(const struct host_port *port);
 
+// Drops what the host has written and the board has not received; a real adapter sends it before the host can
+// open the port again.
+void host_port_drop(struct host_port *port);
+
 // Reads the host's speed setting, and the bytes it has written.
 void host_port_serve(struct host_port *port);
 

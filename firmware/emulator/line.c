@@ -136,3 +136,10 @@ void line_cut(struct line *line) {
   }
   line->sender_free = now;
 }
+
+void line_clear(struct line *line) {
+  chip_timer_stop(&line->sampled);
+  line->receiving = false;
+  line->head = line->tail;
+  line->sender_free = line->receiver_free = (double)chip_now(line->chip);
+}

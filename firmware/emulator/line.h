@@ -40,4 +40,7 @@ double line_send(struct line *line, uint8_t byte, double bit);
 // Interrupts the sender within a character: the line goes high.
 void line_cut(struct line *line);
 
+// Drops all characters, also one that the receiver is sampling.
+void line_clear(struct line *line);
+
 #endif

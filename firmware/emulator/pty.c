@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/inotify.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -37,6 +38,11 @@ static bool open_pair(struct pty *pty) {
   return device >= 0 && close(device) == 0;
 }
 
+static bool watch(struct pty *pty) {
+  pty->watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  return pty->watch >= 0 && inotify_add_watch(pty->watch, pty->device, IN_OPEN | IN_CLOSE) >= 0;
+}
+
 static bool make_link(const struct pty *pty, char *reason, size_t size) {
   struct stat status;
   if (lstat(pty->link, &status) == 0 && !S_ISLNK(status.st_mode)) {
@@ -52,7 +58,7 @@ static bool make_link(const struct pty *pty, char *reason, size_t size) {
 }
 
 bool pty_create(struct pty *pty, const char *link, char *reason, size_t reason_size) {
-  *pty = (struct pty){.master = -1};
+  *pty = (struct pty){.master = -1, .watch = -1};
   if (strlen(link) >= sizeof pty->link) {
     snprintf(reason, reason_size, "the path of the serial port is too long");
     return false;
@@ -60,6 +66,10 @@ bool pty_create(struct pty *pty, const char *link, char *reason, size_t reason_s
   strcpy(pty->link, link);
   if (!open_pair(pty)) {
     snprintf(reason, reason_size, "cannot open a pseudo-terminal: %s", strerror(errno));
+    return false;
+  }
+  if (!watch(pty)) {
+    snprintf(reason, reason_size, "cannot watch the pseudo-terminal: %s", strerror(errno));
     return false;
   }
   return make_link(pty, reason, reason_size);
@@ -74,16 +84,42 @@ void pty_remove(struct pty *pty) {
       unlink(pty->link);
     }
   }
+  close(pty->watch);
   close(pty->master);
+}
+
+// The terminal's state does not tell of a host that closed it and opened it again since the last look.
+static bool was_opened(struct pty *pty) {
+  struct inotify_event events[16];  // without names: a file is watched, and no folder
+  bool opened = false;
+  ssize_t size;
+  while ((size = read(pty->watch, events, sizeof events)) > 0) {
+    for (size_t i = 0; i < (size_t)size / sizeof *events; i++) {
+      if (events[i].mask & IN_OPEN) {
+        opened |= pty->users++ == 0;
+      } else if (events[i].mask & IN_CLOSE && pty->users) {
+        pty->users--;
+      }
+    }
+  }
+  return opened;
 }
 
 bool pty_check(struct pty *pty) {
   struct pollfd state = {.fd = pty->master, .events = POLLIN};
   poll(&state, 1, 0);
-  bool before = pty->open;
   // Bytes written before closing can still be read.
   pty->open = !(state.revents & POLLHUP) || state.revents & POLLIN;
-  return pty->open && !before;
+  if (state.revents & POLLHUP) {
+    pty->users = 0;  // equal events in succession are told as one
+  }
+  return was_opened(pty);
+}
+
+void pty_drop(struct pty *pty) {
+  uint8_t bytes[256];
+  while (pty_read(pty, bytes, sizeof bytes)) {
+  }
 }
 
 unsigned pty_baud(const struct pty *pty) {

@@ -13,15 +13,21 @@ struct pty {
   int master;
   char device[64];
   char link[PATH_MAX];
-  bool open;  // true if the host has it open
+  int watch;       // inotify of openings and closings
+  unsigned users;  // open file descriptions, as far as they were read from `watch`
+  bool open;       // true if the host has it open
 };
 
 // False with a reason if the link cannot be created.
 bool pty_create(struct pty *pty, const char *link, char *reason, size_t reason_size);
 void pty_remove(struct pty *pty);
 
-// Checks if the host has opened or closed it; true if it has just been opened.
+// Checks if the host has opened or closed it; true if it has been opened since the last call, also where it
+// was closed and opened again in between.
 bool pty_check(struct pty *pty);
+
+// Drops what the host has written.
+void pty_drop(struct pty *pty);
 
 unsigned pty_baud(const struct pty *pty);
 

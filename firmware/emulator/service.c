@@ -163,6 +163,7 @@ static void wait_for_events(struct service *service, struct pollfd polls[POLL_CO
 static void serve_port(struct service *service) {
   bool opened = pty_check(&service->pty);
   if (opened && service->options->reset_on_open) {
+    host_port_drop(&service->board.host);
     chip_reset(&service->board.chip, CHIP_RESET_PIN);
   }
   if (service->pty.open) {

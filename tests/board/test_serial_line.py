@@ -3,6 +3,7 @@
 import os
 import random
 
+import psutil
 import pytest
 
 from tests.board.conftest import Make
@@ -168,3 +169,19 @@ def test_opening_the_port_resets_the_board_with_reset_on_open(make_rig: Make) ->
     os.close(os.open(rig.process.tty, os.O_RDWR | os.O_NOCTTY))  # it is open already: no reset
     rig.board.run(0.01)
     assert rig.board.stats()["resets"] == 2
+
+
+def test_closing_and_opening_the_port_unnoticed_resets_the_board(make_rig: Make) -> None:
+    rig = make_rig("monitor", "--reset-on-open")
+    wait_for(lambda: rig.board.stats()["resets"] == 2, "the reset")
+    rig.port.write(b"of the host before")
+    emulator = psutil.Process(rig.process.process.pid)
+    emulator.suspend()
+    wait_for(lambda: emulator.status() == psutil.STATUS_STOPPED, "the board to stand still")
+    rig.port.close()
+    again = os.open(rig.process.tty, os.O_RDWR | os.O_NOCTTY)
+    emulator.resume()
+    rig.board.run(0.01)
+    assert rig.board.stats()["resets"] == 3
+    assert rig.board.stats()["bytes_to_board"] == 0
+    os.close(again)
