@@ -4,10 +4,12 @@ A client that is let wait costs a file handle, and the server has only so many: 
 stranger would keep everybody else from STOP.
 """
 
+import asyncio
 import resource
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any
+from ssl import SSLContext
+from typing import Any, Protocol
 
 from h11 import Request
 from uvicorn.protocols.http.h11_impl import H11Protocol
@@ -17,33 +19,53 @@ from robot_runtime.clock import Clock
 HEAD_SECONDS = 10.0
 """From the connection, or the first byte of a further request, to the end of the request's head."""
 BODY_SECONDS = 30.0
-"""Without a byte of a body; an upload lasts as long as it progresses."""
+"""Of patience with a body, which its bytes renew: an upload lasts as long as it progresses."""
+BODY_BYTES_PER_S = 1000.0
+"""The least mean speed of a body that lasts longer than that."""
 CONNECTIONS_MAX = 400
 ADDRESS_MAX = 100
 """Connections of one address. A page keeps six open at most."""
 FILES_MAX = 16_384
 
 
+class LimitedConnection(Protocol):
+    """A connection that `Connections` counts; `progress` is when its client last sent something."""
+
+    progress: float
+
+    @property
+    def waits(self) -> bool:
+        """True where the client has not asked in full, so that nobody works for it."""
+
+    def overdue(self, now: float) -> bool:
+        """True where the client has taken too long."""
+
+    def end(self) -> None:
+        """End the connection."""
+
+
 class Connections:
-    """The open HTTP connections; live sockets leave it and have limits of their own (`server.stream.hub`)."""
+    """The open HTTP connections, from accept on; live sockets leave it and have limits of their own
+    (`server.stream.hub`).
+    """
 
     def __init__(self, clock: Clock, total: int = CONNECTIONS_MAX) -> None:
         self._clock = clock
         self._total = total
-        self._open: dict[HttpProtocol, str] = {}
+        self._open: dict[LimitedConnection, str] = {}
         self._of: Counter[str] = Counter()
 
     def __len__(self) -> int:
         return len(self._open)
 
-    def __iter__(self) -> Iterator["HttpProtocol"]:
+    def __iter__(self) -> Iterator["LimitedConnection"]:
         return iter(self._open)
 
     def now(self) -> float:
         """The steady time, in s."""
         return self._clock.now()
 
-    def add(self, connection: "HttpProtocol", address: str) -> bool:
+    def add(self, connection: "LimitedConnection", address: str) -> bool:
         """Admit a connection; False where there are too many already.
 
         One that waits for its client makes room: a request in full always comes before silence.
@@ -57,7 +79,7 @@ class Connections:
             return self._make_room(connection, most)
         return True
 
-    def remove(self, connection: "HttpProtocol") -> None:
+    def remove(self, connection: "LimitedConnection") -> None:
         """Forget a connection, if it is there."""
         address = self._open.pop(connection, None)
         if address is not None:
@@ -71,7 +93,7 @@ class Connections:
         for connection in [one for one in self if one.overdue(now)]:
             connection.end()
 
-    def _make_room(self, new: "HttpProtocol", address: str) -> bool:
+    def _make_room(self, new: "LimitedConnection", address: str) -> bool:
         waiting = [
             one for one, whose in self._open.items() if whose == address and one is not new and one.waits
         ]
@@ -90,7 +112,10 @@ class HttpProtocol(H11Protocol):
         self._limits = connections
         self._head_began: float | None = connections.now()
         self.progress = connections.now()
-        """When the client last sent something."""
+        self._body_until = 0.0
+        self._made = False
+        self._early = b""
+        """What arrived before `connection_made`, as TLS may let it."""
 
     @property
     def waits(self) -> bool:
@@ -101,7 +126,10 @@ class HttpProtocol(H11Protocol):
         """True where the client has taken too long for a head or a body."""
         if self._is_between:
             return self._head_began is not None and now - self._head_began >= HEAD_SECONDS
-        return self._is_in_body and not self.flow.read_paused and now - self.progress >= BODY_SECONDS
+        if self._is_in_body and self.flow.read_paused:
+            # The client waits for the server.
+            self._body_until = now + BODY_SECONDS
+        return self._is_in_body and now >= self._body_until
 
     def end(self) -> None:
         """End the connection."""
@@ -110,23 +138,35 @@ class HttpProtocol(H11Protocol):
 
     def connection_made(self, transport: Any) -> None:
         """Take a new connection, or refuse it."""
+        self._made = True
         super().connection_made(transport)
-        if not self._limits.add(self, self.client[0] if self.client else ""):
+        if not self._limits.add(self, address_of_peer(transport)):
             transport.abort()
+        elif self._early:
+            self.data_received(self._early)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget the connection."""
         self._limits.remove(self)
-        super().connection_lost(exc)
+        if self._made:
+            super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
         """Take what the client has sent."""
-        self.progress = self._limits.now()
+        if not self._made:
+            self._early += data
+            return
+        self.progress = now = self._limits.now()
         if self._is_between and self._head_began is None:
-            self._head_began = self.progress
+            self._head_began = now
+        began_in_body = self._is_in_body
         super().data_received(data)
         if not self._is_between:
             self._head_began = None
+        if began_in_body:
+            self._body_until = min(self._body_until + len(data) / BODY_BYTES_PER_S, now + BODY_SECONDS)
+        else:
+            self._body_until = now + BODY_SECONDS
 
     def handle_websocket_upgrade(self, event: Request) -> None:
         """Hand the connection to the WebSocket protocol."""
@@ -141,6 +181,57 @@ class HttpProtocol(H11Protocol):
     @property
     def _is_in_body(self) -> bool:
         return not self._is_between and self.cycle.more_body
+
+
+class TlsHandshake(asyncio.Protocol):
+    """A connection up to the end of its TLS handshake; then it is one of `protocol`.
+
+    asyncio would make the protocol of a connection only then, and nobody could count it before.
+    """
+
+    def __init__(self, connections: Connections, tls: SSLContext, protocol: HttpProtocol) -> None:
+        self._limits = connections
+        self._tls = tls
+        self._protocol = protocol
+        self._transport: Any = None
+        self._task: asyncio.Task[None] | None = None
+        self.waits = True
+        self.progress = connections.now()
+
+    def overdue(self, now: float) -> bool:
+        """True where the handshake has taken too long."""
+        return now - self.progress >= HEAD_SECONDS
+
+    def end(self) -> None:
+        """End the connection."""
+        self._limits.remove(self)
+        self._transport.abort()
+
+    def connection_made(self, transport: Any) -> None:
+        """Begin the handshake, or refuse the connection."""
+        self._transport = transport
+        transport.pause_reading()
+        if self._limits.add(self, address_of_peer(transport)):
+            self._task = asyncio.create_task(self._shake_hands())
+        else:
+            transport.abort()
+
+    async def _shake_hands(self) -> None:
+        loop = asyncio.get_running_loop()
+        try:
+            encrypted = await loop.start_tls(self._transport, self._protocol, self._tls, server_side=True)
+        except OSError:
+            return
+        finally:
+            self._limits.remove(self)
+        if encrypted is not None and not encrypted.is_closing():
+            self._protocol.connection_made(encrypted)
+
+
+def address_of_peer(transport: asyncio.BaseTransport) -> str:
+    """The address at the other end of a connection; empty where it is not known."""
+    peer = transport.get_extra_info("peername")
+    return str(peer[0]) if peer else ""
 
 
 def raise_file_limit() -> int:

@@ -14,9 +14,9 @@ from uvicorn.config import STARTUP_FAILURE
 from robot_runtime.clock import SteadyClock
 from server.http.connections import (
     CONNECTIONS_MAX,
-    HEAD_SECONDS,
     Connections,
     HttpProtocol,
+    TlsHandshake,
     raise_file_limit,
 )
 from server.http.websocket_protocol import WebSocketProtocol
@@ -83,17 +83,14 @@ class WebServer(uvicorn.Server):
         if self.lifespan.should_exit:
             sys.exit(STARTUP_FAILURE)
 
-        def make_protocol() -> HttpProtocol:
+        def make_protocol() -> asyncio.Protocol:
             state, options = self.server_state, {"config": self.config, "app_state": self.lifespan.state}
-            return HttpProtocol(self.connections, server_state=state, **options)
+            protocol = HttpProtocol(self.connections, server_state=state, **options)
+            tls = self.config.ssl
+            return protocol if tls is None else TlsHandshake(self.connections, tls, protocol)
 
-        tls = self.config.ssl
-        patience = None if tls is None else HEAD_SECONDS
         self.servers = [
-            await loop.create_server(
-                make_protocol, sock=one, ssl=tls, backlog=BACKLOG, ssl_handshake_timeout=patience
-            )
-            for one in sockets or []
+            await loop.create_server(make_protocol, sock=one, backlog=BACKLOG) for one in sockets or []
         ]
         self.started = True
 

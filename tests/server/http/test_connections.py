@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 
 import httpx
 import psutil
@@ -25,6 +26,7 @@ from server.http.connections import (
     raise_file_limit,
 )
 from server.http.serving import BACKLOG, REPORT_SECONDS, OutOfFiles, WebServer, make_server, open_socket
+from server.platform.certificate import Certificate, prepare_certificate, trust_only
 from server.platform.settings import Settings
 from tests.server.serving import Served, next_text, play
 from tests.server.waiting import until
@@ -73,9 +75,9 @@ class Site:
 
 
 @asynccontextmanager
-async def site(total: int = 400) -> AsyncIterator[Site]:
+async def site(total: int = 400, certificate: Certificate | None = None) -> AsyncIterator[Site]:
     one = Site(total)
-    server = WebServer(make_server(one.app).config, one.limits)
+    server = WebServer(make_server(one.app, certificate).config, one.limits)
     with open_socket("127.0.0.1", 0) as listener:
         one.port = listener.getsockname()[1]
         running = asyncio.create_task(server.serve(sockets=[listener]))
@@ -100,6 +102,7 @@ async def has_ended(connection: Connection) -> bool:
 
 
 HALF_BODY = "POST /upload HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n{"
+LONG_BODY = HALF_BODY.replace("9", "54001")
 
 
 def test_a_head_has_ten_seconds_also_where_it_comes_byte_by_byte() -> None:
@@ -140,16 +143,54 @@ def test_the_head_of_a_further_request_has_ten_seconds_too_and_an_idle_connectio
 def test_a_body_may_last_as_long_as_it_progresses() -> None:
     async def scenario() -> None:
         async with site() as one:
-            upload, hanging = await one.connect(HALF_BODY), await one.connect(HALF_BODY)
-            await until(lambda: len(one.got) == 2, "both bodies")
+            upload, hanging = await one.connect(LONG_BODY), await one.connect(HALF_BODY)
+            await until(lambda: one.got == [b"{"] * 2, "both bodies")
+            pieces = 18_000
             for number in range(3):
                 one.pass_time(BODY_SECONDS * 0.6)
-                upload[1].write(b"x")
-                await until(lambda: len(one.got) == number + 3, "a further piece")  # noqa: B023
+                upload[1].write(b"x" * pieces)
+                size = (number + 1) * pieces + 2
+                await until(lambda: len(b"".join(one.got)) == size, "a further piece")  # noqa: B023
             assert await has_ended(hanging)
             await until(lambda: one.left == ["ClientDisconnect"], "the end of the hanging body")
-            upload[1].write(b"12345")
             assert b"done" in await upload[0].readuntil(b'done"')
+
+    asyncio.run(scenario())
+
+
+def test_a_body_that_drips_is_ended() -> None:
+    async def scenario() -> None:
+        async with site() as one:
+            dripping = await one.connect(HALF_BODY)
+            await until(lambda: one.got == [b"{"], "the body")
+            one.pass_time(BODY_SECONDS - 1)
+            dripping[1].write(b"x")
+            await until(lambda: len(one.got) == 2, "a further byte")
+            assert len(one.limits) == 1
+            one.pass_time(1.01)
+            assert len(one.limits) == 0
+            assert await has_ended(dripping)
+
+    asyncio.run(scenario())
+
+
+def test_connections_are_counted_from_accept_on_also_with_tls(settings: Settings) -> None:
+    certificate = prepare_certificate(replace(settings, tls=True))
+
+    async def scenario() -> None:
+        async with site(certificate=certificate) as one:
+            silent = [await one.connect() for _ in range(ADDRESS_MAX)]
+            assert len(one.limits) == ADDRESS_MAX
+            one.clock.forward(HEAD_SECONDS / 2)
+            tls = trust_only(settings.data)
+            address = f"https://127.0.0.1:{one.port}/upload"
+            async with httpx.AsyncClient(verify=tls) as client:
+                assert (await client.post(address, content=b"x")).text == '"done"'
+                assert await has_ended(silent[0])
+                one.pass_time(HEAD_SECONDS / 2)
+                assert len(one.limits) == 1
+                assert await has_ended(silent[1])
+                assert (await client.post(address, content=b"x")).text == '"done"'
 
     asyncio.run(scenario())
 

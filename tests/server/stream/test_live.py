@@ -14,6 +14,7 @@ from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.transport.blocks import Block, read_blocks
 from server.features.live.routes import INVALID_MAX
 from server.http.serving import MESSAGE_BYTES_MAX
+from server.http.sign_in.identity import SHELL
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.serving import Served, next_text, play
@@ -295,3 +296,18 @@ async def stall(served: Served) -> sockets.socket:
     lines = "".join(f"{name}: {value}\r\n" for name, value in head.items())
     await loop.sock_sendall(page, f"GET /api/live HTTP/1.1\r\n{lines}\r\n".encode())
     return page
+
+
+def test_a_socket_that_opens_while_its_access_is_revoked_is_closed(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario(served: Served) -> None:
+        access = served.container.access
+        # The first answer is at the admission, the second once the socket is open.
+        answers = iter([SHELL, None])
+        monkeypatch.setattr(access, "refresh", lambda _: next(answers))
+        async with served.connect() as page:
+            with pytest.raises(ConnectionClosed, match="revoked"):
+                await next_text(page, "hello")
+
+    play(settings, scenario)
