@@ -156,6 +156,8 @@ def main() -> int:
     """Exit status."""
     words = sys.argv[1:]
     guards = [one for one in read_guards() if not words or any(word in one.name for word in words)]
+    if not guards:
+        sys.exit(f"guards: no guard has one of these words in its name: {' '.join(words)}")
     if problems := [problem for one in guards if (problem := one.problem(ROOT))]:
         sys.exit("\n".join(problems))
     try:

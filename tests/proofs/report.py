@@ -237,10 +237,9 @@ def _read(file: Path) -> dict[str, Outcome]:
 
 
 def _environment() -> dict[str, str]:
-    """The environment without make's own variables for child processes."""
-    return {
-        name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")
-    }
+    """The environment without make's own variables, and without ONLY, which chooses parts of a proof."""
+    dropped = {"MAKEFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "MFLAGS", "ONLY"}
+    return {name: value for name, value in os.environ.items() if name not in dropped}
 
 
 def _verdict(outcome: Outcome | None) -> str:

@@ -3,6 +3,7 @@
 The day chooses which tenth: its number since 1970 in UTC, modulo ten. MUCAT_GUARDS_DAY=20780 repeats a day's.
 """
 
+import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -11,6 +12,7 @@ from os import environ
 import pytest
 
 from tests.board.rig import ROOT
+from tests.proofs import guards
 from tests.proofs.guarded import list_guarded
 from tests.proofs.guards import Guard, GuardError, Tree, copy_tree, read_guards
 
@@ -52,6 +54,12 @@ def test_the_removal_of_a_guard_is_detected_and_of_unguarded_code_is_not() -> No
             tree.run_without(replace(guard, guard="there is no such text"))
 
 
+def test_words_of_no_guard_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["guards", "no such guard"])
+    with pytest.raises(SystemExit, match="no guard has one of these words in its name: no such guard"):
+        guards.main()
+
+
 @pytest.fixture(scope="module")
 def tree() -> Iterator[Tree]:
     with copy_tree() as tree:
@@ -65,10 +73,10 @@ def tree() -> Iterator[Tree]:
 def test_the_removal_of_today_s_tenth_of_guards_is_detected(
     tree: Tree, number: int, record_property: Callable[[str, object], None]
 ) -> None:
-    guards = read_guards()[DAY % PARTS :: PARTS]
-    if number == len(guards):
+    today = read_guards()[DAY % PARTS :: PARTS]
+    if number == len(today):
         return
-    guard, again = guards[number], f"MUCAT_GUARDS_DAY={DAY} repeats it."
+    guard, again = today[number], f"MUCAT_GUARDS_DAY={DAY} repeats it."
     record_property("guard", guard.name)
     outcome = tree.run_without(guard)
     assert not outcome.broken, f"{guard.name}: {outcome.broken}. {again}\n{outcome.words}"

@@ -22,6 +22,8 @@ left:
 	@mkfifo pipe; echo well > pipe
 right:
 	@until [ -p pipe ]; do sleep 0.01; done; cat pipe
+part:
+	@echo "part <$(ONLY)>"
 idle:
 	@chrt --pid $$$$
 halted:
@@ -47,6 +49,17 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def outcomes(folder: Path) -> dict[str, Outcome]:
     stored = json.loads((folder / "build/proofs/outcomes.json").read_text())
     return {name: Outcome(**one) for name, one in stored.items()}
+
+
+def test_a_proof_is_run_whole_where_it_is_chosen_by_name(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(report, "STAGES", one_lane(Proof("part", "It is whole.")))
+    monkeypatch.setattr(sys, "argv", ["report", "part"])
+    monkeypatch.setenv("ONLY", "part")
+    monkeypatch.setenv("MAKEFLAGS", " -- ONLY=part")
+    assert report.main() == 0
+    assert outcomes(folder)["part"].said == "part <>"
 
 
 def test_a_failed_proof_is_reported_and_the_next_ones_run(folder: Path) -> None:
