@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -29,7 +30,14 @@ from robot_runtime.simulation.water.surroundings import Trim
 from server.features.parameters.changes import Send
 from server.stream.bridge import Bridge, RuntimeSilentError
 
+log = logging.getLogger(__name__)
+
 Request = Mapping[str, Any]
+RESTORE_SECONDS = 20.0
+"""Time from the first step of a restoration in which a step without an answer is tried again: a process that
+has just started may miss the first request, and a killed one is back by then."""
+RETRY_SECONDS = 0.2
+"""Pause before the next attempt."""
 STILL_WATER = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}
 ATTITUDE_LOOPS: tuple[LoopName, ...] = tuple(loop for loop in SET_POINTS if loop != "depth")
 DIRECTIONS = ("to_board", "from_board")
@@ -63,11 +71,13 @@ class LiveSetup:
     """Sends a scenario's settings to the runtime, the simulator and the board.
 
     `board_socket` is None for a real board. Every method may raise RefusedError or RuntimeSilentError.
+    `patience` is the time in s in which `disarm` and `put_back` try a step without an answer again.
     """
 
-    def __init__(self, bridge: Bridge, board_socket: Path | None) -> None:
+    def __init__(self, bridge: Bridge, board_socket: Path | None, patience: float = RESTORE_SECONDS) -> None:
         self._bridge = bridge
         self._board_socket = board_socket
+        self._patience = patience
 
     async def read(self, robot: Request) -> SavedState:
         """The present state; `robot` is the newest `state`."""
@@ -108,7 +118,7 @@ class LiveSetup:
 
     async def disarm(self) -> None:
         """Stop the fins."""
-        await self._bridge.disarm()
+        await _insist(self._bridge.disarm, self._deadline())
 
     async def put_back(self, before: SavedState, send: Send) -> list[str]:
         """Restore the previous state; returns the problems in words."""
@@ -121,12 +131,16 @@ class LiveSetup:
             lambda: _put_card_back(robot["card"], send),
         ]
         problems = []
+        end = self._deadline()
         for step in steps:
             try:
-                await step()
+                await _insist(step, end)
             except (RefusedError, RuntimeSilentError) as problem:
                 problems.append(str(problem))
         return list(dict.fromkeys(problems))
+
+    def _deadline(self) -> float:
+        return asyncio.get_running_loop().time() + self._patience
 
     async def _set_water(self, target: Request, present: Request | None) -> None:
         ask = self._bridge.ask_simulator
@@ -158,6 +172,20 @@ class LiveSetup:
             await asyncio.to_thread(_order, self._board_socket, command)
         except BoardError as problem:
             raise RefusedError(f"The emulated board: {problem}.") from problem
+
+
+async def _insist(step: Callable[[], Awaitable[object]], end: float) -> None:
+    """Take a step, again and again until `end` (loop time) if nobody answers; then RuntimeSilentError."""
+    loop = asyncio.get_running_loop()
+    while True:
+        try:
+            await step()
+            return
+        except RuntimeSilentError as problem:
+            if loop.time() + RETRY_SECONDS > end:
+                raise
+            log.info("Restoring the state before the scenario, next attempt: %s", problem)
+        await asyncio.sleep(RETRY_SECONDS)
 
 
 def _order(socket: Path, command: str) -> None:

@@ -19,7 +19,7 @@ from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
 from server.features.scenarios.live_setup import LiveSetup
-from server.stream.bridge import Bridge
+from server.stream.bridge import Bridge, RuntimeSilentError
 from tests.stack import ROOT
 
 STATE = {
@@ -98,10 +98,17 @@ class DirectBridge:
     def __init__(self, simulator: Simulator) -> None:
         self.commands: list[tuple[str, Mapping[str, Any]]] = []
         self.sight: dict[str, Any] = {"world": {"turbidity": 0.2}, "targets": {"targets": []}}
+        self.silent = 0
+        """Requests that get no answer from now on."""
         self._changes = changes(simulator)
 
     async def send(self, command: RobotCommand) -> None:
+        self._answer()
         self.commands.append((command.policy.name, command.payload()))
+
+    async def disarm(self) -> None:
+        self._answer()
+        self.commands.append(("stop", {}))
 
     async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
         if name == "contents":
@@ -110,7 +117,14 @@ class DirectBridge:
         return {}
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        self._answer()
         return self._changes[name](payload) or {}
+
+    def _answer(self) -> None:
+        """Raise RuntimeSilentError if this request gets no answer."""
+        if self.silent:
+            self.silent -= 1
+            raise RuntimeSilentError("The robot's runtime does not answer.", waited=True)
 
 
 @pytest.fixture
@@ -213,3 +227,54 @@ def test_a_failed_step_of_the_undoing_is_reported_and_the_rest_is_done(
     assert "no emulated board answers" in problem
     assert simulator.surroundings() == was
     assert bridge.commands[-1] == ("card", {"colour": "red"})
+
+
+def test_a_step_without_an_answer_is_tried_again(simulator: Simulator, bridge: DirectBridge) -> None:
+    async def work() -> list[str]:
+        surroundings = LiveSetup(cast(Bridge, bridge), None)
+        before = await surroundings.read(STATE)
+        await surroundings.prepare(SCENARIO, before, bridge.send)
+        bridge.commands.clear()
+        bridge.silent = 1
+        await surroundings.disarm()
+        bridge.silent = 1
+        problems = await surroundings.put_back(before, silent_once)
+        assert not silences
+        return problems
+
+    silences = ["set_points", "card"]
+
+    async def silent_once(command: RobotCommand) -> None:
+        if command.policy.name in silences:
+            silences.remove(command.policy.name)
+            bridge.silent = 1
+        await bridge.send(command)
+
+    was = simulator.surroundings()
+    assert asyncio.run(work()) == []
+    assert simulator.surroundings() == was
+    names = [name for name, _ in bridge.commands]
+    assert names == [
+        "stop",
+        "controller",
+        "controller",
+        "set_points",
+        *["loop"] * 3,
+        "steering",
+        "vision",
+        "card",
+    ]
+
+
+def test_a_runtime_that_stays_silent_is_given_up_and_reported(bridge: DirectBridge) -> None:
+    async def work() -> list[str]:
+        surroundings = LiveSetup(cast(Bridge, bridge), None, patience=0.3)
+        before = await surroundings.read(STATE)
+        bridge.silent = 10_000
+        with pytest.raises(RuntimeSilentError):
+            await surroundings.disarm()
+        return await surroundings.put_back(before, bridge.send)
+
+    assert asyncio.run(work()) == ["The robot's runtime does not answer."]
+    assert 10_000 - bridge.silent < 30
+    assert bridge.commands == []
