@@ -11,9 +11,10 @@ JSON array of `count` objects. Of a `picture` topic it is the time and one JPEG 
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
+from functools import cache
 from struct import Struct
-from typing import Self
+from typing import Any, Self
 
 from robot_runtime.contract import documents
 from robot_runtime.contract.packets.layout import LayoutError, Record
@@ -87,9 +88,17 @@ def row(time: float, record: bytes) -> bytes:
 
 def pack_documents(batch: Sequence[documents.Document]) -> bytes:
     """The payload of a block of documents. Raises ValueError on NaN or infinity, which JSON lacks."""
-    return json.dumps(
-        [asdict(document) for document in batch], allow_nan=False, separators=(",", ":")
-    ).encode()
+    return json.dumps(batch, default=_list_fields, allow_nan=False, separators=(",", ":")).encode()
+
+
+def _list_fields(document: Any) -> dict[str, object]:
+    """A dataclass for JSON's encoder. `asdict` copies all values first, which takes three times as long."""
+    return {name: getattr(document, name) for name in _field_names(document.__class__)}
+
+
+@cache
+def _field_names(cls: type) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(cls))
 
 
 def read_blocks(data: bytes, run: str = "") -> list[Block]:

@@ -27,7 +27,7 @@ part:
 idle:
 	@chrt --pid $$$$
 halted:
-	@kill -INT $(PROOF_PID); sleep 60
+	@kill -INT $(PROOF_PID); exec sleep 60
 """
 PROOFS = (Proof("good", "It works."), Proof("bad", "It never fails."), Proof("later", "It goes on."))
 
