@@ -42,6 +42,7 @@ if [ "${1:-run}" = test ]; then
     need chromium chromium
     need chromium-headless-shell chromium-headless-shell
     need firefox-esr firefox-esr
+    need nginx-light /usr/sbin/nginx
     need clang-format clang-format
     need iproute2 ip
     need clang clang

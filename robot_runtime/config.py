@@ -106,12 +106,14 @@ class ZenohConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerConfig:
-    """The web server: its address, the host names that browsers may use, and TLS on or off."""
+    """The web server: its address, the host names that browsers may use, TLS, and the proxy before it."""
 
     host: str = "127.0.0.1"
     port: Annotated[int, Range(1, 65535)] = 8000
     allowed_hosts: list[str] = field(default_factory=lambda: ["localhost", "127.0.0.1", "[::1]"])
     tls: bool = False
+    public_url: str = ""
+    trusted_proxies: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -32,6 +32,7 @@ from server.http.error_handlers import add_error_handlers
 from server.http.help_pages import HelpPages, make_help_router
 from server.http.operations import EVERYWHERE
 from server.http.page import Page, make_router
+from server.http.proxies import RequestsOfAddress
 from server.http.security import SecurityMiddleware
 from server.http.sign_in.access import Access
 from server.http.sign_in.middleware import SignInMiddleware
@@ -81,7 +82,14 @@ def create_app(
     app.state.ended = ""
     # The middleware added last runs first.
     app.add_middleware(SignInMiddleware)
-    app.add_middleware(SecurityMiddleware, allowed_hosts=settings.allowed_hosts, port=settings.port)
+    app.add_middleware(
+        SecurityMiddleware,
+        allowed_hosts=settings.allowed_hosts,
+        port=settings.port,
+        public_url=settings.public_url,
+    )
+    if settings.trusted_proxies:
+        app.add_middleware(RequestsOfAddress)
     app.add_middleware(AuditMiddleware)
     add_error_handlers(app)
     app.router.routes.extend(_build_routes())

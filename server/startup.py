@@ -52,7 +52,7 @@ def _serve(settings: Settings) -> int:
                 _greet(settings, access, certificate)
 
         app = create_app(settings, plan(settings), greet)
-        server = make_server(app, certificate)
+        server = make_server(app, certificate, settings.trusted_proxies)
         server.config.load()
 
         def serve(ended: str) -> int:

@@ -7,7 +7,8 @@ stranger would keep everybody else from STOP.
 import asyncio
 import resource
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from ipaddress import ip_address, ip_network
 from ssl import SSLContext
 from typing import Any, Protocol
 
@@ -49,9 +50,10 @@ class Connections:
     (`server.stream.hub`).
     """
 
-    def __init__(self, clock: Clock, total: int = CONNECTIONS_MAX) -> None:
+    def __init__(self, clock: Clock, total: int = CONNECTIONS_MAX, proxies: Sequence[str] = ()) -> None:
         self._clock = clock
         self._total = total
+        self._proxies = [ip_network(one) for one in proxies]
         self._open: dict[LimitedConnection, str] = {}
         self._of: Counter[str] = Counter()
 
@@ -72,7 +74,7 @@ class Connections:
         """
         self._open[connection] = address
         self._of[address] += 1
-        if self._of[address] > ADDRESS_MAX:
+        if self._of[address] > ADDRESS_MAX and not self._is_proxy(address):
             return self._make_room(connection, address)
         if len(self._open) > self._total:
             (most, _), *_ = self._of.most_common(1)
@@ -92,6 +94,10 @@ class Connections:
         now = self.now()
         for connection in [one for one in self if one.overdue(now)]:
             connection.end()
+
+    def _is_proxy(self, address: str) -> bool:
+        """True for a trusted proxy, whose connections are of many clients (`server.http.proxies`)."""
+        return bool(self._proxies) and any(ip_address(address) in one for one in self._proxies)
 
     def _make_room(self, new: "LimitedConnection", address: str) -> bool:
         waiting = [

@@ -1,7 +1,8 @@
 """Checks of Host and Origin, security headers, and refusals before the application sees a request.
 
 The check of Host guards against DNS rebinding, where a foreign name points here; that of Origin against
-foreign pages in the operator's browser. No address is trusted, and X-Forwarded-* are ignored.
+foreign pages in the operator's browser. No address is trusted; `server.public_url` is
+one more name of the server.
 """
 
 import json
@@ -36,20 +37,27 @@ HEADERS = {
 class SecurityMiddleware:
     """ASGI middleware: refuses foreign hosts and origins with 403, and adds the security headers.
 
-    `allowed_hosts` are names without a port; `port` is the one the server listens on.
+    `allowed_hosts` are names without a port; `port` is the one the server listens on. Whoever calls it by its
+    `public_url` uses the scheme of that, whatever the proxy uses.
     """
 
-    def __init__(self, app: ASGIApp, allowed_hosts: Collection[str], port: int) -> None:
+    def __init__(self, app: ASGIApp, allowed_hosts: Collection[str], port: int, public_url: str = "") -> None:
         self._app = app
         self._hosts = {f"{host}:{port}" for host in allowed_hosts}
         if port in (80, 443):
             self._hosts.update(allowed_hosts)
+        self._public_scheme, _, self._public_host = public_url.partition("://")
+        if public_url:
+            self._hosts.add(self._public_host)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on, or refuse."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
+        if self._public_host and Headers(scope=scope).get("host", "").lower() == self._public_host:
+            socket = scope["type"] == "websocket"
+            scope["scheme"] = self._public_scheme.replace("http", "ws") if socket else self._public_scheme
         reason = self._refusal(scope)
         streamed = scope["path"] in STREAMED
         if reason is None and scope["type"] == "http" and not streamed and _has_large_body(scope):

@@ -5,6 +5,7 @@ import errno
 import logging
 import socket
 import sys
+from collections.abc import Sequence
 from typing import Any
 
 import uvicorn
@@ -125,12 +126,16 @@ class OutOfFiles:
             )
 
 
-def make_server(app: FastAPI, certificate: Certificate | None = None) -> WebServer:
-    """A server for the application, with TLS where it has a certificate; it takes nothing from
-    X-Forwarded-*, and compresses no messages.
+def make_server(
+    app: FastAPI, certificate: Certificate | None = None, proxies: Sequence[str] = ()
+) -> WebServer:
+    """A server for the application, with TLS where it has a certificate; it compresses no messages.
+
+    X-Forwarded-For counts from these proxies alone: the client is the last address in it that is
+    none of them.
     """
     files = raise_file_limit()
-    connections = Connections(SteadyClock(), min(CONNECTIONS_MAX, files // 2))
+    connections = Connections(SteadyClock(), min(CONNECTIONS_MAX, files // 2), proxies)
     config = uvicorn.Config(
         app,
         ssl_certfile=None if certificate is None else certificate.file,
@@ -140,7 +145,8 @@ def make_server(app: FastAPI, certificate: Certificate | None = None) -> WebServ
         lifespan="on",
         log_level="warning",
         access_log=False,
-        proxy_headers=False,
+        proxy_headers=bool(proxies),
+        forwarded_allow_ips=list(proxies),
         server_header=False,
         ws_per_message_deflate=False,
         ws_max_size=MESSAGE_BYTES_MAX,

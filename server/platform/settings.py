@@ -15,6 +15,7 @@ from robot_runtime.config import HilConfig, LinkConfig, SessionsConfig, ZenohCon
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import make_folder
 from server.platform.pidfile import running_parts
+from server.platform.reverse_proxy import read_proxies, read_public_url
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
@@ -103,6 +104,10 @@ class Settings:
     port: int = 8000
     tls: bool = False
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
+    public_url: str = ""
+    """The origin that people open, where a reverse proxy stands before the server."""
+    trusted_proxies: tuple[str, ...] = ()
+    """The addresses and networks whose X-Forwarded-For is believed."""
     build: Path = Path(__file__).parents[2] / "build"
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"
@@ -115,13 +120,15 @@ class Settings:
     @property
     def only_here(self) -> bool:
         """True where no other computer can reach the server."""
-        return is_loopback(self.host)
+        return is_loopback(self.host) and not self.public_url
 
     def base_url(self, called: str = "") -> str:
         """The server's address for a browser; `called` is the name by which somebody has just called it.
 
         Where others can reach the server, it is a name that works for them too.
         """
+        if self.public_url:
+            return self.public_url
         names = [name for name in self.allowed_hosts if self.only_here or not is_loopback(name)]
         name = called if called in names else (names or [self.host])[0]
         return f"{self.scheme}://{name}:{self.port}"
@@ -153,6 +160,11 @@ def read_settings(
     if not 0 < chosen_port < 65536:
         raise SetupError(f"The port is {chosen_port}; it must be a whole number from 1 to 65535.")
     chosen_host = host or loaded.server.host
+    try:
+        public_url = read_public_url(loaded.server.public_url)
+        trusted_proxies = read_proxies(loaded.server.trusted_proxies)
+    except ValueError as problem:
+        raise SetupError(f"{config}: {problem}") from problem
     return Settings(
         data=folder,
         config=config.absolute(),
@@ -166,6 +178,8 @@ def read_settings(
         port=chosen_port,
         tls=loaded.server.tls,
         allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),
+        public_url=public_url,
+        trusted_proxies=trusted_proxies,
     )
 
 

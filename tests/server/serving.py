@@ -79,7 +79,7 @@ async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> 
         await place_with_samples(settings.data)
         prepare(settings.data)
         app = create_app(settings, commands)
-        server = make_server(app, certificate)
+        server = make_server(app, certificate, settings.trusted_proxies)
         # The runtime listens before the server comes, which then need not try again.
         with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime:
             running = asyncio.create_task(server.serve(sockets=[listener]))

@@ -45,6 +45,8 @@ def shows_pictures(stream: TextIO) -> bool:
 
 
 def _reach(settings: Settings) -> str:
+    if settings.public_url and is_loopback(settings.host):
+        return f"It listens on {settings.host}: others reach it by the proxy of {settings.public_url}."
     if settings.only_here:
         return f"It listens on {settings.host}: only this computer reaches it."
     where = "all networks" if settings.host in ("0.0.0.0", "::") else "its network"
