@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Annotated
 
-from fastapi import Depends
+from fastapi import Depends, Request
 
 from server.http.dependencies import Provided
 from server.http.sign_in.identity import Caller
@@ -14,6 +14,8 @@ from server.platform.errors import ApiError
 
 WAITING_MAX = 3
 """A page may ask again before its last request was answered, as when somebody types."""
+READING_MAX = 100
+"""As many as connections of one address: whoever moves through a recording asks faster than is answered."""
 
 
 class TooManyHeavyError(ApiError):
@@ -30,12 +32,12 @@ class HeavyRequests:
         self._asked: Counter[int] = Counter()
 
     @asynccontextmanager
-    async def turn(self, device: int) -> AsyncIterator[None]:
+    async def turn(self, device: int, waiting_max: int = WAITING_MAX) -> AsyncIterator[None]:
         """The device's turn, once its earlier requests are done.
 
         Raises TooManyHeavyError where too many of them wait already.
         """
-        if self._asked[device] > WAITING_MAX:
+        if self._asked[device] > waiting_max:
             raise TooManyHeavyError(
                 "Several long requests of this device are under way already. Wait for their answers."
             )
@@ -54,5 +56,16 @@ async def _take_turn(caller: Caller, heavy: Provided[HeavyRequests]) -> AsyncIte
         yield
 
 
+async def _take_reading_turn(
+    request: Request, caller: Caller, heavy: Provided[HeavyRequests]
+) -> AsyncIterator[None]:
+    async with heavy.turn(caller.device, READING_MAX):
+        if await request.is_disconnected():
+            raise TooManyHeavyError("The request was given up before its turn came.")
+        yield
+
+
 Turn = Annotated[None, Depends(_take_turn)]
 """A parameter of a route that may cost seconds: it waits for the turn of its caller's device."""
+ReadingTurn = Annotated[None, Depends(_take_reading_turn)]
+"""The same for a route that reads recordings; where its caller has gone meanwhile, nothing is read."""

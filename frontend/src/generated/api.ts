@@ -5846,6 +5846,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description This device has several such requests under way already */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Something that the server needs does not work */
             503: {
                 headers: {
@@ -5890,6 +5899,15 @@ export interface operations {
             };
             /** @description There is no such session */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description This device has several such requests under way already */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8725,6 +8743,15 @@ export interface operations {
             };
             /** @description There is no such session */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description This device has several such requests under way already */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };

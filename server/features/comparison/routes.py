@@ -12,7 +12,7 @@ from server.features.comparison.schemas import Comparison, ComparisonQuery, Line
 from server.features.comparison.signals import Signal
 from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
-from server.http.heavy_requests import TooManyHeavyError, Turn
+from server.http.heavy_requests import ReadingTurn, TooManyHeavyError, Turn
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 
@@ -46,13 +46,13 @@ def list_signals(comparisons: Provided[Comparisons], session: Identifier) -> lis
     return comparisons.comparer.signals(session)
 
 
-@router.operation("POST /compare", Need.VIEWER, UnknownSessionError)
-def compare_sessions(comparisons: Provided[Comparisons], body: ComparisonQuery) -> Comparison:
+@router.operation("POST /compare", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
+def compare_sessions(_: ReadingTurn, comparisons: Provided[Comparisons], body: ComparisonQuery) -> Comparison:
     """Compare sessions: lines, figures and differences."""
     return comparisons.comparer.compare(body)
 
 
-@router.operation("POST /compare/lines", Need.VIEWER, UnknownSessionError)
-def compare_lines(comparisons: Provided[Comparisons], body: LinesQuery) -> Lines:
+@router.operation("POST /compare/lines", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
+def compare_lines(_: ReadingTurn, comparisons: Provided[Comparisons], body: LinesQuery) -> Lines:
     """Return the lines of a shorter time range in full resolution."""
     return comparisons.comparer.lines(body)

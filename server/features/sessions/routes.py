@@ -29,6 +29,7 @@ from server.features.sessions.storage import Storage, measure
 from server.features.sessions.timeline import Timeline, read_timeline
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
+from server.http.heavy_requests import ReadingTurn, TooManyHeavyError
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 from server.platform.errors import ConflictError, InvalidError, NotFoundError
@@ -190,9 +191,14 @@ def get_timeline(recording: OpenRecording) -> Timeline:
 
 
 @router.operation(
-    "GET /sessions/{session}/blocks", Need.VIEWER, UnknownSessionError, media_type="application/octet-stream"
+    "GET /sessions/{session}/blocks",
+    Need.VIEWER,
+    UnknownSessionError,
+    TooManyHeavyError,
+    media_type="application/octet-stream",
 )
 def get_blocks(
+    _: ReadingTurn,
     recording: OpenRecording,
     start: Seconds,
     end: Seconds,

@@ -1,10 +1,18 @@
 """Turns of requests that cost much."""
 
 import asyncio
+from typing import get_args
 
 import pytest
+from fastapi import FastAPI
+from fastapi.routing import iter_route_contexts
+from starlette.types import Message
 
-from server.http.heavy_requests import WAITING_MAX, HeavyRequests, TooManyHeavyError
+from server.app import create_app
+from server.http.heavy_requests import WAITING_MAX, HeavyRequests, ReadingTurn, TooManyHeavyError, Turn
+from server.http.sign_in.identity import IDENTITY, SHELL
+from server.platform.settings import Settings
+from tests.server.waiting import SECONDS
 
 
 def test_a_device_has_one_heavy_request_at_a_time_and_few_that_wait() -> None:
@@ -34,3 +42,45 @@ def test_a_device_has_one_heavy_request_at_a_time_and_few_that_wait() -> None:
         await ask(1, 0)
 
     asyncio.run(scenario())
+
+
+def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -> None:
+    turns = {get_args(one)[1].dependency for one in (Turn, ReadingTurn)}
+    routes = iter_route_contexts([*create_app(settings).routes])
+    heavy = {
+        str(getattr(route, "operation_id", ""))
+        for route in routes
+        if (dependant := getattr(route, "dependant", None)) is not None
+        and any(one.call in turns for one in dependant.dependencies)
+    }
+    assert heavy == {
+        *("getComparisonReport", "compareSessions", "compareLines", "getBlocks"),
+        *("checkScenario", "readVision"),
+    }
+
+
+def test_a_reading_whose_caller_has_gone_is_left_out() -> None:
+    read: list[str] = []
+    app = FastAPI()
+    app.state.services = {HeavyRequests: HeavyRequests()}
+
+    @app.get("/read")
+    def read_something(_: ReadingTurn, name: str) -> None:
+        read.append(name)
+
+    async def scenario(name: str, *, gone: bool) -> None:
+        async def receive() -> Message:
+            if not gone:
+                await asyncio.sleep(SECONDS)
+            return {"type": "http.disconnect"}
+
+        async def send(_message: Message) -> None:
+            return
+
+        scope = {"type": "http", "method": "GET", "path": "/read", "headers": [], IDENTITY: SHELL}
+        await app(scope | {"query_string": f"name={name}".encode()}, receive, send)
+
+    asyncio.run(scenario("wanted", gone=False))
+    with pytest.raises(TooManyHeavyError, match="given up"):
+        asyncio.run(scenario("gone", gone=True))
+    assert read == ["wanted"]
