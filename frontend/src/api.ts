@@ -9,6 +9,7 @@ export type { Answer, Downloaded } from './http';
 type Schemas = components['schemas'];
 export type Identity = Schemas['Identity'];
 export type Role = Identity['role'];
+export type Scope = NonNullable<Schemas['NewToken']['scope']>;
 export type CallerDetails = Schemas['CallerDetails'];
 export type Device = Schemas['DeviceDetails'];
 export type Invitation = Schemas['MadeCode'];
@@ -129,7 +130,7 @@ export const api = {
   audit: (query: URLSearchParams) => request<AuditList>('GET', `/audit?${query.toString()}`),
   auditFile: (query: URLSearchParams) => `/api/audit/csv?${query.toString()}`,
   revoke: (device: number) => command('DELETE', `/access/devices/${device}`),
-  makeToken: (name: string, role: Role) => request<Token>('POST', '/access/tokens', { name, role }),
+  makeToken: (token: Schemas['NewToken']) => request<Token>('POST', '/access/tokens', token),
   visionSettings: () => request<{ settings: VisionSettings; configured: VisionSettings }>('GET', '/vision'),
   pick: (place: Schemas['PickPlace']) => request<PickedColour>('POST', '/vision/pick', place),
   visionFile: '/api/vision/toml',

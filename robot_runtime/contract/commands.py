@@ -30,7 +30,7 @@ Piloting = Literal["automatic", "manual"]
 
 
 class Need(IntEnum):
-    """Rights that an HTTP operation needs; each includes those before it."""
+    """Rights that an HTTP operation needs; each includes those before it; ADMINISTER needs no control."""
 
     NOTHING = 0
     VIEWER = 1
@@ -39,6 +39,8 @@ class Need(IntEnum):
     """The role of an operator."""
     CONTROL = 3
     """To hold the control of the robot, which one page or program has at a time."""
+    ADMINISTER = 4
+    """The role of an operator, and no token whose scope leaves this out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,6 +22,7 @@ Times are in s, lengths in m and angles in rad, unless a field says otherwise.
 | viewer | is signed in |
 | operator | is signed in as an operator |
 | control | is an operator who has control of the robot |
+| administer | is signed in as an operator; a program's token has the scope `administer` |
 
 ## Errors
 

@@ -177,6 +177,7 @@ class DeviceRow(SQLModel, table=True):
 
     `secret` is the SHA-256 of what it proves itself with. Kinds: "browser" (a cookie), "program" (a bearer
     token). A number is never given again, so that old events do not speak of somebody new.
+    `limited` is a token that may not administer, in any role; it never ends where `ends` is None.
     """
 
     __tablename__ = "device"
@@ -189,6 +190,8 @@ class DeviceRow(SQLModel, table=True):
     secret: str
     paired: float
     seen: float
+    limited: bool = False
+    ends: float | None = None
 
 
 class ProfileRow(SQLModel, table=True):

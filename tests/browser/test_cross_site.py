@@ -23,7 +23,7 @@ ATTACKS = """async (target) => {
   }
   const json = { 'content-type': 'application/json' }
   const asked = { '/api/robot': null, '/api/sessions': { name: 'evil' }, '/api/robot/commands/arm': {},
-    '/api/access/tokens': { name: 'evil', role: 'operator' }, '/api/control/take': {} }
+    '/api/access/tokens': { name: 'evil', scope: 'administer' }, '/api/control/take': {} }
   for (const [path, body] of Object.entries(asked)) {
     const request = body === null ? {} : { method: 'POST', body: JSON.stringify(body) }
     const cors = { ...request, credentials: 'include', headers: body === null ? {} : json }

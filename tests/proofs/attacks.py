@@ -68,10 +68,10 @@ def read_jitter(stack: Stack, start: float, end: float) -> float:
     return percentile([abs(period - usual) for period in periods], 0.99)
 
 
-def make_token(stack: Stack, role: str) -> str:
+def make_token(stack: Stack, scope: str) -> str:
     """A token of a new program."""
     made = stack.api.post(
-        "/access/tokens", json={"name": f"attacker {role}", "role": role}
+        "/access/tokens", json={"name": f"attacker {scope}", "scope": scope}
     ).raise_for_status()
     token: str = made.json()["token"]
     return token
@@ -90,7 +90,7 @@ def attack(stack: Stack) -> tuple[dict[str, str], list[float], dict[str, float]]
     began = time.monotonic()
     press(stack, int(QUIET_SECONDS / PERIOD))
     quiet = read_jitter(stack, began, time.monotonic())
-    tokens = [make_token(stack, role) for role in ("viewer", "operator")]
+    tokens = [make_token(stack, scope) for scope in ("read", "administer")]
     command = [sys.executable, "-m", "tests.proofs.attackers", stack.url, *tokens, str(PRESSES * PERIOD)]
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as attackers:
         began = time.monotonic()

@@ -27,8 +27,16 @@ from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import until
 from tests.shell import shell_headers
 
-Least = Literal["anyone", "viewer", "operator", "control"]
-Who = Literal["anonymous", "viewer", "operator", "control", "program of a viewer", "program of an operator"]
+Least = Literal["anyone", "viewer", "operator", "control", "administer"]
+Who = Literal[
+    "anonymous",
+    "viewer",
+    "operator",
+    "control",
+    "program that reads",
+    "program that operates",
+    "program that administers",
+]
 Where = Literal["right", "wrong", "missing"]
 
 ROUTES: dict[tuple[str, str], Least] = {
@@ -42,11 +50,11 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("HEAD", "/api/openapi.json"): "viewer",
     ("GET", "/api/access/me"): "anyone",
     ("POST", "/api/access/pair"): "anyone",
-    ("POST", "/api/access/codes"): "operator",
+    ("POST", "/api/access/codes"): "administer",
     ("GET", "/api/access/devices"): "operator",
-    ("PATCH", "/api/access/devices/{device}"): "operator",
-    ("DELETE", "/api/access/devices/{device}"): "operator",
-    ("POST", "/api/access/tokens"): "operator",
+    ("PATCH", "/api/access/devices/{device}"): "administer",
+    ("DELETE", "/api/access/devices/{device}"): "administer",
+    ("POST", "/api/access/tokens"): "administer",
     ("GET", "/api/audit"): "operator",
     ("GET", "/api/audit/csv"): "operator",
     ("GET", "/api/control"): "viewer",
@@ -83,7 +91,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/link/frames"): "viewer",
     ("GET", "/api/past"): "viewer",
     ("GET", "/api/storage"): "viewer",
-    ("GET", "/api/backup"): "operator",
+    ("GET", "/api/backup"): "administer",
     ("GET", "/api/sessions"): "viewer",
     ("POST", "/api/sessions"): "operator",
     ("GET", "/api/sessions/{session}"): "viewer",
@@ -146,12 +154,13 @@ SOCKETS = {"/api/live"}
 ROLES: dict[Who, int] = {
     "anonymous": 0,
     "viewer": 1,
-    "program of a viewer": 1,
+    "program that reads": 1,
     "operator": 2,
-    "program of an operator": 2,
+    "program that operates": 2,
+    "program that administers": 2,
     "control": 3,
 }
-LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3}
+LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3, "administer": 2}
 SAFE = {"GET", "HEAD"}
 NEAR, FAR = "127.0.0.1", "192.0.2.7"
 """Addresses that ask: this computer's own, and one elsewhere."""
@@ -165,6 +174,8 @@ def expected(who: Who, least: Least, *, safe: bool, host: Where, origin: Where) 
     if who == "anonymous":
         return None if least == "anyone" else 401
     if browser and origin == "missing" and not safe:
+        return 403
+    if least == "administer" and who == "program that operates":
         return 403
     if ROLES[who] >= LEAST[least]:
         return None
@@ -228,8 +239,10 @@ class House:
 
     async def enter(self, who: Who) -> Somebody:
         """A requester that has just signed in."""
-        role = "viewer" if "viewer" in who else "operator"
-        return await (self._program(role) if who.startswith("program") else self._pair(role))
+        verb = who.removeprefix("program that ")
+        if verb != who:
+            return await self._program(verb.removesuffix("s"))
+        return await self._pair("viewer" if who == "viewer" else "operator")
 
     async def fill(self, body: dict[str, Any]) -> dict[str, Any]:
         """The body of a request, with a new code of the shell where it needs one."""
@@ -249,9 +262,9 @@ class House:
         assert status == 200
         return Somebody({"cookie": headers["set-cookie"].partition(";")[0], "x-mucat": "page"})
 
-    async def _program(self, role: str) -> Somebody:
+    async def _program(self, scope: str) -> Somebody:
         right = self.places("right", "missing")
-        wanted = {"name": role, "role": role}
+        wanted = {"name": scope, "scope": scope}
         _, _, told = await self.ask(self.shell, "POST", "/api/access/tokens", right, wanted)
         return Somebody({"authorization": f"Bearer {json.loads(told)['token']}"})
 

@@ -150,7 +150,8 @@ export interface paths {
          * Make a token for a program
          * @description Make a token for a program.
          *
-         *     The token is shown only this once. The program sends it as `Authorization: Bearer`.
+         *     The token is shown only this once. The program sends it as `Authorization: Bearer`. Its scope: `read` as a
+         *     viewer, `operate` as an operator who does not administer, `administer` as an operator.
          */
         post: operations["makeToken"];
         delete?: never;
@@ -2515,6 +2516,16 @@ export interface components {
          * @description A paired browser or program; times in s since 1970.
          */
         DeviceDetails: {
+            /**
+             * Ended
+             * @description true where the token, or an unused sign-in, has ended
+             */
+            ended: boolean;
+            /**
+             * Ends
+             * @description end of a token; null where it never ends
+             */
+            ends: number | null;
             /** Id */
             id: number;
             /**
@@ -2522,6 +2533,11 @@ export interface components {
              * @enum {string}
              */
             kind: "browser" | "program" | "shell";
+            /**
+             * Limited
+             * @description true for a token that may not administer, in any role
+             */
+            limited: boolean;
             /** Name */
             name: string;
             /** Paired */
@@ -2827,6 +2843,8 @@ export interface components {
         /**
          * Identity
          * @description A caller. `device` is the number of the browser or program that was paired; 0 is the shell.
+         *
+         *     `limited` is a program that may not administer, also not as an operator.
          */
         Identity: {
             /** Device */
@@ -2836,6 +2854,11 @@ export interface components {
              * @enum {string}
              */
             kind: "browser" | "program" | "shell";
+            /**
+             * Limited
+             * @default false
+             */
+            limited: boolean;
             /** Name */
             name: string;
             /**
@@ -3267,14 +3290,20 @@ export interface components {
          * @description A program that gets a token.
          */
         NewToken: {
+            /**
+             * Days
+             * @description until it ends; null: it never ends
+             * @default 90
+             */
+            days: number | null;
             /** Name */
             name: string;
             /**
-             * Role
-             * @default viewer
+             * Scope
+             * @default read
              * @enum {string}
              */
-            role: "viewer" | "operator";
+            scope: "read" | "operate" | "administer";
         };
         /**
          * OwnPanel

@@ -14,6 +14,15 @@ export const people = {
     legend: 'Role',
     about: { viewer: 'can watch and press STOP', operator: 'can also control the robot and invite others' },
   },
+  scopes: { read: 'read', operate: 'operate', administer: 'administer' },
+  scopeChoice: {
+    legend: 'Scope',
+    about: {
+      read: 'can watch and press STOP',
+      operate: 'can also control the robot, change settings and record',
+      administer: 'can also invite others, make tokens and take backups',
+    },
+  },
   you: {
     title: 'You',
     can: {
@@ -28,11 +37,13 @@ export const people = {
   },
   devices: {
     title: 'Browsers and programs',
-    role: 'Role',
+    role: 'Role or scope',
     lastSeen: 'Last seen',
     actions: 'Change or revoke',
     thisOne: 'this browser',
     since: (kind: string, time: string) => `${kind}, since ${time}`,
+    ends: (ended: boolean, time: string | null) =>
+      time === null ? 'ended: not used for 90 days' : ended ? `ended on ${time}` : `ends on ${time}`,
     revokeSelf: 'You will be signed out here.',
     revokeOther: 'Signs it out at once. It needs a new code to sign in again.',
     revoke: 'Revoke',
@@ -60,6 +71,9 @@ export const people = {
     sendAs: 'The program sends it as',
     programName: 'Name of the program',
     programExample: 'depth logger',
+    ends: 'Ends',
+    never: 'never',
+    afterDays: (days: number) => `after ${String(days)} days`,
     create: 'Create token',
   },
   audit: {

@@ -13,7 +13,7 @@ router = Operations(prefix="/api/backup", tags=["sessions"])
 BUSY = {409: "Another copy is being made or downloaded"}
 
 
-@router.operation("GET", Need.OPERATOR, DatabaseCopyError, BUSY, media_type="application/vnd.sqlite3")
+@router.operation("GET", Need.ADMINISTER, DatabaseCopyError, BUSY, media_type="application/vnd.sqlite3")
 async def download_backup(downloads: Provided[DatabaseDownloads]) -> Response:
     """Download a copy of the database.
 

@@ -2,7 +2,7 @@
 
 import asyncio
 import json
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from math import isfinite
 from time import time
 from typing import Annotated, Any
@@ -178,7 +178,8 @@ async def live(
             raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
             listen = _LiveConnection(socket, owner, hub, arbiter, bridge, audit).listen
-            await hub.serve(send, greeting(owner), listen, caller)
+            serving = hub.serve(send, greeting(owner), listen, caller)
+            await _end_after(access.devices.count_seconds(caller.device), serving)
     except WebSocketDisconnect:
         return
     except EvictedError as reason:
@@ -188,6 +189,17 @@ async def live(
                 await socket.close(reason.code, str(reason))
         except (TimeoutError, WebSocketDisconnect, RuntimeError):
             return
+
+
+async def _end_after(seconds: float | None, serving: Awaitable[None]) -> None:
+    """Serve until the client leaves, or its token ends: after these seconds, which raises EvictedError."""
+    try:
+        async with asyncio.timeout(seconds) as limit:
+            await serving
+    except TimeoutError:
+        if not limit.expired():
+            raise
+        raise EvictedError("This token has ended.", POLICY_VIOLATION) from None
 
 
 @router.operation("GET /api/past", Need.VIEWER, media_type="application/octet-stream", tags=["live"])

@@ -15,6 +15,7 @@ from server.platform.settings import DataFolder, Settings
 from server.platform.terminal import echo
 
 ROLE = click.Choice(["viewer", "operator"])
+SCOPE = click.Choice(["read", "operate", "administer"])
 
 
 @click.command()
@@ -70,11 +71,14 @@ def revoke(settings: Settings, device: int) -> None:
 
 @access.command()
 @click.argument("name")
-@click.option("--role", type=ROLE, default="viewer")
+@click.option("--scope", type=SCOPE, default="read", help="What it may do. Default: read.")
+@click.option("--days", type=click.IntRange(1, 3650), default=90, help="Until it ends. Default: 90.")
+@click.option("--never-ends", is_flag=True, help="Instead of --days.")
 @with_settings
-def token(settings: Settings, name: str, role: str) -> None:
+def token(settings: Settings, name: str, scope: str, days: int, never_ends: bool) -> None:
     """Make a token for a program of this name, and print it."""
-    made = ask(settings.data, "POST", "/access/tokens", {"name": name, "role": role})
+    body = {"name": name, "scope": scope, "days": None if never_ends else days}
+    made = ask(settings.data, "POST", "/access/tokens", body)
     device = made["device"]
     # To standard error: another program may read the token from standard output.
     echo(f"“{device['name']}” is device {device['id']}. The token is not shown again:", err=True)
@@ -98,6 +102,14 @@ def _named(role: str) -> str:
 def _tabulate(devices: list[dict[str, Any]]) -> str:
     return "\n".join(
         f"{one['id']:5}  {one['role']:8}  {one['kind']:7}  "
-        f"last seen {datetime.fromtimestamp(one['seen']):%Y-%m-%d %H:%M}  {one['name']}"
+        f"last seen {datetime.fromtimestamp(one['seen']):%Y-%m-%d %H:%M}  {_rights(one)}{one['name']}"
         for one in devices
     )
+
+
+def _rights(device: dict[str, Any]) -> str:
+    """Words about a token's scope and end; empty where there is nothing to say."""
+    limited = "does not administer  " if device["limited"] and device["role"] == "operator" else ""
+    verb = "ended" if device["ended"] else "ends"
+    ends = "" if device["ends"] is None else f"{verb} {datetime.fromtimestamp(device['ends']):%Y-%m-%d}  "
+    return limited + (ends or ("ended  " if device["ended"] else ""))

@@ -27,8 +27,7 @@ from server.http.sign_in.policy import Need, list_needs
 from server.platform.settings import Settings
 
 COOKIE_SECONDS = 400 * 86400
-"""The longest time for which browsers keep a cookie. Access ends by signing out and by revocation: a
-Raspberry Pi without a clock battery cannot tell that a sign-in is too old."""
+"""The longest time for which browsers keep a cookie."""
 
 TOO_MANY = {409: "Too many devices are paired"}
 NO_OPERATOR = {409: "No operator would be left"}
@@ -80,7 +79,7 @@ async def sign_out(access: Provided[Access], caller: Caller, response: Response)
     response.delete_cookie(access.cookie, httponly=True, samesite="strict")
 
 
-@router.operation("POST /codes", Need.OPERATOR, status_code=201)
+@router.operation("POST /codes", Need.ADMINISTER, status_code=201)
 async def make_code(
     request: Request, settings: Provided[Settings], access: Provided[Access], body: NewCode
 ) -> MadeCode:
@@ -94,10 +93,10 @@ async def make_code(
 @router.operation("GET /devices", Need.OPERATOR)
 async def list_devices(access: Provided[Access], caller: Caller) -> list[DeviceDetails]:
     """List the paired browsers and programs, oldest first."""
-    return [_describe(caller, device) for device in access.devices.all()]
+    return [_describe(access, caller, device) for device in access.devices.all()]
 
 
-@router.operation("PATCH /devices/{device}", Need.OPERATOR, UnknownDeviceError, NO_OPERATOR)
+@router.operation("PATCH /devices/{device}", Need.ADMINISTER, UnknownDeviceError, NO_OPERATOR)
 async def change_device(
     access: Provided[Access], caller: Caller, device: Identifier, body: DeviceChanges
 ) -> DeviceDetails:
@@ -109,10 +108,10 @@ async def change_device(
         await access.set_role(device, body.role, caller)
     if body.name is not None:
         await access.devices.rename(device, body.name)
-    return _describe(caller, access.devices.get(device))
+    return _describe(access, caller, access.devices.get(device))
 
 
-@router.operation("DELETE /devices/{device}", Need.OPERATOR, UnknownDeviceError, NO_OPERATOR)
+@router.operation("DELETE /devices/{device}", Need.ADMINISTER, UnknownDeviceError, NO_OPERATOR)
 async def revoke_device(access: Provided[Access], caller: Caller, device: Identifier) -> None:
     """Revoke a device's access.
 
@@ -121,14 +120,15 @@ async def revoke_device(access: Provided[Access], caller: Caller, device: Identi
     await access.revoke(device, caller)
 
 
-@router.operation("POST /tokens", Need.OPERATOR, TOO_MANY, status_code=201)
+@router.operation("POST /tokens", Need.ADMINISTER, TOO_MANY, status_code=201)
 async def make_token(access: Provided[Access], caller: Caller, body: NewToken) -> MadeToken:
     """Make a token for a program.
 
-    The token is shown only this once. The program sends it as `Authorization: Bearer`.
+    The token is shown only this once. The program sends it as `Authorization: Bearer`. Its scope: `read` as a
+    viewer, `operate` as an operator who does not administer, `administer` as an operator.
     """
-    device, token = await access.make_program(body.name, body.role, caller)
-    return MadeToken(token=token, device=_describe(caller, device))
+    device, token = await access.make_program(body.name, body.scope, body.days, caller)
+    return MadeToken(token=token, device=_describe(access, caller, device))
 
 
 def _called(request: Request) -> str:
@@ -151,5 +151,6 @@ def _describe_caller(
     )
 
 
-def _describe(caller: Identity, device: Device) -> DeviceDetails:
-    return DeviceDetails(**asdict(device), you=caller.device == device.id)
+def _describe(access: Access, caller: Identity, device: Device) -> DeviceDetails:
+    ended = access.devices.explain_end(device) is not None
+    return DeviceDetails(**asdict(device), ended=ended, you=caller.device == device.id)

@@ -5,9 +5,10 @@ from unicodedata import normalize
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from server.http.sign_in.identity import Identity, Kind, Role
+from server.http.sign_in.identity import Identity, Kind, Role, Scope
 
 NAME_LENGTH_MAX = 40
+TOKEN_DAYS, TOKEN_DAYS_MAX = 90, 3650
 
 
 def _check_name(name: str) -> str:
@@ -64,6 +65,9 @@ class DeviceDetails(BaseModel):
     kind: Kind
     paired: float
     seen: float
+    limited: Annotated[bool, Field(description="true for a token that may not administer, in any role")]
+    ends: Annotated[float | None, Field(description="end of a token; null where it never ends")]
+    ended: Annotated[bool, Field(description="true where the token, or an unused sign-in, has ended")]
     you: Annotated[bool, Field(description="true for the caller itself")]
 
 
@@ -80,7 +84,10 @@ class NewToken(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
     name: Name
-    role: Role = "viewer"
+    scope: Scope = "read"
+    days: Annotated[
+        int | None, Field(ge=1, le=TOKEN_DAYS_MAX, description="until it ends; null: it never ends")
+    ] = TOKEN_DAYS
 
 
 class MadeToken(BaseModel):

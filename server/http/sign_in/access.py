@@ -9,8 +9,8 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract import documents
 from robot_runtime.durable_files import write_whole
 from robot_runtime.errors import RefusedError
-from server.http.sign_in.devices import Device, Devices
-from server.http.sign_in.identity import SHELL, Identity, Role
+from server.http.sign_in.devices import Device, Devices, SignInEndedError
+from server.http.sign_in.identity import SHELL, Identity, Role, Scope
 from server.http.sign_in.pairing_codes import PairingCodes, WrongCodeError
 from server.http.sign_in.tokens import digest
 from server.platform.settings import Settings
@@ -53,7 +53,10 @@ class Access:
         write_whole(self._token_file, f"{self._token}\n".encode(), 0o600)
 
     def identify(self, connection: HTTPConnection) -> Identity | None:
-        """The caller's identity. An authorization header counts alone: a cookie beside it is ignored."""
+        """The caller's identity. An authorization header counts alone: a cookie beside it is ignored.
+
+        Raises SignInEndedError.
+        """
         header = connection.headers.get("authorization")
         if header is not None:
             if not header.lower().startswith(BEARER):
@@ -62,7 +65,7 @@ class Access:
         return self._see(self.devices.find(connection.cookies.get(self.cookie, ""), "browser"))
 
     def refresh(self, identity: Identity | None) -> Identity | None:
-        """The caller's identity as it is now, perhaps in another role; None where access was revoked."""
+        """The caller's identity as it is now, perhaps in another role; None where access has ended."""
         if identity is None or identity == SHELL:
             return identity
         device = self.devices.find_valid(identity.device)
@@ -88,14 +91,19 @@ class Access:
             if role == "operator" and known.role == "viewer":
                 await self.set_role(known.device, role, by=known)
             return self.devices.get(known.device).identity, None
-        device, secret = await self.devices.add(name, role, "browser")
+        device, secret = await self.devices.add_browser(name, role)
         self._notify("access", "info", f"“{name}” was paired as {role}.")
         return device.identity, secret
 
-    async def make_program(self, name: str, role: Role, by: Identity) -> tuple[Device, str]:
-        """Add a program; returns its device and token. Raises RefusedError, StoreError."""
-        device, token = await self.devices.add(name, role, "program")
-        self._notify("access", "info", f"“{by.name}” made a token for “{name}”, as {role}.")
+    async def make_program(
+        self, name: str, scope: Scope, days: int | None, by: Identity
+    ) -> tuple[Device, str]:
+        """Add a program; returns its device and token, which ends after `days` (None: never).
+
+        Raises RefusedError, StoreError.
+        """
+        device, token = await self.devices.add_program(name, scope, days)
+        self._notify("access", "info", f"“{by.name}” made a token for “{name}”, with the scope {scope}.")
         return device, token
 
     async def set_role(self, number: int, role: Role, by: Identity) -> None:
@@ -155,6 +163,8 @@ class Access:
     def _see(self, device: Device | None) -> Identity | None:
         if device is None:
             return None
+        if (reason := self.devices.explain_end(device)) is not None:
+            raise SignInEndedError(reason)
         self.devices.see(device)
         return device.identity
 

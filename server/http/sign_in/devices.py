@@ -5,14 +5,16 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from math import inf
 
 from sqlalchemy import delete, update
 from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
-from server.http.sign_in.identity import Identity, Kind, Role
+from server.http.sign_in.identity import Identity, Kind, Role, Scope
 from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
-from server.platform.errors import NotFoundError
+from server.platform.errors import NotFoundError, SignedOutError
 from server.platform.models import DeviceRow
 from server.platform.store import Store, StoreError, insert_row
 
@@ -21,6 +23,9 @@ log = logging.getLogger(__name__)
 DEVICES_MAX = 200
 SEEN_SECONDS = 3600.0
 """Interval of storing the last visit; a shorter one would wear out the SD card."""
+DAY_SECONDS = 86400.0
+IDLE_DAYS = 90
+"""A browser that has not been used for so long is signed out."""
 
 
 class UnknownDeviceError(NotFoundError):
@@ -30,9 +35,16 @@ class UnknownDeviceError(NotFoundError):
         super().__init__(f"There is no device {device}; GET /api/access/devices lists those there are.")
 
 
+class SignInEndedError(SignedOutError):
+    """The token or the sign-in has ended"""
+
+
 @dataclass(slots=True)
 class Device:
-    """A paired browser or program, as in DeviceRow; `stored` is the last visit in the database."""
+    """A paired browser or program, as in DeviceRow.
+
+    `stored` is the last visit in the database, `used` the last one since this server began (s, steady clock).
+    """
 
     id: int
     name: str
@@ -41,19 +53,28 @@ class Device:
     paired: float
     seen: float
     stored: float
+    limited: bool
+    ends: float | None
+    used: float = -inf
 
     @property
     def identity(self) -> Identity:
         """The identity of this device as a caller."""
-        return Identity(self.id, self.name, self.role, self.kind)
+        return Identity(self.id, self.name, self.role, self.kind, self.limited)
 
 
 class Devices:
     """All devices. Only this server writes them, so that memory and database agree."""
 
-    def __init__(self, store: Store, utc: Callable[[], float] = time.time) -> None:
+    def __init__(
+        self,
+        store: Store,
+        utc: Callable[[], float] = time.time,
+        steady: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._store = store
         self._utc = utc
+        self._steady = steady
         self._devices: dict[int, Device] = {}
         self._by_secret: dict[str, int] = {}
         self._writing: set[asyncio.Task[None]] = set()
@@ -76,29 +97,74 @@ class Devices:
         return self._devices[number]
 
     def find(self, secret: str, kind: Kind) -> Device | None:
-        """The device of this kind that has this secret."""
+        """The device of this kind that has this secret, also where its time is over."""
         device = self._devices.get(self._by_secret.get(digest(secret), 0))
         return device if device is not None and device.kind == kind else None
 
     def find_valid(self, number: int) -> Device | None:
-        """The device of this number; None where it is revoked, also while its end is still being stored."""
-        return self._devices.get(number) if number in self._by_secret.values() else None
+        """The device of this number; None where its time is over, or it is revoked, also while that is still
+        being stored."""
+        device = self._devices.get(number) if number in self._by_secret.values() else None
+        return None if device is None or self.explain_end(device) is not None else device
+
+    def explain_end(self, device: Device) -> str | None:
+        """Reason why a device's time is over; None while it is not."""
+        if device.ends is not None and self._utc() >= device.ends:
+            day = datetime.fromtimestamp(device.ends, UTC).date()
+            return f"This token ended on {day}. Make a new one under People, or with `mucat access token`."
+        # The steady clock too: a computer without a clock battery may learn the time in the middle of a dive.
+        unused = min(self._utc() - device.seen, self._steady() - device.used)
+        if device.kind == "browser" and unused > IDLE_DAYS * DAY_SECONDS:
+            return f"This browser was not used for {IDLE_DAYS} days, and is signed out. Sign it in again."
+        return None
+
+    def count_seconds(self, number: int) -> float | None:
+        """Seconds until the device's token ends; None where it never does."""
+        ends = self.get(number).ends if number in self._devices else None
+        return None if ends is None else max(0.0, ends - self._utc())
 
     @property
     def operators(self) -> list[Device]:
         """Operators that are browsers; only they can admit others."""
-        return [one for one in self._devices.values() if (one.kind, one.role) == ("browser", "operator")]
+        return [
+            one
+            for one in self._devices.values()
+            if (one.kind, one.role) == ("browser", "operator") and self.explain_end(one) is None
+        ]
 
-    async def add(self, name: str, role: Role, kind: Kind) -> tuple[Device, str]:
-        """A new device, and its secret, which is not stored.
+    async def add_browser(self, name: str, role: Role) -> tuple[Device, str]:
+        """A new browser, and its secret, which is not stored.
 
-        Raises RefusedError where there are too many, StoreError.
+        Raises RefusedError where there are too many devices, StoreError.
         """
+        return await self._add(name, role, "browser")
+
+    async def add_program(self, name: str, scope: Scope, days: int | None) -> tuple[Device, str]:
+        """A new program, and its token, which is not stored; it ends after `days`, never where that is None.
+
+        Raises RefusedError where there are too many devices, StoreError.
+        """
+        role: Role = "viewer" if scope == "read" else "operator"
+        ends = None if days is None else self._utc() + days * DAY_SECONDS
+        return await self._add(name, role, "program", limited=scope != "administer", ends=ends)
+
+    async def _add(
+        self, name: str, role: Role, kind: Kind, *, limited: bool = False, ends: float | None = None
+    ) -> tuple[Device, str]:
         if len(self._devices) >= DEVICES_MAX:
             raise RefusedError(f"{DEVICES_MAX} devices are paired already. Revoke those that nobody uses.")
         secret = make_token(TOKEN_PREFIX if kind == "program" else "")
         now = self._utc()
-        row = DeviceRow(name=name, role=role, kind=kind, secret=digest(secret), paired=now, seen=now)
+        row = DeviceRow(
+            name=name,
+            role=role,
+            kind=kind,
+            secret=digest(secret),
+            paired=now,
+            seen=now,
+            limited=limited,
+            ends=ends,
+        )
         values = row.model_dump(exclude={"id"})
         number = await self._store.write(lambda connection: insert_row(connection, DeviceRow, values))
         return self._keep(number, row), secret
@@ -131,7 +197,7 @@ class Devices:
 
     def see(self, device: Device) -> None:
         """Note a request of the device."""
-        device.seen = self._utc()
+        device.seen, device.used = self._utc(), self._steady()
         # The clock may also have been set back.
         if abs(device.seen - device.stored) < SEEN_SECONDS:
             return
@@ -166,6 +232,8 @@ class Devices:
             paired=row.paired,
             seen=row.seen,
             stored=row.seen,
+            limited=row.limited,
+            ends=row.ends,
         )
         self._devices[number] = device
         self._by_secret[row.secret] = number

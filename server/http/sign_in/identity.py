@@ -10,6 +10,8 @@ from server.platform.audit_file import SHELL_NAME
 
 Role = Literal["viewer", "operator"]
 Kind = Literal["browser", "program", "shell"]
+Scope = Literal["read", "operate", "administer"]
+"""Rights of a token: those of a viewer; of an operator who does not administer; of an operator."""
 
 IDENTITY = "identity"
 """The entry of an ASGI scope that holds the caller's identity."""
@@ -17,12 +19,16 @@ IDENTITY = "identity"
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """A caller. `device` is the number of the browser or program that was paired; 0 is the shell."""
+    """A caller. `device` is the number of the browser or program that was paired; 0 is the shell.
+
+    `limited` is a program that may not administer, also not as an operator.
+    """
 
     device: int
     name: str
     role: Role
     kind: Kind
+    limited: bool = False
 
 
 async def identify_caller(connection: HTTPConnection) -> Identity:

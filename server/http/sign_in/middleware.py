@@ -8,6 +8,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from server.http.dependencies import find_service
 from server.http.security import SAFE_METHODS, refuse
 from server.http.sign_in.access import Access
+from server.http.sign_in.devices import SignInEndedError
 from server.http.sign_in.identity import IDENTITY, Identity
 
 OPEN = frozenset({("GET", "/api/alive"), ("GET", "/api/access/me"), ("POST", "/api/access/pair")})
@@ -36,10 +37,14 @@ class SignInMiddleware:
             await self._app(scope, receive, send)
             return
         connection = HTTPConnection(scope)
-        identity = find_service(connection, Access).identify(connection)
+        nobody = NOBODY
+        try:
+            identity = find_service(connection, Access).identify(connection)
+        except SignInEndedError as problem:
+            identity, nobody = None, str(problem)
         path = scope["path"]
         if identity is None and _is_api(path) and (scope.get("method"), path) not in OPEN:
-            await refuse(scope, receive, send, 401, NOBODY)
+            await refuse(scope, receive, send, 401, nobody)
         elif identity is not None and (reason := _foreign(connection, identity)) is not None:
             await refuse(scope, receive, send, 403, reason)
         elif identity is not None and scope["type"] == "http":

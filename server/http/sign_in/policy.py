@@ -55,4 +55,6 @@ def refusal(identity: Identity | None, need: Need | None) -> str | None:
         return "You are not signed in."
     if need >= Need.OPERATOR and identity.role != "operator":
         return "This needs the role of an operator; you are a viewer. Ask an operator to make you one."
+    if need == Need.ADMINISTER and identity.limited:
+        return "This needs a token with the scope “administer”, or an operator's browser."
     return None

@@ -1,14 +1,17 @@
 """Browsers as the server sees them: a cookie, the page's header and its origin."""
 
+import asyncio
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from typing import Any
 
 import httpx
-from websockets.asyncio.client import connect
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed
 
 from server.http.sign_in.identity import Role
 from tests.server.serving import Served
+from tests.server.waiting import SECONDS
 
 
 class Browser:
@@ -51,3 +54,13 @@ async def new_code(served: Served, role: Role) -> str:
     answer = await served.api.post("/access/codes", json={"role": role})
     code: str = answer.raise_for_status().json()["code"]
     return code
+
+
+async def closing_of(socket: ClientConnection) -> tuple[int, str]:
+    """Code and reason with which the server closes a socket."""
+    async with asyncio.timeout(SECONDS):
+        with suppress(ConnectionClosed):
+            async for _ in socket:
+                pass
+    assert socket.close_code is not None
+    return socket.close_code, socket.close_reason or ""

@@ -3,12 +3,12 @@
 import asyncio
 import json
 import sqlite3
-from contextlib import closing, suppress
+from contextlib import closing
 from typing import Any
 
 import pytest
 from websockets.asyncio.client import ClientConnection
-from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.exceptions import InvalidStatus
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import read_blocks
@@ -17,18 +17,8 @@ from server.http.sign_in.pairing_codes import PairingCodes
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
 from tests.server.serving import Served, next_text, play, serve
-from tests.server.sign_in.browsers import browser, new_code
+from tests.server.sign_in.browsers import browser, closing_of, new_code
 from tests.server.waiting import until
-
-
-async def closing_of(socket: ClientConnection) -> tuple[int, str]:
-    """Code and reason with which the server closes a socket."""
-    async with asyncio.timeout(10):
-        with suppress(ConnectionClosed):
-            async for _ in socket:
-                pass
-    assert socket.close_code is not None
-    return socket.close_code, socket.close_reason or ""
 
 
 def test_every_operation_needs_a_sign_in(settings: Settings) -> None:
@@ -87,6 +77,7 @@ def test_a_code_signs_a_browser_in_with_an_http_only_cookie(settings: Settings) 
             assert (await one.api.get("/access/me")).json()["pairing_open"]
             answer = await one.pair(code)
             identity = {"device": 1, "name": "bench laptop", "role": "operator", "kind": "browser"}
+            identity["limited"] = False
             assert (answer.status_code, answer.json()["identity"]) == (200, identity)
             name, _, rest = answer.headers["set-cookie"].partition("=")
             assert name == f"mucat_{served.settings.port}"
@@ -240,7 +231,7 @@ def test_a_new_role_closes_live_sockets_and_applies_at_once(settings: Settings) 
 def test_only_the_shell_can_remove_the_last_operator(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "operator", "boss") as boss, browser(served, "viewer") as other:
-            await served.api.post("/access/tokens", json={"name": "script", "role": "operator"})
+            await served.api.post("/access/tokens", json={"name": "script", "scope": "administer"})
             own = f"/access/devices/{await boss.device()}"
             for answer in (
                 await boss.api.patch(own, json={"role": "viewer"}),
@@ -320,7 +311,7 @@ def test_events_of_sign_in_are_reported_without_secrets(settings: Settings) -> N
             told = await notices(socket, 5)
             assert [event["text"] for event in told] == [
                 "“tablet” was paired as viewer.",
-                "“the shell of this computer” made a token for “script”, as viewer.",
+                "“the shell of this computer” made a token for “script”, with the scope read.",
                 "“the shell of this computer” made “tablet” an operator.",
                 "“the shell of this computer” revoked the access of “script”.",
                 "“tablet” signed out.",
@@ -361,7 +352,7 @@ def test_the_last_visit_is_stored_once_an_hour(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         now = [1e9]
         devices = Devices(served.container.store, lambda: now[0])
-        device, _ = await devices.add("tablet", "viewer", "browser")
+        device, _ = await devices.add_browser("tablet", "viewer")
 
         async def stored() -> float:
             await devices.close()

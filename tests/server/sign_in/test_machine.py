@@ -3,7 +3,7 @@
 import asyncio
 import tempfile
 from collections.abc import Coroutine
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,7 +16,7 @@ from starlette.requests import HTTPConnection
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.access import Access
-from server.http.sign_in.identity import SHELL, Identity, Kind, Role
+from server.http.sign_in.identity import SHELL, Identity, Kind, Role, Scope
 from server.http.sign_in.pairing_codes import CODE_SECONDS, CODES_MAX, TooManyTriesError, WrongCodeError
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.schema import prepare
@@ -181,7 +181,8 @@ class SigningIn(RuleBasedStateMachine):
 
     @rule(target=members, role=ROLES)
     def make_program(self, role: Role) -> Member:
-        device, token = self.run(self.access.make_program("script", role, SHELL))
+        scope: Scope = "administer" if role == "operator" else "read"
+        device, token = self.run(self.access.make_program("script", scope, None, SHELL))
         assert (device.role, device.kind) == (role, "program")
         return self.let_in(device.identity, token)
 
@@ -206,7 +207,7 @@ class SigningIn(RuleBasedStateMachine):
         before, self.closed = member.identity.role, []
         self.run(asking)
         old = member.identity
-        member.identity = Identity(old.device, old.name, role, old.kind)
+        member.identity = replace(old, role=role)
         assert self.closed == ([old.device] if before != role else [])
 
     @rule(member=members, by=members, shell=st.booleans())

@@ -49,7 +49,7 @@ class HalfSent:
 
 
 REQUESTS = {
-    "POST /api/access/tokens": {"name": "later", "role": "operator"},
+    "POST /api/access/tokens": {"name": "later", "scope": "operate"},
     "POST /api/access/codes": {"role": "operator"},
     "POST /api/sessions": {"name": "Dive"},
     "PATCH /api/access/devices/2": {"role": "operator"},
@@ -96,7 +96,7 @@ def test_a_revoked_browser_may_pair_again_in_a_request_that_began_before(setting
             half = await HalfSent.begin(leaving, served, "POST /api/access/pair", body)
             (await served.api.delete("/access/devices/1")).raise_for_status()
             status, words = await half.end()
-            identity = {"device": 2, "name": "back", "role": "viewer", "kind": "browser"}
+            identity = {"device": 2, "name": "back", "role": "viewer", "kind": "browser", "limited": False}
             assert (status, json.loads(words)["identity"]) == (200, identity)
 
     play(settings, scenario)

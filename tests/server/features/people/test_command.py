@@ -44,7 +44,7 @@ def test_shell_commands_pair_and_revoke_people_and_programs(settings: Settings, 
             assert "an operator" in await say("pair", "--role", "operator")
             assert await say("access", "promote", "2") == "“second” is an operator now.\n"
             assert await say("access", "demote", "1") == "“first” is a viewer now.\n"
-            token = (await say("access", "token", "script", "--role", "operator")).strip()
+            token = (await say("access", "token", "script", "--scope", "operate")).strip()
             async with browser(served, None) as program:
                 headers = {"authorization": f"Bearer {token}"}
                 assert (await program.api.post("/robot/stop", headers=headers)).status_code == 204
