@@ -1,8 +1,14 @@
-"""Hypothesis settings of all tests, and what the garbage collector passes over."""
+"""Hypothesis settings of all tests, what the garbage collector passes over, and the robot they share."""
 
 import gc
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
+
+from tests.stack import Stack
 
 # A busy machine is slow, not wrong.
 settings.register_profile("mucat", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -13,3 +19,21 @@ def pytest_collection_finish() -> None:
     """Modules stay to the end: to examine them again and again would take a fifth of the processor time."""
     gc.collect()
     gc.freeze()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Move tests of the shared robot to the end, so that it does not run beside another one."""
+    items.sort(key=lambda item: "shared_stack" in getattr(item, "fixturenames", ()))
+
+
+@pytest.fixture(scope="session")
+def _running() -> Iterator[Stack]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
+        yield stack
+
+
+@pytest.fixture
+def shared_stack(_running: Stack) -> Stack:
+    """A running robot, disarmed and ready to arm, with the sessions and settings of the tests before."""
+    _running.calm()
+    return _running

@@ -14,6 +14,7 @@ from typing import Any, Self
 import httpx
 import psutil
 
+from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
 from tests.control import Commander
 from tests.shell import ShellToken
@@ -114,6 +115,23 @@ class Stack:
             time.sleep(_POLL)
         raise AssertionError(f"not ready: {health}\n{self.log.read_text(errors='replace')[-4000:]}")
 
+    def calm(self) -> None:
+        """Disarm, acknowledge, end a recording, and wait until every part is well and arming is possible."""
+        self.wait_ready()
+        self.api.post("/robot/stop").raise_for_status()
+        end = time.monotonic() + READY_SECONDS
+        while True:
+            self.api.post("/robot/commands/acknowledge").raise_for_status()
+            state = self.api.get("/robot").json()
+            recording = [one["id"] for one in self.api.get("/sessions").json() if one["state"] == "recording"]
+            if not (state["armed"] or state["refusals"] or recording):
+                return
+            for session in recording:
+                # Refused where it has just ended by itself, as that of an arming does.
+                self.api.post(f"/sessions/{session}/stop")
+            assert time.monotonic() < end, (state, recording)
+            time.sleep(_POLL)
+
     def arm(self) -> None:
         """Arm as soon as nothing speaks against it; after a start, a sensor or a value may be awaited."""
         end = time.monotonic() + READY_SECONDS
@@ -127,6 +145,10 @@ class Stack:
         found = [one for one in self.process.children(recursive=True) if word in " ".join(one.cmdline())]
         assert len(found) == 1, f"{len(found)} processes with {word}"
         return found[0]
+
+    def part(self, name: str) -> psutil.Process:
+        """The running part of this name, whichever server has started it."""
+        return psutil.Process(running_parts(DataFolder(self.data).run)[name].pid)
 
     def kill(self) -> None:
         """Kill the server alone, with -9; its runner starts the next one."""

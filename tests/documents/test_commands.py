@@ -69,10 +69,10 @@ def test_the_commands_of_a_page_can_be_run(folder: Path, page: str) -> None:
 
 @pytest.mark.stack
 @pytest.mark.parametrize("page", WITH_A_SERVER)
-def test_the_commands_of_a_page_can_be_run_beside_a_server(tmp_path: Path, page: str) -> None:
-    (tmp_path / "robot.toml").write_text((ROOT / "robot.toml").read_text())
-    with Stack(tmp_path / "data"):
-        run(read_commands(page), tmp_path)
+def test_the_commands_of_a_page_can_be_run_beside_a_server(shared_stack: Stack, page: str) -> None:
+    folder = shared_stack.data.parent
+    (folder / "robot.toml").write_text((ROOT / "robot.toml").read_text())
+    run(read_commands(page), folder)
 
 
 def test_every_page_of_tasks_with_commands_is_run() -> None:

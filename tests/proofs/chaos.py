@@ -39,7 +39,7 @@ from tests.proofs.memory import anonymous
 from tests.proofs.outages import World
 from tests.proofs.slow_page import SlowPage
 from tests.proofs.watching import wait
-from tests.stack import ROOT
+from tests.stack import ROOT, Stack
 
 DISK = "400m"
 PAUSE = (0.5, 4.0)
@@ -88,12 +88,12 @@ class Report:
 class Storm:
     """A running robot under faults."""
 
-    def __init__(self, data: Path, clock: Path, seed: int, *, small_disk: bool) -> None:
+    def __init__(self, stack: Stack, clock: Path, seed: int, *, small_disk: bool) -> None:
         self.report = Report()
         self._chance = random.Random(seed)
         self._clock = clock
-        self._world = World(data, self._chance)
-        self._stack = self._world.stack
+        self._world = World(stack, self._chance)
+        self._stack = stack
         self._pages = [SlowPage(self._stack, stalled=stalled) for stalled in (False, False, True, True)]
         self._memory: dict[int, tuple[str, list[tuple[float, float]]]] = {}
         self._sampled = 0.0
@@ -102,7 +102,7 @@ class Storm:
             self._gentle.append(self._fill_disk)
 
     def close(self) -> None:
-        """End all processes."""
+        """End pages and observation."""
         for page in self._pages:
             page.close()
         self._world.close()
@@ -321,11 +321,12 @@ def storm(folder: Path, seconds: float, seed: int, *, small_disk: bool) -> Repor
     source = Path(__file__).with_name("wall_clock.c")
     subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-o", str(library), str(source), "-ldl"], check=True)
     os.environ |= {"LD_PRELOAD": str(library), "MUCAT_WALL_CLOCK": str(clock)}
-    one = Storm(folder / "data", clock, seed, small_disk=small_disk)
-    try:
-        one.rage(seconds)
-    finally:
-        one.close()
+    with Stack(folder / "data") as stack:
+        one = Storm(stack, clock, seed, small_disk=small_disk)
+        try:
+            one.rage(seconds)
+        finally:
+            one.close()
     del os.environ["LD_PRELOAD"]
     to_host, to_board = count(min(max(seconds / 6, LINE_SECONDS[0]), LINE_SECONDS[1]), seed)
     report = one.report

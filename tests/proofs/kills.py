@@ -91,31 +91,35 @@ class Report:
 
 
 def measure(kills: int, seed: int, tell: Callable[[str], None] = lambda _: None) -> Report:
-    """Record, kill and restart repeatedly; then check the stored samples."""
+    """Record, kill and restart a robot of its own repeatedly; then check the stored samples."""
+    with TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
+        return measure_on(stack, kills, seed, tell)
+
+
+def measure_on(stack: Stack, kills: int, seed: int, tell: Callable[[str], None] = lambda _: None) -> Report:
+    """Record, kill and restart repeatedly; then check the samples of this session."""
     chance = random.Random(seed)
     report = Report()
-    with TemporaryDirectory(prefix="mucat-") as name:
-        data = Path(name) / "data"
-        with Stack(data) as stack:
-            parts = {part: _pid(data, part) for part in PARTS}
-            session = stack.api.post("/sessions", json={"name": "kills"}).json()["id"]
-            while report.kills < kills:
-                _arm(stack)
-                time.sleep(chance.uniform(0, RECORDED_MAX))
-                stored = _samples(stack, session)
-                killed = time.monotonic()
-                _kill(stack, report)
-                while chance.random() < 0.25 and report.kills < kills:
-                    time.sleep(chance.uniform(0, STARTING_MAX))
-                    _kill(stack, report)
-                _wait_for_answer(stack)
-                report.away.append(time.monotonic() - killed)
-                report.lost += max(stored - _samples(stack, session), 0)
-                report.replaced += [part for part in PARTS if _pid(data, part) != parts[part]]
-                tell(f"{report.kills:>4} of {kills}: away for {report.away[-1]:.1f} s after {stored} samples")
-            time.sleep(RECORDED_MAX)
-            stack.api.post(f"/sessions/{session}/stop").raise_for_status()
-        _examine(data / "mucat.db", report)
+    data = stack.data
+    parts = {part: _pid(data, part) for part in PARTS}
+    session = stack.api.post("/sessions", json={"name": "kills"}).raise_for_status().json()["id"]
+    while report.kills < kills:
+        _arm(stack)
+        time.sleep(chance.uniform(0, RECORDED_MAX))
+        stored = _samples(stack, session)
+        killed = time.monotonic()
+        _kill(stack, report)
+        while chance.random() < 0.25 and report.kills < kills:
+            time.sleep(chance.uniform(0, STARTING_MAX))
+            _kill(stack, report)
+        _wait_for_answer(stack)
+        report.away.append(time.monotonic() - killed)
+        report.lost += max(stored - _samples(stack, session), 0)
+        report.replaced += [part for part in PARTS if _pid(data, part) != parts[part]]
+        tell(f"{report.kills:>4} of {kills}: away for {report.away[-1]:.1f} s after {stored} samples")
+    time.sleep(RECORDED_MAX)
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+    _examine(data / "mucat.db", session, report)
     return report
 
 
@@ -153,13 +157,17 @@ def _pid(data: Path, part: str) -> int:
     return found
 
 
-def _examine(database: Path, report: Report) -> None:
+def _examine(database: Path, session: int, report: Report) -> None:
     with closing(sqlite3.connect(database)) as connection:
         (report.integrity,) = connection.execute("PRAGMA integrity_check").fetchone()
-        report.gaps = connection.execute("SELECT topic, kind, missed FROM gap").fetchall()
-        (report.seconds,) = connection.execute("SELECT duration FROM session").fetchone()
+        gaps = "SELECT topic, kind, missed FROM gap WHERE session_id = ?"
+        report.gaps = connection.execute(gaps, (session,)).fetchall()
+        duration = connection.execute("SELECT duration FROM session WHERE id = ?", (session,))
+        (report.seconds,) = duration.fetchone()
         chunks = connection.execute(
-            "SELECT topic, first, count, first_time, last_time, data FROM chunk ORDER BY topic, number"
+            "SELECT topic, first, count, first_time, last_time, data FROM chunk"
+            " WHERE session_id = ? ORDER BY topic, number",
+            (session,),
         )
         ends: dict[str, tuple[int, float]] = {}
         ticks: list[float] = []

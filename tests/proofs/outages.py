@@ -18,7 +18,6 @@ from typing import Literal
 import httpx
 import psutil
 
-from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
 from tests.proofs.watching import Fins, Viewer, wait
 from tests.stack import Stack
@@ -101,26 +100,19 @@ class Outcome:
 
 
 class World:
-    """A running robot and its observers."""
+    """Observers of a running robot, and its outages."""
 
-    def __init__(self, data: Path, chance: random.Random) -> None:
-        self.stack = Stack(data)
-        self.folder = DataFolder(data)
+    def __init__(self, stack: Stack, chance: random.Random) -> None:
+        self.stack = stack
+        self.folder = DataFolder(stack.data)
         self._chance = chance
-        self.stack.start()
-        try:
-            self.stack.wait_ready()
-        except BaseException:
-            self.stack.stop()
-            raise
         self.fins = Fins(self.folder.board_socket)
         self.viewer = Viewer(self.stack)
 
     def close(self) -> None:
-        """End all processes."""
+        """End the observation."""
         self.viewer.close()
         self.fins.close()
-        self.stack.stop()
 
     def inject(self, outage: Outage, armed: bool) -> Outcome:
         """Wait until all is well, arm if `armed`, cause the outage, and measure its effects."""
@@ -200,7 +192,7 @@ class World:
             return self.stack.server
         if name == "runner":
             return self.stack.process
-        return psutil.Process(running_parts(self.folder.run)[name].pid)
+        return self.stack.part(name)
 
     def is_replaced(self, name: str, pid: int) -> bool:
         """True if a new process has this name."""
@@ -239,24 +231,35 @@ def _measure_share(times: int, seed: int, number: int, tell: Callable[[str], Non
 def measure(
     times: int, seed: int, tell: Callable[[str], None] = lambda _: None, outages: tuple[Outage, ...] = OUTAGES
 ) -> list[Outcome]:
+    """Run each outage repeatedly on a robot of its own."""
+    with TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
+        return measure_on(stack, times, seed, tell, outages)
+
+
+def measure_on(
+    stack: Stack,
+    times: int,
+    seed: int,
+    tell: Callable[[str], None] = lambda _: None,
+    outages: tuple[Outage, ...] = OUTAGES,
+) -> list[Outcome]:
     """Run each outage repeatedly, in any order, every other one while the robot is armed."""
     chance = random.Random(seed)
     plan = [(outage, number % 2 == 0) for outage in outages for number in range(times)]
     chance.shuffle(plan)
     outcomes = []
-    with TemporaryDirectory(prefix="mucat-") as name:
-        world = World(Path(name) / "data", chance)
-        try:
-            for outage, armed in plan:
-                outcome = world.inject(outage, armed)
-                outcomes.append(outcome)
-                tell(
-                    f"{len(outcomes):>5} of {len(plan)}: {outage.name:<18} {'armed' if armed else '':<6}"
-                    f"told {outcome.told:5.2f}  rest {outcome.rest:5.2f}  off {outcome.off:5.2f}  "
-                    f"again {outcome.again:5.2f}  {'; '.join(outcome.problems)}"
-                )
-        finally:
-            world.close()
+    world = World(stack, chance)
+    try:
+        for outage, armed in plan:
+            outcome = world.inject(outage, armed)
+            outcomes.append(outcome)
+            tell(
+                f"{len(outcomes):>5} of {len(plan)}: {outage.name:<18} {'armed' if armed else '':<6}"
+                f"told {outcome.told:5.2f}  rest {outcome.rest:5.2f}  off {outcome.off:5.2f}  "
+                f"again {outcome.again:5.2f}  {'; '.join(outcome.problems)}"
+            )
+    finally:
+        world.close()
     return outcomes
 
 

@@ -5,6 +5,7 @@ import pytest
 from tests.board.rig import ROOT, build
 from tests.proofs import faults, outages
 from tests.proofs.faults import ROWS, Row
+from tests.stack import Stack
 
 SLOW = {"capsized", "not_rising", "battery_low"}
 """Half a minute each; `tests/runtime/control/test_faults_in_water.py` has them, too."""
@@ -23,7 +24,7 @@ def test_a_fault_is_reported_and_the_fins_stop_in_time(row: Row) -> None:
 
 @pytest.mark.stack
 @pytest.mark.timeout(300)
-def test_processes_that_are_killed_or_hang_stop_the_robot_and_come_back() -> None:
-    outcomes = outages.measure(1, seed=3)
+def test_processes_that_are_killed_or_hang_stop_the_robot_and_come_back(shared_stack: Stack) -> None:
+    outcomes = outages.measure_on(shared_stack, 1, seed=3)
     assert {one.outage for one in outcomes} == set(outages.OUTAGES)
     assert [(one.outage.name, problem) for one in outcomes for problem in one.problems] == []

@@ -2,7 +2,6 @@
 
 import json
 import sqlite3
-import tempfile
 import time
 from contextlib import closing
 from pathlib import Path
@@ -10,15 +9,15 @@ from pathlib import Path
 import psutil
 import pytest
 
-from tests.proofs.kills import measure
+from tests.proofs.kills import measure_on
 from tests.stack import READY_SECONDS, Stack
 
 pytestmark = pytest.mark.stack
 
 
 @pytest.mark.timeout(300)
-def test_a_server_that_is_killed_leaves_no_hole() -> None:
-    report = measure(3, seed=4)
+def test_a_server_that_is_killed_leaves_no_hole(shared_stack: Stack) -> None:
+    report = measure_on(shared_stack, 3, seed=4)
     assert not report.problems, report.table()
     assert report.rows > 0
 
@@ -36,16 +35,17 @@ def wait_for(row: tuple[str, ...], data: Path, question: str) -> None:
 
 
 @pytest.mark.timeout(300)
-def test_a_killed_process_is_replaced_and_the_session_continues() -> None:
-    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
-        data = Path(name) / "data"
-        with Stack(data) as stack:
-            session = stack.api.post("/sessions", json={"name": "parts"}).json()["id"]
-            for part, topic in (("simulator", "truth"), ("runtime", "state")):
-                wait_for((topic,), data, "SELECT DISTINCT topic FROM chunk")
-                psutil.Process(json.loads((data / "run" / f"{part}.pid").read_text())["pid"]).kill()
-                wait_for((topic, "restarted"), data, "SELECT topic, kind FROM gap")
-            stack.wait_ready()
-            assert stack.api.get(f"/sessions/{session}").json()["state"] == "recording"
-            stack.api.post(f"/sessions/{session}/stop").raise_for_status()
-        assert ask(data, "SELECT kind FROM gap") == {("restarted",)}
+def test_a_killed_process_is_replaced_and_the_session_continues(shared_stack: Stack) -> None:
+    stack, data = shared_stack, shared_stack.data
+    answer = stack.api.post("/sessions", json={"name": "parts"})
+    assert answer.status_code == 201, answer.text
+    session = answer.json()["id"]
+    of_session = f"WHERE session_id = {session}"
+    for part, topic in (("simulator", "truth"), ("runtime", "state")):
+        wait_for((topic,), data, f"SELECT DISTINCT topic FROM chunk {of_session}")
+        psutil.Process(json.loads((data / "run" / f"{part}.pid").read_text())["pid"]).kill()
+        wait_for((topic, "restarted"), data, f"SELECT topic, kind FROM gap {of_session}")
+    stack.wait_ready()
+    assert stack.api.get(f"/sessions/{session}").json()["state"] == "recording"
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+    assert ask(data, f"SELECT kind FROM gap {of_session}") == {("restarted",)}

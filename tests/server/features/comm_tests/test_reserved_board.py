@@ -1,10 +1,8 @@
 """The whole stack: a test on the robot's own board, here emulated, interrupted and completed."""
 
 import json
-import tempfile
 import time
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -29,12 +27,6 @@ TEST: dict[str, Any] = {
 LONG = TEST | {"delay": [0.0, 10.0]}
 """Its second cell takes more than three minutes."""
 SECONDS = 90.0
-
-
-@pytest.fixture
-def data() -> Iterator[Path]:
-    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
-        yield Path(name) / "data"
 
 
 def wait(condition: Callable[[], object], what: str) -> None:
@@ -71,30 +63,30 @@ def is_back(stack: Stack) -> bool:
 
 
 @pytest.mark.timeout(400)
-def test_after_a_kill_during_a_test_the_next_server_restores_the_firmware(data: Path) -> None:
-    away = data / "firmware-away"
-    with Stack(data) as stack:
-        number = run(stack, LONG)
-        wait(lambda: get(stack, number)["cells_done"] == 1, "the first cell")
-        assert away.exists()
-        link = next(part for part in stack.api.get("/health").json()["parts"] if part["name"] == "link")
-        assert (link["state"], "“on the robot”" in link["text"]) == ("absent", True)
-        assert stack.api.post("/robot/commands/arm").status_code == 409
-        assert stack.api.post("/sessions", json={}).status_code == 409
-        comm_tests = stack.child("robot_runtime.experiments.comm_test")
-        board = stack.child("build/board")
-        stack.kill()
-        wait(lambda: not alive(comm_tests.pid), "the test's process to end with its server")
-        stack.wait_ready()
-        assert alive(board.pid)
-        wait(lambda: is_back(stack), "the robot")
-        assert not away.exists()
-        interrupted = get(stack, number)
-        assert (interrupted["state"], interrupted["cells_done"]) == ("interrupted", 1)
-        assert [cell["rate"] for cell in interrupted["results"]] == [1.0]
+def test_after_a_kill_during_a_test_the_next_server_restores_the_firmware(shared_stack: Stack) -> None:
+    stack = shared_stack
+    away = stack.data / "firmware-away"
+    number = run(stack, LONG)
+    wait(lambda: get(stack, number)["cells_done"] == 1, "the first cell")
+    assert away.exists()
+    link = next(part for part in stack.api.get("/health").json()["parts"] if part["name"] == "link")
+    assert (link["state"], "“on the robot”" in link["text"]) == ("absent", True)
+    assert stack.api.post("/robot/commands/arm").status_code == 409
+    assert stack.api.post("/sessions", json={}).status_code == 409
+    comm_tests = stack.child("robot_runtime.experiments.comm_test")
+    board = stack.part("board")
+    stack.kill()
+    wait(lambda: not alive(comm_tests.pid), "the test's process to end with its server")
+    stack.wait_ready()
+    assert alive(board.pid)
+    wait(lambda: is_back(stack), "the robot")
+    assert not away.exists()
+    interrupted = get(stack, number)
+    assert (interrupted["state"], interrupted["cells_done"]) == ("interrupted", 1)
+    assert [cell["rate"] for cell in interrupted["results"]] == [1.0]
 
-        number = run(stack, TEST)
-        wait(lambda: get(stack, number)["state"] != "running", "the end")
-        done = get(stack, number)
-        assert (done["state"], done["problem"], done["place"]) == ("complete", "", "robot")
-        wait(lambda: is_back(stack) and not away.exists(), "the robot")
+    number = run(stack, TEST)
+    wait(lambda: get(stack, number)["state"] != "running", "the end")
+    done = get(stack, number)
+    assert (done["state"], done["problem"], done["place"]) == ("complete", "", "robot")
+    wait(lambda: is_back(stack) and not away.exists(), "the robot")

@@ -2,10 +2,8 @@
 
 import json
 import socket as sockets
-import tempfile
 import time
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -26,12 +24,6 @@ TICK = 0.05
 REST_SECONDS, STOP_SECONDS = 0.5, 3.0
 NEUTRALS = 10
 """Of the 25 that go out until the all-stop; when the first does is measured in simulated time elsewhere."""
-
-
-@pytest.fixture
-def stack() -> Iterator[Stack]:
-    with tempfile.TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
-        yield stack
 
 
 class Driver:
@@ -85,7 +77,10 @@ def commands(blocks: bytes, since: float) -> list[tuple[float, Navigation]]:
     return [(time, command) for time, command in sent if time >= since]
 
 
-def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_stops(stack: Stack) -> None:
+def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_stops(
+    shared_stack: Stack,
+) -> None:
+    stack = shared_stack
     folder = DataFolder(stack.data)
     fins = Fins(folder.board_socket)
     try:

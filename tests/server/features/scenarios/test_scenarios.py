@@ -1,11 +1,9 @@
 """Scenarios on the whole stack: a short live run, its ends, refusals and undoing."""
 
 import sqlite3
-import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -62,10 +60,9 @@ text = "Nearly done"
 LONG = SHORT.replace("duration = 3", "duration = 600")
 
 
-@pytest.fixture(scope="module")
-def stack() -> Iterator[Stack]:
-    with tempfile.TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
-        yield stack
+@pytest.fixture
+def stack(shared_stack: Stack) -> Stack:
+    return shared_stack
 
 
 def wait(condition: Callable[[], object], what: str, why: Callable[[], object] = str) -> None:
@@ -156,6 +153,7 @@ def test_a_live_run_is_recorded_and_undoes_its_set_up(stack: Stack) -> None:
     # The depth loop takes its set point up with the next control step.
     wait(lambda: robot(stack)["loops"][0]["set_point"] == 0.9, "the set points")
     before = settings_of(stack)
+    ((newest_session,),) = query(stack, "SELECT coalesce(max(id), 0) FROM session")
     start(stack, SHORT)
     assert refusal(stack, SHORT).startswith("“A short one” is running.")
     wait(lambda: robot(stack)["armed"], "the scenario to arm the robot")
@@ -170,7 +168,7 @@ def test_a_live_run_is_recorded_and_undoes_its_set_up(stack: Stack) -> None:
     stack.api.post("/parameters/undo", json={"change": newest["id"]}).raise_for_status()
 
     columns = "id, state, origin, scenario_name, seed, scenario, started_steady, samples"
-    (session,) = query(stack, f"SELECT {columns} FROM session")
+    (session,) = query(stack, f"SELECT {columns} FROM session WHERE id > {newest_session}")
     assert session[:6] == (last["session"], "complete", "scenario", "short", 7, SHORT)
     assert session[7] > 500
     marks = query(stack, f"SELECT time, text FROM marker WHERE session_id = {session[0]} ORDER BY time")
@@ -203,7 +201,7 @@ def test_a_run_ends_with_its_recording_and_on_cancellation(stack: Stack) -> None
 
 def test_the_end_of_the_simulator_fails_the_run(stack: Stack) -> None:
     begin_long(stack)
-    stack.child("robot_runtime.simulation --board").kill()
+    stack.part("simulator").kill()
     last = ended(stack)
     assert (last["state"], last["problem"]) == (
         "failed",
