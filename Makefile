@@ -83,8 +83,8 @@ hostile: setup ## hostile words through every entrance to a build, a file name o
 interface: setup ## ask every operation what its description lets one think of (QUESTIONS=300 of each)
 	@nice $(PYTHON) -W ignore -m tests.proofs.interface $(QUESTIONS)
 
-attacks: setup host-firmware ## every attack of the security review on a whole robot, while an operator presses STOP
-	@nice $(PYTHON) -m tests.proofs.attacks
+attacks: setup host-firmware ## every attack of the security review on a whole robot, while an operator arms it and presses STOP (some with ONLY=words)
+	@nice $(PYTHON) -m tests.proofs.attacks $(ONLY)
 
 hours: setup host-firmware ## record HOURS=8 of a dive in simulated time and read them; an hour's load on the memory
 	@nice $(PYTHON) -m tests.proofs.hours $(HOURS)

@@ -1,7 +1,8 @@
-"""The attackers of `attacks.py`, in a process of their own: each repeats one attack until its time is over.
+"""The attackers of `attacks.py`, in a process of their own: each repeats one until its input is closed.
 
-`python -m tests.proofs.attackers URL VIEWER OPERATOR SECONDS`, with two tokens, prints a JSON object: for
+`python -m tests.proofs.attackers URL VIEWER OPERATOR [WORDS]`, with two tokens, prints a JSON object: for
 each attack an empty text where it was held, else what went wrong. All loads are bounded, and on the loopback.
+With words, it runs the attacks that have them in their names.
 """
 
 import base64
@@ -16,6 +17,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
+from threading import Event
 from urllib.parse import urlsplit
 
 import httpx
@@ -285,9 +287,10 @@ ATTACKS: dict[str, Callable[[Field], None]] = {
 }
 
 
-def repeat(attack: Callable[[Field], None], field: Field, end: float) -> str:
-    """Repeats an attack up to a time of the steady clock; returns what went wrong."""
-    while time.monotonic() < end:
+def repeat(attack: Callable[[Field], None], field: Field, end: Event) -> str:
+    """Repeats an attack, once at least, until the end; returns what went wrong."""
+    ended = False
+    while not ended:
         try:
             attack(field)
         except (
@@ -299,16 +302,24 @@ def repeat(attack: Callable[[Field], None], field: Field, end: float) -> str:
             zlib.error,
         ) as problem:
             return f"{type(problem).__name__}: {problem}"[:300]
+        ended = end.is_set()
     return ""
+
+
+def choose(words: str) -> dict[str, Callable[[Field], None]]:
+    """The attacks that have these words in their names."""
+    return {name: attack for name, attack in ATTACKS.items() if words in name}
 
 
 def main() -> None:
     """Runs every attack at once."""
-    url, viewer, operator, seconds = sys.argv[1:]
-    field, end = Field(url, viewer, operator), time.monotonic() + float(seconds)
-    with ThreadPoolExecutor(len(ATTACKS)) as threads:
-        found = threads.map(lambda attack: repeat(attack, field, end), ATTACKS.values())
-    print(json.dumps(dict(zip(ATTACKS, found, strict=True))))
+    url, viewer, operator, *words = sys.argv[1:]
+    field, end, attacks = Field(url, viewer, operator), Event(), choose(" ".join(words))
+    with ThreadPoolExecutor(len(attacks)) as threads:
+        found = threads.map(lambda attack: repeat(attack, field, end), attacks.values())
+        sys.stdin.read()
+        end.set()
+    print(json.dumps(dict(zip(attacks, found, strict=True))))
 
 
 if __name__ == "__main__":

@@ -1,30 +1,36 @@
-"""Every attack of the security review on a whole robot, while an operator presses STOP.
+"""Every attack of the security review on a whole robot, while an operator arms it and presses STOP.
 
-`python -m tests.proofs.attacks` prints which rows held, the delays of STOP, and the control loop's jitter
-with and without attacks; status 1 where a row did not hold, or STOP came late. What needs no running robot,
-or another one, are tests: the table names them, and they are run first.
+`python -m tests.proofs.attacks [WORDS]` prints a table of the attacks (of those that have the words in their
+names), the delays of STOP, and the control loop's jitter with and without attacks; status 1 where one was not
+held, or STOP came late. What needs no running robot, or another one, are tests, which are run first.
 """
 
 import json
+import os
+import signal
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from robot_runtime.transport.blocks import read_blocks, read_rows
+from server.platform.pidfile import pid_file
+from tests.proofs.attackers import ATTACKS, choose
 from tests.stack import ROOT, Stack
 
 PRESSES = 100
-PERIOD = 0.25
-"""s between two presses."""
+QUIET_PRESSES = 20
 STOP_MAX = 0.5
 """s of the slowest but one of a hundred presses."""
 JITTER_MAX = 0.02
 """s by which attacks may lengthen the loop's 99th percentile."""
-QUIET_SECONDS = 10.0
+RECORD_SECONDS = 10.0
+NOBODY = 65534
 TESTS = {
     "half-sent requests over a revocation": "tests/server/sign_in/test_revoked_requests.py",
     "pairing, sessions, cookies, sign-out": "tests/server/sign_in/test_access.py",
@@ -37,8 +43,18 @@ TESTS = {
     "formulas and exports": "tests/server/features/exports/test_tables.py",
     "panels and layouts": "tests/server/features/panels",
     "TLS": "tests/server/sign_in/test_tls.py",
+    "connections, heads and bodies without end": "tests/server/http/test_connections.py",
+    "X-Forwarded-For": "tests/server/http/test_proxies.py",
+    "numbers that are none": "tests/server/http/test_body_numbers.py",
+    "Zenoh over TCP": "tests/server/platform/test_authority.py",
     "a full disk": "tests/server/features/sessions/test_full_disk.py",
+    "exits of the panel sandbox": "tests/browser/test_panels.py",
+    "modes of files, whatever the umask": "tests/server/test_cli.py -k private",
 }
+
+
+AFTERWARDS = ("files, sockets and serial line as nobody", "the runtime killed in mid-command")
+LIVE = (*ATTACKS, *AFTERWARDS)
 
 
 def percentile(values: Sequence[float], share: float) -> float:
@@ -48,14 +64,14 @@ def percentile(values: Sequence[float], share: float) -> float:
 
 
 def press(stack: Stack, count: int) -> list[float]:
-    """The delays of so many STOPs, s."""
+    """The delays of so many STOPs of the armed robot, s."""
     delays = []
     for _ in range(count):
+        stack.arm()
         began = time.monotonic()
         answer = stack.api.post("/robot/stop", timeout=60)
         delays.append(time.monotonic() - began)
         assert answer.status_code < 300, answer.text
-        time.sleep(max(0.0, PERIOD - delays[-1]))
     return delays
 
 
@@ -80,19 +96,60 @@ def make_token(stack: Stack, scope: str) -> str:
 def record(stack: Stack) -> None:
     """A session that viewers read."""
     session = stack.api.post("/sessions", json={"name": "attacked"}).raise_for_status().json()["id"]
-    time.sleep(QUIET_SECONDS)
+    time.sleep(RECORD_SECONDS)
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
 
 
-def attack(stack: Stack) -> tuple[dict[str, str], list[float], dict[str, float]]:
+def look_as_nobody(data: Path) -> str:
+    """Returns the token, database, sockets and serial line that another user finds."""
+    for folder in data.parents[: len(data.parts) - len(Path(tempfile.gettempdir()).parts) - 1]:
+        folder.chmod(0o755)
+    places = [data / "server.token", data / "run" / "runtime.sock", data / "run" / "board.tty"]
+    command = ["/usr/bin/find", str(data), *map(str, places)]
+    as_nobody: dict[str, Any] = {"user": NOBODY, "group": NOBODY, "extra_groups": []}
+    found = subprocess.run(command, **as_nobody, capture_output=True, text=True)
+    seen = [line for line in found.stdout.splitlines() if line != str(data)]
+    line = str((data / "run" / "board.tty").resolve())
+    ways = [["/usr/bin/test", way, line] for way in ("-r", "-w")]
+    seen += [str(one) for one in ways if subprocess.run(one, **as_nobody).returncode == 0]
+    return f"nobody finds {seen}" if seen or not found.stderr else ""
+
+
+def kill_the_runtime(stack: Stack) -> str:
+    """The runtime is killed while commands are sent: they fail in words, and the robot is there again."""
+    stack.arm()
+    running = pid_file(stack.data / "run", "runtime").read()
+    assert running is not None
+    with ThreadPoolExecutor(1) as thread:
+        commands = [thread.submit(stack.api.post, "/robot/stop", timeout=60) for _ in range(20)]
+        os.kill(running.pid, signal.SIGKILL)
+        statuses = {one.result().status_code for one in commands}
+    stack.wait_ready()
+    armed = stack.api.get("/robot").json()["armed"]
+    return "" if statuses <= {204, 503} and not armed else f"answers {statuses}, armed: {armed}"
+
+
+def attack(stack: Stack, words: str) -> tuple[dict[str, str], list[float], dict[str, float]]:
     """The problems by attack, the delays of STOP, and the jitter without and with attacks."""
+    problems, delays, jitter = attack_while_pressing(stack, words) if choose(words) else ({}, [], {})
+    nobody, killed = AFTERWARDS
+    if words in nobody and os.geteuid() == 0:
+        problems[nobody] = look_as_nobody(stack.data)
+    if words in killed:
+        problems[killed] = kill_the_runtime(stack)
+    return problems, delays, jitter
+
+
+def attack_while_pressing(stack: Stack, words: str) -> tuple[dict[str, str], list[float], dict[str, float]]:
+    """The same for the attacks that the attackers repeat meanwhile."""
     record(stack)
     began = time.monotonic()
-    press(stack, int(QUIET_SECONDS / PERIOD))
+    press(stack, QUIET_PRESSES)
     quiet = read_jitter(stack, began, time.monotonic())
     tokens = [make_token(stack, scope) for scope in ("read", "administer")]
-    command = [sys.executable, "-m", "tests.proofs.attackers", stack.url, *tokens, str(PRESSES * PERIOD)]
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as attackers:
+    command = [sys.executable, "-m", "tests.proofs.attackers", stack.url, *tokens, words]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, cwd=ROOT, stdin=pipe, stdout=pipe, text=True) as attackers:
         began = time.monotonic()
         delays = press(stack, PRESSES)
         jitter = {"without": quiet, "with": read_jitter(stack, began, time.monotonic())}
@@ -103,20 +160,31 @@ def attack(stack: Stack) -> tuple[dict[str, str], list[float], dict[str, float]]
 
 def test(path: str) -> str:
     """The last line of a row's tests where one fails; else empty."""
-    command = [sys.executable, "-m", "pytest", "-q", "-m", "not stack", "-p", "no:cacheprovider", path]
+    chosen = [] if path.startswith("tests/browser") else ["-m", "not stack"]
+    command = [sys.executable, "-m", "pytest", "-q", *chosen, "-p", "no:cacheprovider", *path.split()]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     return "" if done.returncode == 0 else done.stdout.strip().splitlines()[-1]
 
 
 def main() -> int:
     """Exit status: 1 where a row did not hold or STOP was late."""
-    rows = {} if "--live" in sys.argv else {name: test(path) for name, path in TESTS.items()}
-    with tempfile.TemporaryDirectory(prefix="mucat-") as folder, Stack(Path(folder) / "data") as stack:
-        problems, delays, jitter = attack(stack)
-    rows |= problems
+    words = " ".join(sys.argv[1:])
+    rows = {name: test(path) for name, path in TESTS.items() if words in name}
+    delays: list[float] = []
+    jitter: dict[str, float] = {}
+    if any(words in name for name in LIVE):
+        with tempfile.TemporaryDirectory(prefix="mucat-") as folder, Stack(Path(folder) / "data") as stack:
+            problems, delays, jitter = attack(stack, words)
+        rows |= problems
+    if not rows:
+        print(f"No attack has “{words}” in its name.")
+        return 1
     width = max(map(len, rows))
     for name, problem in rows.items():
-        print(f"{name:<{width}}  {problem or 'held'}")
+        outcome, where = "NOT HELD" if problem else "held", TESTS.get(name, "whole robot")
+        print(f"{name:<{width}}  {outcome:<8}  {where}  {problem}")
+    if not delays:
+        return 1 if any(rows.values()) else 0
     late = percentile(delays, 0.99)
     print(f"\nSTOP, {len(delays)} presses: median {percentile(delays, 0.5):.3f} s, p99 {late:.3f} s")
     print(f"jitter of the control loop, p99: without {jitter['without']:.4f} s, with {jitter['with']:.4f} s")
