@@ -7,14 +7,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, StorageState, ViewportSize, sync_playwright
+from playwright.sync_api import Browser, Page, StorageState, ViewportSize
 
 from robot_runtime.transport.zenoh_transport import ZenohTransport
-from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL, sign_in
+from tests.browser.opening import DESKTOP, PHONE, closing_pages, launched, opened_page, signed_in
+from tests.browser.pages import stop_recordings
 from tests.stack import Stack
 
-DESKTOP: ViewportSize = {"width": 1440, "height": 900}
-PHONE: ViewportSize = {"width": 390, "height": 844}
 RESET_SECONDS = 10.0
 
 
@@ -26,19 +25,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=HEADLESS_SHELL, args=ARGUMENTS)
+    with launched() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture(autouse=True)
 def _no_page_is_left(browser: Browser) -> Iterator[None]:
-    """Close what a failed test has left open: such pages would take the computer from the tests after it."""
-    before = list(browser.contexts)
-    yield
-    for context in [one for one in browser.contexts if one not in before]:
-        context.close()
+    with closing_pages(browser):
+        yield
 
 
 @pytest.fixture(scope="package")
@@ -53,11 +47,7 @@ def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
 @pytest.fixture(scope="package")
 def cookies(browser: Browser, stack: Stack) -> StorageState:
     """Cookies and storage of a signed-in operator."""
-    context = browser.new_context()
-    sign_in(context, stack.url, stack.data)
-    kept = context.storage_state()
-    context.close()
-    return kept
+    return signed_in(browser, stack)
 
 
 @pytest.fixture(params=[DESKTOP, PHONE], ids=["desktop", "phone"])
@@ -76,19 +66,11 @@ def page(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page
 
 def open_page(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
     """The page at this size, robot at the surface; afterwards all is at rest."""
-    # Charts then move once a second, which leaves the computer to what is tested.
-    context = browser.new_context(
-        viewport=size, storage_state=cookies, reduced_motion="reduce", color_scheme="dark"
-    )
-    page = context.new_page()
-    complaints: list[str] = []
     bring_to_surface(stack)
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto(stack.url)
-    yield page
-    context.close()
-    put_to_rest(stack)
-    assert complaints == []
+    with opened_page(browser, stack, cookies, size) as page:
+        yield page
+        page.context.close()
+        put_to_rest(stack)
 
 
 def bring_to_surface(stack: Stack) -> None:
@@ -103,7 +85,5 @@ def put_to_rest(stack: Stack) -> None:
     stack.api.post("/comm-tests/cancel").raise_for_status()
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.post("/robot/commands/acknowledge").raise_for_status()
-    for session in stack.api.get("/sessions").json():
-        if session["state"] == "recording":
-            stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
+    stop_recordings(stack)
     stack.api.post("/robot/commands/card", json={"colour": None}).raise_for_status()

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from playwright.sync_api import Page, expect
 
+from tests.browser.site import Site
 from tests.proofs.watching import wait
-from tests.stack import Stack
 
 SESSIONS = ("Dive to half a metre", "Half a metre with PID")
 """{first} and {second} in the addresses."""
@@ -41,34 +41,34 @@ PAGES = (
 )
 
 
-def fill(stack: Stack) -> None:
+def fill(site: Site) -> None:
     """Ensure that two sessions exist."""
-    there = {session["name"] for session in stack.api.get("/sessions").json()}
+    there = {session["name"] for session in site.api.get("/sessions").json()}
     for name in SESSIONS:
         if name in there:
             continue
-        session = stack.api.post("/sessions", json={"name": name}).raise_for_status().json()["id"]
-        stack.api.post(f"/sessions/{session}/markers", json={"text": "here"}).raise_for_status()
-        wait(lambda: samples(stack, session) > 0, "samples")  # noqa: B023 - it is called here
-        stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+        session = site.api.post("/sessions", json={"name": name}).raise_for_status().json()["id"]
+        site.api.post(f"/sessions/{session}/markers", json={"text": "here"}).raise_for_status()
+        wait(lambda: samples(site, session) > 0, "samples")  # noqa: B023 - it is called here
+        site.api.post(f"/sessions/{session}/stop").raise_for_status()
 
 
-def samples(stack: Stack, session: int) -> int:
+def samples(site: Site, session: int) -> int:
     """Number of samples that a session holds."""
-    return int(stack.api.get(f"/sessions/{session}").json()["samples"])
+    return int(site.api.get(f"/sessions/{session}").json()["samples"])
 
 
-def show(page: Page, stack: Stack, view: View) -> None:
+def show(page: Page, site: Site, view: View) -> None:
     """Open a page, and wait until its contents are shown."""
-    there = {one["name"]: one for one in stack.api.get("/sessions").json()}
+    there = {one["name"]: one for one in site.api.get("/sessions").json()}
     first, second = (there[name] for name in SESSIONS)
     names = {
         "first": first["id"],
         "second": second["id"],
         "moment": f"{first['duration'] / 2:.1f}",
-        "run": stack.api.get("/comm-tests/runs").json()[0]["id"],
+        "run": site.api.get("/comm-tests/runs").json()[0]["id"],
     }
-    page.goto(f"{stack.url}/#/{view.address.format(**names)}")
+    page.goto(f"{site.url}/#/{view.address.format(**names)}")
     expect(page.get_by_role("heading", name=re.compile(view.shows)).first).to_be_visible()
     settle(page)
 
@@ -78,3 +78,10 @@ def settle(page: Page) -> None:
     expect(
         page.get_by_text(re.compile("being (fetched|read|compared|checked)|(Loading|Checking)…"))
     ).to_have_count(0)
+
+
+def stop_recordings(site: Site) -> None:
+    """End the recording of a session, if there is one."""
+    for session in site.api.get("/sessions").json():
+        if session["state"] == "recording":
+            site.api.post(f"/sessions/{session['id']}/stop").raise_for_status()

@@ -5,23 +5,23 @@ from contextlib import contextmanager
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.stack import Stack
+from tests.browser.site import Site
 
 
-def make_link(stack: Stack, role: str) -> str:
+def make_link(site: Site, role: str) -> str:
     """A link that signs one browser in."""
-    made = stack.api.post("/access/codes", json={"role": role}).raise_for_status()
+    made = site.api.post("/access/codes", json={"role": role}).raise_for_status()
     return str(made.json()["link"])
 
 
 @contextmanager
-def somebody(browser: Browser, stack: Stack, role: str) -> Iterator[Page]:
+def somebody(browser: Browser, site: Site, role: str) -> Iterator[Page]:
     """The page in another browser, signed in by a link; console errors fail the test."""
     context = browser.new_context(viewport={"width": 1440, "height": 900}, color_scheme="dark")
     page = context.new_page()
     complaints: list[str] = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto(make_link(stack, role))
+    page.goto(make_link(site, role))
     expect(page.get_by_role("button", name="STOP")).to_be_visible()
     yield page
     context.close()

@@ -11,8 +11,8 @@ from tempfile import TemporaryDirectory
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
-from tests.browser.conftest import DESKTOP, PHONE
 from tests.browser.driving import wait_for_depth
+from tests.browser.opening import DESKTOP, PHONE
 from tests.browser.pages import PAGES, SESSIONS, settle, show
 from tests.browser.people import somebody
 from tests.proofs.watching import wait

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, expect
 
-from tests.browser.conftest import DESKTOP, PHONE
 from tests.browser.driving import hold_to_arm
+from tests.browser.opening import DESKTOP, PHONE
 from tests.browser.pages import PAGES, View, fill, settle, show
 from tests.browser.people import make_link
 from tests.stack import ROOT, Stack

@@ -2,7 +2,7 @@
 
 from playwright.sync_api import Browser, Page, StorageState, expect
 
-from tests.browser.conftest import PHONE
+from tests.browser.opening import PHONE
 from tests.stack import Stack
 
 

@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSize, expect
 
-from tests.browser.conftest import PHONE
+from tests.browser.opening import PHONE
 from tests.browser.pages import samples
 from tests.proofs.watching import wait
 from tests.stack import Stack

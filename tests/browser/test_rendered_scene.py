@@ -9,7 +9,7 @@ from playwright.sync_api import Browser, expect
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.browser.chromium import sign_in
-from tests.browser.conftest import DESKTOP
+from tests.browser.opening import DESKTOP
 from tests.stack import Stack
 
 SCENE_MS = 60_000

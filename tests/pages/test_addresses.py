@@ -2,11 +2,11 @@
 
 from playwright.sync_api import Page, expect
 
-from tests.stack import Stack
+from tests.browser.site import Site
 
 
-def test_an_unknown_address_is_not_found(page: Page, stack: Stack) -> None:
-    page.goto(f"{stack.url}/#/seesions/7")
+def test_an_unknown_address_is_not_found(page: Page, site: Site) -> None:
+    page.goto(f"{site.url}/#/seesions/7")
     expect(page.get_by_role("heading", name="Page not found")).to_be_visible()
     expect(page.get_by_role("button", name="STOP")).to_be_visible()
     page.get_by_role("link", name="Go to Operate").click()

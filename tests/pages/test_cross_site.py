@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, StorageState
 
 from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL
-from tests.stack import Stack
+from tests.browser.site import Site
 
 FOREIGN = "evil.example"
 ATTACKS = """async (target) => {
@@ -114,15 +114,15 @@ def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
     other.close()
 
 
-def snapshot(stack: Stack) -> dict[str, Any]:
+def snapshot(site: Site) -> dict[str, Any]:
     """The state that an attack might change."""
-    robot = stack.api.get("/robot").raise_for_status().json()
+    robot = site.api.get("/robot").raise_for_status().json()
     names = ("mode", "armed", "set_point_default", "set_point_detected", "card", "vision_rate")
     found: dict[str, Any] = {name: robot[name] for name in names}
     found["loops"] = [(one["name"], one["on"], one["controller"], one["set_point"]) for one in robot["loops"]]
     for path in ("/sessions", "/exports", "/scenarios", "/comm-tests/runs"):
-        found[path] = [str(one.get("id", one.get("name"))) for one in stack.api.get(path).json()]
-    devices = stack.api.get("/access/devices").json()
+        found[path] = [str(one.get("id", one.get("name"))) for one in site.api.get(path).json()]
+    devices = site.api.get("/access/devices").json()
     return found | {"devices": [(one["id"], one["name"], one["role"]) for one in devices]}
 
 
@@ -136,26 +136,26 @@ def attack(page: Page, target: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", ["127.0.0.1", "localhost", FOREIGN])
-def test_a_foreign_page_gets_no_data(victim: BrowserContext, stack: Stack, evil_port: int, name: str) -> None:
+def test_a_foreign_page_gets_no_data(victim: BrowserContext, site: Site, evil_port: int, name: str) -> None:
     own = victim.new_page()
-    own.goto(stack.url)
+    own.goto(site.url)
     assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it is not signed in"
-    before = snapshot(stack)
+    before = snapshot(site)
     page = victim.new_page()
     changed: list[str] = []
     page.on("response", lambda one: changed.append(f"{one.request.method} {one.url} {one.status}"))
     page.goto(f"http://{name}:{evil_port}/")
-    assert attack(page, stack.url) == {}
+    assert attack(page, site.url) == {}
     posts = [one for one in changed if one.startswith(("POST", "PUT"))]
     assert posts
     assert all(one.endswith((" 401", " 403")) for one in posts), posts
-    assert snapshot(stack) == before
+    assert snapshot(site) == before
     assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it was signed out"
 
 
-def test_a_foreign_host_name_is_refused(victim: BrowserContext, stack: Stack) -> None:
+def test_a_foreign_host_name_is_refused(victim: BrowserContext, site: Site) -> None:
     page = victim.new_page()
-    answer = page.goto(f"http://{FOREIGN}:{stack.port}/")
+    answer = page.goto(f"http://{FOREIGN}:{site.port}/")
     assert answer is not None
     assert answer.status == 403
     status = "(path) => fetch(path, {headers: {'x-mucat': 'page'}}).then((answer) => answer.status)"

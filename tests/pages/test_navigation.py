@@ -3,9 +3,9 @@
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, expect
 
-from tests.browser.conftest import PHONE
+from tests.browser.opening import PHONE
 from tests.browser.pages import PAGES, fill, show
-from tests.stack import Stack
+from tests.browser.site import Site
 
 TABS = {
     "response": "Step response",
@@ -15,11 +15,11 @@ TABS = {
 }
 
 
-def test_every_page_has_a_title_that_begins_with_its_heading(page: Page, stack: Stack) -> None:
-    fill(stack)
+def test_every_page_has_a_title_that_begins_with_its_heading(page: Page, site: Site) -> None:
+    fill(site)
     titles = {}
     for view in PAGES:
-        show(page, stack, view)
+        show(page, site, view)
         heading = page.get_by_role("heading", level=1)
         expect(heading).to_have_count(1)
         expect(page).to_have_title(f"{' '.join((heading.text_content() or '').split())} · µ-CAT")
@@ -29,10 +29,10 @@ def test_every_page_has_a_title_that_begins_with_its_heading(page: Page, stack: 
     assert len(set(titles.values())) >= len(PAGES) - 3, titles  # Tune's four views are one page
 
 
-def test_signing_in_has_a_title(browser: Browser, stack: Stack) -> None:
+def test_signing_in_has_a_title(browser: Browser, site: Site) -> None:
     context = browser.new_context()
     page = context.new_page()
-    page.goto(stack.url)
+    page.goto(site.url)
     expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
     expect(page).to_have_title("Sign in to turtle · µ-CAT")
     context.close()
@@ -48,8 +48,8 @@ def test_the_heading_of_the_next_page_gets_the_focus(page: Page, name: str) -> N
     expect(page.get_by_role("heading", level=1, name=name)).to_be_focused()
 
 
-def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, stack: Stack) -> None:
-    page.goto(f"{stack.url}/#/tune/response")
+def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, site: Site) -> None:
+    page.goto(f"{site.url}/#/tune/response")
     tab = page.get_by_role("navigation", name="Tuning views").get_by_role("link", name="Parameters")
     tab.focus()
     tab.press("Enter")
@@ -58,12 +58,12 @@ def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, stack: 
 
 
 def test_the_current_tab_of_tune_is_in_view_on_a_phone(
-    browser: Browser, stack: Stack, cookies: StorageState
+    browser: Browser, site: Site, cookies: StorageState
 ) -> None:
     context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True)
     page = context.new_page()
     for address, name in TABS.items():
-        page.goto(f"{stack.url}/#/tune/{address}")
+        page.goto(f"{site.url}/#/tune/{address}")
         tabs = page.get_by_role("navigation", name="Tuning views")
         tab = tabs.get_by_role("link", name=name)
         expect(tab).to_have_attribute("aria-current", "page")

@@ -7,7 +7,7 @@ from typing import Literal
 import pytest
 from playwright.sync_api import Browser, Locator, Page, StorageState, expect
 
-from tests.stack import Stack
+from tests.browser.site import Site
 
 WIDTHS = (360, 390, 768, 1024, 1366, 1920)
 
@@ -15,7 +15,7 @@ WIDTHS = (360, 390, 768, 1024, 1366, 1920)
 @contextmanager
 def opened(
     browser: Browser,
-    stack: Stack,
+    site: Site,
     cookies: StorageState,
     *,
     scheme: Literal["dark", "light"] = "dark",
@@ -32,7 +32,7 @@ def opened(
         reduced_motion="reduce",
     )
     page = context.new_page()
-    page.goto(stack.url)
+    page.goto(site.url)
     expect(page.get_by_role("button", name="STOP")).to_be_visible()
     yield page
     context.close()
@@ -46,19 +46,19 @@ def theme(page: Page) -> Locator:
 @pytest.mark.parametrize(("scheme", "expected"), [("dark", "dark"), ("light", "sunlight")])
 def test_the_first_visit_follows_the_device(
     browser: Browser,
-    stack: Stack,
+    site: Site,
     cookies: StorageState,
     scheme: Literal["dark", "light"],
     expected: str,
 ) -> None:
-    with opened(browser, stack, cookies, scheme=scheme) as page:
+    with opened(browser, site, cookies, scheme=scheme) as page:
         expect(theme(page)).to_have_attribute("data-theme", expected)
         page.emulate_media(color_scheme="light")
         expect(theme(page)).to_have_attribute("data-theme", "sunlight")
 
 
-def test_a_chosen_theme_overrides_the_device_s(browser: Browser, stack: Stack, cookies: StorageState) -> None:
-    with opened(browser, stack, cookies) as page:
+def test_a_chosen_theme_overrides_the_device_s(browser: Browser, site: Site, cookies: StorageState) -> None:
+    with opened(browser, site, cookies) as page:
         page.get_by_role("button", name="Page settings").click()
         page.get_by_role("radio", name="Sunlight").check()
         expect(theme(page)).to_have_attribute("data-theme", "sunlight")
@@ -69,8 +69,8 @@ def test_a_chosen_theme_overrides_the_device_s(browser: Browser, stack: Stack, c
         expect(theme(page)).to_have_attribute("data-theme", "dark")
 
 
-def test_the_theme_is_chosen_at_every_width(browser: Browser, stack: Stack, cookies: StorageState) -> None:
-    with opened(browser, stack, cookies) as page:
+def test_the_theme_is_chosen_at_every_width(browser: Browser, site: Site, cookies: StorageState) -> None:
+    with opened(browser, site, cookies) as page:
         for width in WIDTHS:
             page.set_viewport_size({"width": width, "height": 844})
             page.get_by_role("button", name="Page settings").click()
@@ -86,17 +86,17 @@ def colour(place: Locator, name: str) -> str:
     return str(place.evaluate(f"(one) => getComputedStyle(one)['{name}']"))
 
 
-def test_more_contrast_on_the_device_s_request(browser: Browser, stack: Stack, cookies: StorageState) -> None:
-    with opened(browser, stack, cookies) as page:
+def test_more_contrast_on_the_device_s_request(browser: Browser, site: Site, cookies: StorageState) -> None:
+    with opened(browser, site, cookies) as page:
         plain = colour(page.get_by_role("heading", name="Camera"), "color")
-    with opened(browser, stack, cookies, contrast="more") as page:
+    with opened(browser, site, cookies, contrast="more") as page:
         assert colour(page.get_by_role("heading", name="Camera"), "color") != plain
 
 
 def test_forced_colours_show_the_selection_and_stop(
-    browser: Browser, stack: Stack, cookies: StorageState
+    browser: Browser, site: Site, cookies: StorageState
 ) -> None:
-    with opened(browser, stack, cookies, forced=True) as page:
+    with opened(browser, site, cookies, forced=True) as page:
         pages = page.get_by_role("navigation", name="Pages")
         here, there = pages.get_by_role("link", name="Operate"), pages.get_by_role("link", name="System")
         assert colour(here, "backgroundColor") != colour(there, "backgroundColor")

@@ -4,13 +4,12 @@ import re
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.driving import hold_to_arm
-from tests.browser.people import make_link, somebody
-from tests.stack import Stack
+from tests.browser.people import make_link
+from tests.browser.site import Site
 
 
-def test_a_link_signs_in_and_is_removed_from_the_address(browser: Browser, stack: Stack) -> None:
-    link = make_link(stack, "viewer")
+def test_a_link_signs_in_and_is_removed_from_the_address(browser: Browser, site: Site) -> None:
+    link = make_link(site, "viewer")
     with browser.new_context() as context:
         page = context.new_page()
         page.goto("about:blank")
@@ -22,37 +21,25 @@ def test_a_link_signs_in_and_is_removed_from_the_address(browser: Browser, stack
         assert "pair" not in page.url
 
 
-def test_a_code_can_be_typed(browser: Browser, stack: Stack) -> None:
-    code = make_link(stack, "viewer").partition("#pair=")[2]
+def test_a_code_can_be_typed(browser: Browser, site: Site) -> None:
+    code = make_link(site, "viewer").partition("#pair=")[2]
     with browser.new_context() as context:
         page = context.new_page()
-        page.goto(stack.url)
+        page.goto(site.url)
         page.get_by_label("Pairing code").fill("nonsense")
         page.get_by_role("button", name="Sign in").click()
         expect(page.get_by_role("alert")).to_contain_text("code")
         page.get_by_label("Pairing code").fill(code)
         page.get_by_label("Name of this browser").fill("lab tablet")
         page.get_by_role("button", name="Sign in").click()
-        page.goto(f"{stack.url}/#/people")
+        page.goto(f"{site.url}/#/people")
         expect(page.get_by_role("region", name="You")).to_contain_text("lab tablet, viewer")
         page.get_by_role("button", name="Sign out").click()
         expect(page.get_by_role("alert").filter(has_text="You have signed out.")).to_be_visible()
 
 
-def test_a_viewer_stops_and_does_not_arm(page: Page, browser: Browser, stack: Stack) -> None:
-    with somebody(browser, stack, "viewer") as viewer:
-        arm = viewer.get_by_role("region", name="Arm", exact=True)
-        expect(arm).to_contain_text("Viewers can watch and press STOP.")
-        expect(arm.get_by_role("button", name="Hold to arm")).to_be_disabled()
-        hold_to_arm(page)
-        expect(arm).to_contain_text("Armed")
-        viewer.get_by_role("button", name="STOP").click()
-        expect(viewer.get_by_text("Disarmed", exact=True)).to_be_visible()
-        expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
-
-
-def test_an_operator_pairs_promotes_and_revokes(page: Page, browser: Browser, stack: Stack) -> None:
-    page.goto(f"{stack.url}/#/people")
+def test_an_operator_pairs_promotes_and_revokes(page: Page, browser: Browser, site: Site) -> None:
+    page.goto(f"{site.url}/#/people")
     page.get_by_role("region", name="Invite").get_by_role("button", name="Create link").click()
     expect(page.get_by_alt_text("QR code of the link")).to_have_js_property("complete", True)
     assert page.get_by_alt_text("QR code of the link").evaluate("picture => picture.naturalWidth") > 0
@@ -60,7 +47,7 @@ def test_an_operator_pairs_promotes_and_revokes(page: Page, browser: Browser, st
     with browser.new_context(user_agent="Mozilla/5.0 (iPhone) Safari/604.1") as context:
         guest = context.new_page()
         guest.goto(link)
-        guest.goto(f"{stack.url}/#/people")
+        guest.goto(f"{site.url}/#/people")
         you = guest.get_by_role("region", name="You")
         expect(you).to_contain_text("viewer")
 
@@ -80,8 +67,8 @@ def test_an_operator_pairs_promotes_and_revokes(page: Page, browser: Browser, st
         expect(page.get_by_role("row", name=re.compile("guest"))).to_be_hidden()
 
 
-def test_a_token_is_shown_once(page: Page, stack: Stack) -> None:
-    page.goto(f"{stack.url}/#/people")
+def test_a_token_is_shown_once(page: Page, site: Site) -> None:
+    page.goto(f"{site.url}/#/people")
     tokens = page.get_by_role("region", name="Token for a program")
     tokens.get_by_label("Name of the program").fill("depth logger")
     tokens.get_by_role("button", name="Create token").click()

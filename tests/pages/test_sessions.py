@@ -4,12 +4,12 @@ import re
 
 from playwright.sync_api import Page, expect
 
-from tests.stack import Stack
+from tests.browser.site import Site
 
 
-def test_a_session_is_recorded_and_found_again(page: Page, stack: Stack) -> None:
-    stack.api.post("/sessions", json={"name": "another"}).raise_for_status()
-    stack.api.post(f"/sessions/{newest(stack)}/stop").raise_for_status()
+def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
+    site.api.post("/sessions", json={"name": "another"}).raise_for_status()
+    site.api.post(f"/sessions/{newest(site)}/stop").raise_for_status()
 
     page.get_by_role("link", name="Sessions").click()
     page.get_by_label("Name", exact=True).first.fill("hover")
@@ -56,5 +56,5 @@ def test_a_session_is_recorded_and_found_again(page: Page, stack: Stack) -> None
     expect(page.get_by_role("region", name="Bin")).to_be_hidden()
 
 
-def newest(stack: Stack) -> int:
-    return int(stack.api.get("/sessions").json()[0]["id"])
+def newest(site: Site) -> int:
+    return int(site.api.get("/sessions").json()[0]["id"])

@@ -3,15 +3,15 @@
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.conftest import DESKTOP, PHONE
+from tests.browser.opening import DESKTOP, PHONE
 from tests.browser.pages import PAGES, fill, show
-from tests.stack import Stack
+from tests.browser.site import Site
 
 
 @pytest.mark.parametrize("window", [DESKTOP, PHONE], ids=["desktop", "phone"])
 @pytest.mark.parametrize("colours", ["light", "dark"])
 def test_the_help_renders_and_searches_without_a_foreign_request(
-    browser: Browser, stack: Stack, window: object, colours: str
+    browser: Browser, site: Site, window: object, colours: str
 ) -> None:
     # Nobody is signed in: who reaches the server may read.
     context = browser.new_context(viewport=window, color_scheme=colours)  # type: ignore[arg-type]
@@ -21,7 +21,7 @@ def test_the_help_renders_and_searches_without_a_foreign_request(
     page.on("request", lambda request: requests.append(request.url))
     page.on("console", lambda message: complaints.append(message.text))
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto(f"{stack.url}/help/")
+    page.goto(f"{site.url}/help/")
     expect(page.get_by_role("heading", level=1, name="µ-CAT")).to_be_visible()
     scheme = {"light": "default", "dark": "slate"}[colours]
     expect(page.locator("body")).to_have_attribute("data-md-color-scheme", scheme)
@@ -34,21 +34,21 @@ def test_the_help_renders_and_searches_without_a_foreign_request(
     found.click()
     expect(page.get_by_role("heading", level=1)).to_be_visible()
     context.close()
-    assert [url for url in requests if not url.startswith(f"{stack.url}/help/")] == []
+    assert [url for url in requests if not url.startswith(f"{site.url}/help/")] == []
     assert complaints == []
 
 
-def test_each_page_links_to_its_chapter(any_page: Page, stack: Stack) -> None:
-    fill(stack)
+def test_each_page_links_to_its_chapter(any_page: Page, site: Site) -> None:
+    fill(site)
     chapters: dict[str, str] = {}
     for view in PAGES:
-        show(any_page, stack, view)
+        show(any_page, site, view)
         link = any_page.get_by_role("link", name="Help for this page")
         chapters[view.name] = link.get_attribute("href") or ""
     assert chapters["operate"] == "/help/use/operate/"
     assert len(set(chapters.values())) >= 9
     for address in sorted(set(chapters.values())):
         path, _, anchor = address.partition("#")
-        answer = any_page.request.get(stack.url + path)
+        answer = any_page.request.get(site.url + path)
         assert answer.status == 200, address
         assert not anchor or f'id="{anchor}"' in answer.text(), address

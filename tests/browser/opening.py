@@ -1,0 +1,55 @@
+"""Chromium, and pages in it."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from playwright.sync_api import Browser, Page, StorageState, ViewportSize, sync_playwright
+
+from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL, sign_in
+from tests.browser.site import Site
+
+DESKTOP: ViewportSize = {"width": 1440, "height": 900}
+PHONE: ViewportSize = {"width": 390, "height": 844}
+
+
+@contextmanager
+def launched() -> Iterator[Browser]:
+    """Chromium without windows."""
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=HEADLESS_SHELL, args=ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def closing_pages(browser: Browser) -> Iterator[None]:
+    """Close what a failed test has left open: such pages would take the computer from the tests after it."""
+    before = list(browser.contexts)
+    yield
+    for context in [one for one in browser.contexts if one not in before]:
+        context.close()
+
+
+def signed_in(browser: Browser, site: Site) -> StorageState:
+    """Cookies and storage of an operator who has just signed in."""
+    context = browser.new_context()
+    sign_in(context, site.url, site.data)
+    kept = context.storage_state()
+    context.close()
+    return kept
+
+
+@contextmanager
+def opened_page(browser: Browser, site: Site, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
+    """The page at this size; what its code complains about fails the test."""
+    # Charts then move once a second, which leaves the computer to what is tested.
+    context = browser.new_context(
+        viewport=size, storage_state=cookies, reduced_motion="reduce", color_scheme="dark"
+    )
+    page = context.new_page()
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(site.url)
+    yield page
+    context.close()
+    assert complaints == []
