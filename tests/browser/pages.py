@@ -40,6 +40,9 @@ PAGES = (
     View("people", "people", "Browsers and programs"),
 )
 
+LIVE = tuple(one for one in PAGES if one.address.startswith(("operate", "tune", "system")))
+"""Those that show the state of the robot."""
+
 
 def fill(site: Site) -> None:
     """Ensure that two sessions exist."""

@@ -1,25 +1,17 @@
-"""Accessibility of every page and its panels, checked by axe-core."""
+"""Accessibility of pages that show a live robot, checked by axe-core; tests/pages has the others."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, expect
 
+from tests.browser.axe import AXE, faults, faults_of_view, opened_for_axe
 from tests.browser.driving import hold_to_arm
 from tests.browser.opening import DESKTOP, PHONE
-from tests.browser.pages import PAGES, View, fill, settle, show
+from tests.browser.pages import LIVE, PAGES, View, settle, show
 from tests.browser.people import make_link
-from tests.stack import ROOT, Stack
+from tests.stack import Stack
 
-AXE = ROOT / "frontend/node_modules/axe-core/axe.min.js"
-USUAL = "document, { resultTypes: ['violations'] }"
-PALE = "['.stale', '.away', '.old', '[style*=background]']"
-FOR_SUNLIGHT = f"{{ exclude: {PALE} }}, {{ runOnly: ['color-contrast-enhanced'] }}"
-"""7:1, but for what is too old to be trusted, and on colours that are data, where black or white reach 4.5:1.
-
-Colours are all that differs in that theme.
-"""
 WIDTHS = (360, 390, 768, 1024, 1280, 1440, 1920)
 CROWDED = """() => {
     const said = '[aria-label=Pages] a, .foot .opener, .top .name, .top .states > *, .top .row > *, .stop';
@@ -38,7 +30,6 @@ CROWDED = """() => {
     ];
 }"""
 """What of the bar's words and buttons lies outside the window or on another one."""
-GRAVE = {"serious", "critical"}
 OPENED = ("Control:", "Record", "Alarms", "Page settings")
 """Beginnings of the names of what opens from the bar."""
 
@@ -48,40 +39,13 @@ def seen(
     request: pytest.FixtureRequest, browser: Browser, stack: Stack, cookies: StorageState
 ) -> Iterator[Page]:
     """One page for all of these tests; none of them changes anything."""
-    fill(stack)
-    context = browser.new_context(
-        viewport=request.param,
-        storage_state=cookies,
-        has_touch=request.param == PHONE,
-        reduced_motion="reduce",
-        color_scheme="dark",
-    )
-    page = context.new_page()
-    context.add_init_script(path=AXE)
-    page.goto(stack.url)
-    yield page
-    context.close()
+    with opened_for_axe(browser, stack, cookies, request.param) as page:
+        yield page
 
 
-def faults(page: Page, how: str = USUAL) -> list[str]:
-    """Violations on the present page: the rule, and the place."""
-    found: dict[str, Any] = page.evaluate(f"axe.run({how})")
-    return [
-        f"{fault['id']}: {fault['help']}: {node['target']} {node.get('failureSummary', '')}"
-        for fault in found["violations"]
-        if fault["impact"] in GRAVE
-        for node in fault["nodes"][:3]
-    ]
-
-
-@pytest.mark.parametrize("view", PAGES, ids=lambda view: view.name)
+@pytest.mark.parametrize("view", LIVE, ids=lambda view: view.name)
 def test_no_page_has_a_serious_accessibility_violation(seen: Page, stack: Stack, view: View) -> None:
-    show(seen, stack, view)
-    dark = faults(seen)
-    seen.evaluate("document.documentElement.dataset.theme = 'sunlight'")
-    sunlight = faults(seen, FOR_SUNLIGHT)
-    seen.evaluate("document.documentElement.dataset.theme = 'dark'")
-    assert dark + sunlight == []
+    assert faults_of_view(seen, stack, view) == []
 
 
 def test_menus_of_the_bar_have_no_serious_violation(seen: Page, stack: Stack) -> None:
@@ -109,17 +73,6 @@ def test_the_bar_shows_all_its_contents_and_stop_at_every_width(seen: Page, stac
     seen.get_by_role("button", name="STOP").click()
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
     assert crowded == {width: [] for width in WIDTHS}
-
-
-def test_the_sign_in_page_has_no_serious_violation(browser: Browser, stack: Stack) -> None:
-    context = browser.new_context(viewport=PHONE, color_scheme="dark")
-    page = context.new_page()
-    context.add_init_script(path=AXE)
-    page.goto(stack.url)
-    expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
-    wrong = faults(page)
-    context.close()
-    assert wrong == []
 
 
 def test_a_viewer_sees_the_reason_before_an_attempt(browser: Browser, stack: Stack) -> None:

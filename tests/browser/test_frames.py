@@ -38,3 +38,15 @@ def test_the_last_frames_are_shown_decoded(any_page: Page, stack: Stack) -> None
     assert all("\tto board\t" in line and "heartbeat" in line for line in lines[1:])
     panel.get_by_role("button", name="Hide").click()
     expect(rows).to_have_count(0)
+
+
+def test_a_key_asks_what_a_column_means(page: Page, stack: Stack) -> None:
+    page.goto(f"{stack.url}/#/system")
+    page.get_by_role("button", name="Show frames").click()
+    frames = page.get_by_role("region", name="Frames, newest first")
+    term = frames.get_by_role("columnheader", name="Awaits").locator("summary")
+    meaning = frames.get_by_text("the reliable frame that the sender expects next")
+    expect(meaning).to_be_hidden()
+    term.focus()
+    term.press("Enter")
+    expect(meaning).to_be_visible()

@@ -5,7 +5,7 @@ from datetime import datetime, timedelta
 
 from playwright.sync_api import Page, expect
 
-from tests.stack import Stack
+from tests.browser.site import Site
 
 AHEAD = datetime.now() + timedelta(days=9000, hours=7)
 """What the browser's calendar says."""
@@ -13,9 +13,9 @@ MINUTES = re.compile(r"\b0\d:\d\d\b")
 """A duration below ten minutes."""
 
 
-def test_the_duration_of_a_recording_is_by_the_robot_s_clock(page: Page, stack: Stack) -> None:
+def test_the_duration_of_a_recording_is_by_the_robot_s_clock(page: Page, site: Site) -> None:
     page.clock.install(time=AHEAD)
-    session = stack.api.post("/sessions", json={"name": "timed"}).raise_for_status().json()["id"]
+    session = site.api.post("/sessions", json={"name": "timed"}).raise_for_status().json()["id"]
     try:
         page.reload()
         recording = page.get_by_role("banner").get_by_role("button", name=re.compile("REC"))
@@ -24,12 +24,12 @@ def test_the_duration_of_a_recording_is_by_the_robot_s_clock(page: Page, stack: 
         recording_now = page.get_by_role("region", name="Recording now")
         expect(recording_now.get_by_role("definition").first).to_have_text(MINUTES)
     finally:
-        stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+        site.api.post(f"/sessions/{session}/stop").raise_for_status()
 
 
-def test_the_validity_of_an_invitation_is_by_the_robot_s_clock(page: Page, stack: Stack) -> None:
+def test_the_validity_of_an_invitation_is_by_the_robot_s_clock(page: Page, site: Site) -> None:
     page.clock.install(time=AHEAD)
-    page.goto(f"{stack.url}/#/people")
+    page.goto(f"{site.url}/#/people")
     page.reload()
     people = page.get_by_role("region", name="Invite")
     people.get_by_role("button", name="Create link").click()

@@ -6,27 +6,19 @@ from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSi
 
 from tests.browser.opening import PHONE
 from tests.browser.pages import samples
+from tests.browser.site import Site
 from tests.proofs.watching import wait
-from tests.stack import Stack
 
 ROOMY: ViewportSize = {"width": 1920, "height": 1080}
 """Its layout shows the serial link."""
 
 
-def test_a_key_asks_what_a_column_of_the_frames_means(page: Page, stack: Stack) -> None:
-    page.goto(f"{stack.url}/#/system")
-    page.get_by_role("button", name="Show frames").click()
-    frames = page.get_by_role("region", name="Frames, newest first")
-    term = frames.get_by_role("columnheader", name="Awaits").locator("summary")
-    ask_by_key(term, frames.get_by_text("the reliable frame that the sender expects next"))
-
-
 def test_a_finger_asks_what_a_signal_and_an_axis_mean(
-    browser: Browser, stack: Stack, cookies: StorageState
+    browser: Browser, site: Site, cookies: StorageState
 ) -> None:
     context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
     page = context.new_page()
-    page.goto(stack.url)
+    page.goto(site.url)
     for tab, panel, words in (
         ("Motion", "Depth over time", "depth.depth: "),
         ("Sensors", "Inertial sensor", "Axis pointing forwards"),
@@ -55,11 +47,11 @@ def ask_by_key(term: Locator, meaning: Locator) -> None:
     expect(meaning).to_be_visible()
 
 
-def test_a_chip_of_the_export_shows_its_meaning_to_a_key(page: Page, stack: Stack) -> None:
-    session = stack.api.post("/sessions", json={"name": "chips"}).json()["id"]
-    wait(lambda: samples(stack, session) > 0, "samples")
-    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
-    page.goto(f"{stack.url}/#/sessions/{session}")
+def test_a_chip_of_the_export_shows_its_meaning_to_a_key(page: Page, site: Site) -> None:
+    session = site.api.post("/sessions", json={"name": "chips"}).json()["id"]
+    wait(lambda: samples(site, session) > 0, "samples")
+    site.api.post(f"/sessions/{session}/stop").raise_for_status()
+    page.goto(f"{site.url}/#/sessions/{session}")
     page.get_by_role("radio", name=re.compile("CSV")).first.check(force=True)
     chip = page.get_by_role("checkbox", name="depth", exact=True)
     chip.focus()

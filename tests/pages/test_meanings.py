@@ -3,13 +3,13 @@
 from playwright.sync_api import Browser, Page, StorageState, expect
 
 from tests.browser.opening import PHONE
-from tests.stack import Stack
+from tests.browser.site import Site
 
 
-def test_a_tap_shows_the_meaning_of_a_gain(browser: Browser, stack: Stack, cookies: StorageState) -> None:
+def test_a_tap_shows_the_meaning_of_a_gain(browser: Browser, site: Site, cookies: StorageState) -> None:
     context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
     page = context.new_page()
-    page.goto(stack.url)
+    page.goto(site.url)
     page.get_by_role("tab", name="Control").tap()
     meaning = page.get_by_text("Set point of the depth", exact=True)
     expect(meaning).to_be_hidden()
@@ -20,8 +20,8 @@ def test_a_tap_shows_the_meaning_of_a_gain(browser: Browser, stack: Stack, cooki
     context.close()
 
 
-def test_a_key_shows_the_meaning_of_a_link_figure(page: Page, stack: Stack) -> None:
-    page.goto(f"{stack.url}/#/system")
+def test_a_key_shows_the_meaning_of_a_link_figure(page: Page, site: Site) -> None:
+    page.goto(f"{site.url}/#/system")
     link = page.get_by_role("region", name="Serial link")
     meaning = link.get_by_text("From a reliable frame to its acknowledgement")
     expect(meaning).to_be_hidden()
