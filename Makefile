@@ -22,7 +22,7 @@ HELP_SOURCES := $(shell find docs -type f)
 REAL_TIME = $(shell grep -rl --include='test_*.py' mark.stack tests | sort)
 # All other tests, each part by a process of its own, the longest first. A part lacks what is a part by itself.
 PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/test_memory.py documents \
-	proofs/test_guards.py server runtime) tests
+	proofs/test_guards.py server pages runtime) tests
 
 # With a number of jobs of its own, not what another make leaves over. A failure does not hide those of what comes after it.
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
