@@ -9,8 +9,9 @@ import pytest
 from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, StorageState
 
-from tests.browser.conftest import DESKTOP, bring_to_surface, put_to_rest
+from tests.browser.conftest import bring_to_surface, put_to_rest
 from tests.browser.driving import hold_to_arm, wait_for_depth
+from tests.browser.opening import DESKTOP
 from tests.stack import Stack
 
 SECONDS = 10

@@ -15,8 +15,9 @@ from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expec
 
 from server.platform.settings import DataFolder
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE
-from tests.browser.conftest import DESKTOP, PHONE, open_page, put_to_rest
+from tests.browser.conftest import open_page, put_to_rest
 from tests.browser.driving import arm_by_hand, expect_surge
+from tests.browser.opening import DESKTOP, PHONE
 from tests.exports import export_session
 from tests.proofs.watching import Fins
 from tests.stack import Stack
