@@ -6,7 +6,7 @@ Playwright keeps an event loop running, which tests of other rooms could not sta
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page, StorageState
+from playwright.sync_api import Browser, Page, StorageState, ViewportSize
 
 from tests.browser.opening import DESKTOP, PHONE, closing_pages, launched, opened_page, signed_in
 from tests.browser.pages import stop_recordings
@@ -42,14 +42,18 @@ def any_page(
     request: pytest.FixtureRequest, browser: Browser, site: DiveSite, cookies: StorageState
 ) -> Iterator[Page]:
     """The page at both sizes; what its code complains about fails the test."""
-    with opened_page(browser, site, cookies, request.param) as page:
-        yield page
-    stop_recordings(site)
+    yield from open_page(browser, site, cookies, request.param)
 
 
 @pytest.fixture
 def page(browser: Browser, site: DiveSite, cookies: StorageState) -> Iterator[Page]:
     """The page at desktop size; what its code complains about fails the test."""
-    with opened_page(browser, site, cookies, DESKTOP) as page:
+    yield from open_page(browser, site, cookies, DESKTOP)
+
+
+def open_page(browser: Browser, site: DiveSite, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
+    """The page at this size; afterwards nothing records."""
+    with opened_page(browser, site, cookies, size) as page:
         yield page
-    stop_recordings(site)
+        page.context.close()
+        stop_recordings(site)

@@ -3,12 +3,14 @@
 import asyncio
 import threading
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from bench.dive import Dive
 from robot_runtime.clock import SteadyClock
+from robot_runtime.config import SessionsConfig
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.control import Commander
+from tests.server.runtime_end import RuntimeEnd
 from tests.server.serving import serve
 from tests.server.waiting import SECONDS
 from tests.shell import ShellToken
@@ -28,6 +30,7 @@ class DiveSite:
         self._started = threading.Event()
         self._end = threading.Event()
         self._problem: BaseException | None = None
+        self._runtime: RuntimeEnd | None = None
         self._thread = threading.Thread(target=self._run, daemon=True)
         self.api = Commander(timeout=5.0, auth=ShellToken(DataFolder(data)))
 
@@ -35,6 +38,12 @@ class DiveSite:
     def url(self) -> str:
         """The address of the page."""
         return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def commands(self) -> list[tuple[str, dict[str, Any]]]:
+        """All commands that have reached the robot's place."""
+        assert self._runtime is not None
+        return list(self._runtime.asked)
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -48,6 +57,7 @@ class DiveSite:
         self.api.close()
         self._end.set()
         self._thread.join(SECONDS)
+        assert not self._thread.is_alive(), "the server does not end"
         if self._problem is not None:
             raise self._problem
 
@@ -61,7 +71,12 @@ class DiveSite:
     async def _serve(self) -> None:
         folder, clock = DataFolder(self.data), SteadyClock()
         make_folders(folder)
-        async with serve(Settings(data=folder, config=ROOT / "robot.toml")) as served:
+        # The dive arms by itself, and the tests record what they need.
+        settings = Settings(
+            data=folder, config=ROOT / "robot.toml", sessions=SessionsConfig(record_at_arming=False)
+        )
+        async with serve(settings) as served:
+            self._runtime = served.runtime
             (await served.api.post("/control/release")).raise_for_status()
             self.port = served.settings.port
             dive = Dive(clock.now(), DIVE_SECONDS, 1)

@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, StorageState
 
 from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL
-from tests.browser.site import Site
+from tests.pages.dive_site import DiveSite
 
 FOREIGN = "evil.example"
 ATTACKS = """async (target) => {
@@ -114,12 +114,9 @@ def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
     other.close()
 
 
-def snapshot(site: Site) -> dict[str, Any]:
-    """The state that an attack might change."""
-    robot = site.api.get("/robot").raise_for_status().json()
-    names = ("mode", "armed", "set_point_default", "set_point_detected", "card", "vision_rate")
-    found: dict[str, Any] = {name: robot[name] for name in names}
-    found["loops"] = [(one["name"], one["on"], one["controller"], one["set_point"]) for one in robot["loops"]]
+def snapshot(site: DiveSite) -> dict[str, Any]:
+    """The state that an attack might change, and the commands that have come to the robot."""
+    found: dict[str, Any] = {"commands": site.commands}
     for path in ("/sessions", "/exports", "/scenarios", "/comm-tests/runs"):
         found[path] = [str(one.get("id", one.get("name"))) for one in site.api.get(path).json()]
     devices = site.api.get("/access/devices").json()
@@ -136,7 +133,9 @@ def attack(page: Page, target: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", ["127.0.0.1", "localhost", FOREIGN])
-def test_a_foreign_page_gets_no_data(victim: BrowserContext, site: Site, evil_port: int, name: str) -> None:
+def test_a_foreign_page_gets_no_data(
+    victim: BrowserContext, site: DiveSite, evil_port: int, name: str
+) -> None:
     own = victim.new_page()
     own.goto(site.url)
     assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it is not signed in"
@@ -153,7 +152,7 @@ def test_a_foreign_page_gets_no_data(victim: BrowserContext, site: Site, evil_po
     assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it was signed out"
 
 
-def test_a_foreign_host_name_is_refused(victim: BrowserContext, site: Site) -> None:
+def test_a_foreign_host_name_is_refused(victim: BrowserContext, site: DiveSite) -> None:
     page = victim.new_page()
     answer = page.goto(f"http://{FOREIGN}:{site.port}/")
     assert answer is not None

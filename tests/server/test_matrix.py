@@ -228,7 +228,11 @@ class House:
         parts = iter([{"type": "http.request", "body": data, "more_body": False}])
 
         async def receive() -> Message:
-            return next(parts, {"type": "http.disconnect"})
+            if (part := next(parts, None)) is not None:
+                return part
+            # The caller stays until it is answered.
+            await asyncio.Event().wait()
+            return {"type": "http.disconnect"}
 
         async def send(message: Message) -> None:
             sent.append(message)

@@ -86,7 +86,8 @@ class NewToken(BaseModel):
     name: Name
     scope: Scope = "read"
     days: Annotated[
-        int | None, Field(ge=1, le=TOKEN_DAYS_MAX, description="until it ends; null: it never ends")
+        int | None,
+        Field(strict=True, ge=1, le=TOKEN_DAYS_MAX, description="until it ends; null: it never ends"),
     ] = TOKEN_DAYS
 
 
