@@ -118,7 +118,7 @@ def read_file(text: str) -> ProfileFile:
         raise ProfileError(
             "The file is not a profile: it has no format. Save a profile here to see its form."
         )
-    if content["format"] != FORMAT:
+    if content["format"] != FORMAT or isinstance(content["format"], bool):
         raise ProfileError(
             f"The file is a profile of format {content['format']!r}, written by version "
             f"{content.get('version')!r}; this version reads format {FORMAT}. Open it with the version "

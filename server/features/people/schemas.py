@@ -34,7 +34,7 @@ class CallerDetails(BaseModel):
 class Pairing(BaseModel):
     """A code, and a name for this browser."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     code: Annotated[str, Field(min_length=1, max_length=64)]
     name: Name
 
@@ -42,7 +42,7 @@ class Pairing(BaseModel):
 class NewCode(BaseModel):
     """A pairing code to be made."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     role: Role = "viewer"
 
 
@@ -74,7 +74,7 @@ class DeviceDetails(BaseModel):
 class DeviceChanges(BaseModel):
     """Changes of a device; null leaves a field unchanged."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     name: Name | None = None
     role: Role | None = None
 
@@ -82,7 +82,7 @@ class DeviceChanges(BaseModel):
 class NewToken(BaseModel):
     """A program that gets a token."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", strict=True)
     name: Name
     scope: Scope = "read"
     days: Annotated[

@@ -58,15 +58,16 @@ def document(place: Place, value: object) -> object:
 
 
 def kinds(adapter: TypeAdapter[Any], content: object, place: Place) -> set[str]:
-    """The errors at a place, without those that a document has anyway."""
+    """The errors of a value at a place, without those that a document has anyway."""
     try:
         adapter.validate_python(content)
     except ValidationError as problem:
         return {
             str(one["type"])
             for one in problem.errors(include_url=False)
-            # Unions add their alternatives to the places.
+            # Unions add their alternatives to the places, and errors of those that have no such field.
             if tuple(step for step in one["loc"] if step in place) == place
+            and one["type"] != "extra_forbidden"
         }
     return set()
 
@@ -78,13 +79,12 @@ def test_what_is_no_finite_number_is_refused_in_every_body() -> None:
             asked.add((name, *place))
             for value in NO_NUMBERS:
                 content = document(place, value)
-                if name == "startTuning":
-                    assert isinstance(content, dict)
-                    content["kind"] = "step" if "start" in place or "target" in place else "relay"
                 if not kinds(adapter, content, place):
                     accepted.append((name, place, str(value)[:10]))
     assert accepted == []
     assert {
+        ("makeToken", "days"),
+        ("startTuningRun", "amplitude"),
         ("commandArm", "alone"),
         ("commandLoop", "set_point"),
         ("commandLoop", "gains", "key"),

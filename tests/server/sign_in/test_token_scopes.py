@@ -2,15 +2,16 @@
 
 import asyncio
 import sqlite3
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 
 import pytest
+from websockets.exceptions import ConnectionClosed
 
 from server.http.sign_in.devices import DAY_SECONDS, Devices
 from server.platform.settings import Settings
 from server.platform.store import Store
-from tests.server.serving import Served, play
+from tests.server.serving import Served, next_text, play
 from tests.server.sign_in.browsers import browser, closing_of
 
 
@@ -78,8 +79,12 @@ def test_a_token_is_refused_in_words_after_its_end_and_its_live_socket_closes(
         assert device.ends == pytest.approx(device.paired + 90 * DAY_SECONDS)
         headers = {"authorization": f"Bearer {made['token']}"}
         with monkeypatch.context() as soon:
-            soon.setattr(Devices, "count_seconds", lambda *_: 0.01)
+            soon.setattr(Devices, "count_seconds", lambda *_: 0.0)
             async with served.connect(additional_headers=headers) as socket:
+                with suppress(ConnectionClosed):
+                    await socket.send('{"op": "ping", "id": 1}')
+                with pytest.raises(ConnectionClosed):
+                    await next_text(socket, "pong")
                 assert await closing_of(socket) == (1008, "This token has ended.")
         device.ends = device.paired
         async with browser(served, None) as program:

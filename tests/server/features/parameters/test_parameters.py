@@ -216,6 +216,7 @@ def test_a_profile_is_stored_downloaded_uploaded_restored_and_deleted(settings: 
         ("[1]", "it has no format"),
         ("{}", "it has no format"),
         ({"format": 2, "version": "9.1"}, "format 2, written by version '9.1'; this version reads format 1"),
+        ({"format": True, "name": "a", "parameters": {}}, "format True"),
         ({"format": 1, "name": "a"}, "parameters: Field required"),
         ({"format": 1, "name": "", "parameters": {}}, "name: String should have at least 1"),
         ({"format": 1, "name": "a", "parameters": {"x": [1]}}, "parameters.x"),
