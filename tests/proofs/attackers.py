@@ -7,6 +7,7 @@ With words, it runs the attacks that have them in their names.
 
 import base64
 import json
+import logging
 import shutil
 import socket
 import sys
@@ -33,6 +34,8 @@ from tests.server.features.exports.test_malformed_archives import MALFORMED
 HOLD_SECONDS = 3.0
 FROM = "127.0.0.2"
 """The attackers' address: the operator has another, as on a network."""
+CROWD = "127.0.0.3"
+"""The address of more connections than one may have, for which the server closes others of it."""
 CONNECTIONS = 260
 SOCKETS = 50
 PATIENCE = 60.0
@@ -98,9 +101,9 @@ class Field:
         status = self.ask(method, path, headers, **options)
         assert 400 <= status < 500 or status == 503, (method, path, status)
 
-    def reach(self, timeout: float) -> socket.socket:
+    def reach(self, timeout: float, source: str = FROM) -> socket.socket:
         """A connection from the attackers' address. Raises OSError."""
-        return socket.create_connection(self.address, timeout, source_address=(FROM, 0))
+        return socket.create_connection(self.address, timeout, source_address=(source, 0))
 
     def send(self, data: bytes) -> bytes:
         """The beginning of the answer to these bytes."""
@@ -212,7 +215,7 @@ def slow(field: Field) -> None:
     with ExitStack() as opened:
         for number in range(CONNECTIONS):
             with suppress(OSError):
-                line = opened.enter_context(field.reach(5))
+                line = opened.enter_context(field.reach(5, CROWD))
                 line.sendall(beginnings[number % len(beginnings)])
         time.sleep(HOLD_SECONDS)
 
@@ -313,6 +316,8 @@ def choose(words: str) -> dict[str, Callable[[Field], None]]:
 
 def main() -> None:
     """Runs every attack at once."""
+    # It logs an internal error, with its trace, where a connection ends in the middle of a message.
+    logging.getLogger("websockets").setLevel(logging.CRITICAL)
     url, viewer, operator, *words = sys.argv[1:]
     field, end, attacks = Field(url, viewer, operator), Event(), choose(" ".join(words))
     with ThreadPoolExecutor(len(attacks)) as threads:

@@ -6012,7 +6012,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something that the server needs does not work */
+            /** @description The report cannot be made */
             503: {
                 headers: {
                     [name: string]: unknown;

@@ -8,6 +8,7 @@ from fastapi.responses import HTMLResponse
 from pydantic import ValidationError
 
 from server.features.comparison.comparisons import Comparisons
+from server.features.comparison.report_process import ReportError, make_report
 from server.features.comparison.schemas import Comparison, ComparisonQuery, Lines, LinesQuery, ReportQuery
 from server.features.comparison.signals import Signal
 from server.features.sessions.session import UnknownSessionError
@@ -15,29 +16,30 @@ from server.http.dependencies import Provided
 from server.http.heavy_requests import ReadingTurn, TooManyHeavyError, Turn
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
+from server.platform.settings import Settings
 
 router = Operations(prefix="/api", tags=["comparison"])
 
 
 @router.operation(
-    "GET /compare/report", Need.VIEWER, UnknownSessionError, TooManyHeavyError, media_type="text/html"
+    "GET /compare/report",
+    Need.VIEWER,
+    UnknownSessionError,
+    TooManyHeavyError,
+    ReportError,
+    media_type="text/html",
 )
-def get_comparison_report(
-    _: Turn, comparisons: Provided[Comparisons], query: Annotated[ReportQuery, Query()]
+async def get_comparison_report(
+    _: Turn, settings: Provided[Settings], query: Annotated[ReportQuery, Query()]
 ) -> HTMLResponse:
     """Return a comparison as one HTML file with charts, figures and differences; it needs no network."""
-    from server.features.comparison.report import write_report  # Plotly is not needed before
-
     try:
-        body = query.parse()
+        sessions = dict.fromkeys(query.parse().sessions)
     except ValidationError as problem:
         raise RequestValidationError(problem.errors()) from problem
-    comparison = comparisons.comparer.compare(body)
-    name = "_".join(str(one.id) for one in comparison.sessions)
-    return HTMLResponse(
-        write_report(comparison, query.shown),
-        headers={"content-disposition": f'attachment; filename="comparison_{name}.html"'},
-    )
+    report = await make_report(settings.data.database, query)
+    name = f"comparison_{'_'.join(map(str, sessions))}.html"
+    return HTMLResponse(report, headers={"content-disposition": f'attachment; filename="{name}"'})
 
 
 @router.operation("GET /sessions/{session}/signals", Need.VIEWER, UnknownSessionError)
