@@ -61,15 +61,19 @@ STROKES = 1.5
 
 
 class Dive:
-    """The samples of `seconds` from `start` on (s, steady clock); the same seed gives the same."""
+    """The samples of `seconds` from `start` on (s, steady clock); the same seed gives the same.
 
-    def __init__(self, start: float, seconds: float, seed: int) -> None:
+    The robot is armed after `armed_at` s, and floats until then.
+    """
+
+    def __init__(self, start: float, seconds: float, seed: int, armed_at: float = ARMED_AT) -> None:
         self._start = start
+        self._armed_at = armed_at
         self._chance = np.random.default_rng(seed)
         self._rows = {name: self._make_rows(name, rate, seconds) for name, rate in RATES.items()}
         self._times = {name: np.ascontiguousarray(rows["row time"]) for name, rows in self._rows.items()}
         """Of the rows; a column of them would be copied at every search."""
-        self._documents = _make_documents(start, seconds)
+        self._documents = _make_documents(start, seconds, armed_at)
         self._thumbnails = _make_thumbnails(self._chance, start, seconds)
         self._numbers = dict.fromkeys([*self._rows, *self._documents, "thumbnail"], 0)
 
@@ -130,31 +134,32 @@ class Dive:
         }
 
     def _depth(self, since: Floats) -> Fields:
-        depth = _depth(since) + self._noise(0.0015, len(since))
+        depth = _depth(since, self._armed_at) + self._noise(0.0015, len(since))
         return {"depth": depth, "pressure": 101_325 + 9_780 * depth, "temperature": 18 + since / 7200}
 
     def _beacon(self, since: Floats) -> Fields:
         return {"right": since % 40 < 15, "left": since % 40 > 25}
 
     def _motor(self, since: Floats) -> Fields:
-        wanted, angle = _fins(since), _fins(since - 0.04)
+        wanted, angle = _fins(since, self._armed_at), _fins(since - 0.04, self._armed_at)
         noise = self._noise(2e-3, len(since), 4)
         return {"wanted": wanted, "angle": angle + noise, "drive": np.clip(120 * (wanted - angle), -63, 63)}
 
     def _status(self, since: Floats) -> Fields:
         return {
             "epoch": np.ones(len(since)),
-            "flags": np.where(since >= ARMED_AT, 1 + 2 + 8, 2 + 4),
+            "flags": np.where(since >= self._armed_at, 1 + 2 + 8, 2 + 4),
             "battery": 8.2 - since / 3600 + self._noise(0.01, len(since)),
             "loop_worst": 3000 + self._noise(300, len(since)),
             "stack_free": np.full(len(since), 412),
         }
 
     def _navigation(self, since: Floats) -> Fields:
-        return {"z": np.sign(_set_point(since) - _depth(since))}
+        return {"z": np.sign(_set_point(since) - _depth(since, self._armed_at))}
 
     def _control(self, since: Floats) -> Fields:
-        depth, wanted = _depth(since) + self._noise(0.0015, len(since)), _set_point(since)
+        depth, wanted = _depth(since, self._armed_at), _set_point(since)
+        depth = depth + self._noise(0.0015, len(since))
         return {
             "set_point": wanted,
             "depth": depth,
@@ -178,11 +183,11 @@ class Dive:
     def _truth(self, since: Floats) -> Fields:
         level = np.zeros(len(since))
         return {
-            "position": np.stack([0.02 * since, level, _depth(since)], axis=1),
+            "position": np.stack([0.02 * since, level, _depth(since, self._armed_at)], axis=1),
             "attitude": _quaternion(level, level, _yaw(since)),
             "velocity": self._noise(0.01, len(since), 3),
             "rate": self._noise(0.02, len(since), 3),
-            "fins": _fins(since),
+            "fins": _fins(since, self._armed_at),
         }
 
 
@@ -191,24 +196,26 @@ def _set_point(since: Floats) -> Floats:
     return np.where((since >= CARD_FIRST) & shown, DEEP, SHALLOW)
 
 
-def _steps(seconds: float) -> list[tuple[float, float]]:
+def _steps(seconds: float, armed_at: float) -> list[tuple[float, float]]:
     cards = np.arange(CARD_FIRST, seconds, CARD_EVERY).tolist()
-    return [(ARMED_AT, SHALLOW)] + [
+    return [(armed_at, SHALLOW)] + [
         step for card in cards for step in ((card, DEEP), (card + CARD_SECONDS, SHALLOW))
     ]
 
 
-def _depth(since: Floats) -> Floats:
+def _depth(since: Floats, armed_at: float) -> Floats:
+    if since[-1] < armed_at:
+        return np.zeros(len(since))
     depth, last = np.zeros(len(since)), 0.0
-    before = ARMED_AT
+    before = armed_at
     target = 0.0
-    for at, wanted in _steps(float(since[-1]) + 1.0):
+    for at, wanted in _steps(float(since[-1]) + 1.0, armed_at):
         last = target + (last - target) * np.exp(-(at - before) / DELAY)
         after = since >= at
         depth[after] = wanted + (last - wanted) * np.exp(-(since[after] - at) / DELAY)
         before, target = at, wanted
-    swing = SWING * np.sin(2 * np.pi * (since - ARMED_AT) / SWING_PERIOD)
-    return depth + np.where(since >= ARMED_AT, swing, 0.0)
+    swing = SWING * np.sin(2 * np.pi * (since - armed_at) / SWING_PERIOD)
+    return depth + np.where(since >= armed_at, swing, 0.0)
 
 
 def _yaw(since: Floats) -> Floats:
@@ -223,18 +230,18 @@ def _quaternion(roll: Floats, pitch: Floats, yaw: Floats) -> Floats:
     return np.asarray(whole / np.linalg.norm(whole, axis=1, keepdims=True))
 
 
-def _fins(since: Floats) -> Floats:
-    stroke = np.where(since >= ARMED_AT, 0.6 * np.sin(2 * np.pi * STROKES * since), 0.0)
+def _fins(since: Floats, armed_at: float) -> Floats:
+    stroke = np.where(since >= armed_at, 0.6 * np.sin(2 * np.pi * STROKES * since), 0.0)
     return np.stack([stroke, -stroke, -stroke, stroke], axis=1)
 
 
-def _make_documents(start: float, seconds: float) -> dict[str, list[Document]]:
-    steps = _steps(seconds)
+def _make_documents(start: float, seconds: float, armed_at: float) -> dict[str, list[Document]]:
+    steps = _steps(seconds, armed_at)
     seen = np.arange(0.0, seconds, VISION_PERIOD)
     deep = _set_point(seen) == DEEP
     box = Box(x=0.3, y=0.3, width=0.4, height=0.4)
     return {
-        "state": [_state(start, since) for since in np.arange(0.0, seconds, STATE_PERIOD).tolist()],
+        "state": [_state(start, since, armed_at) for since in np.arange(0.0, seconds, STATE_PERIOD).tolist()],
         "detection": [
             Detection(
                 time=start + since + 0.02,
@@ -273,15 +280,15 @@ def _make_thumbnails(chance: np.random.Generator, start: float, seconds: float) 
     return made
 
 
-def _state(start: float, since: float) -> State:
-    armed = since >= ARMED_AT
+def _state(start: float, since: float, armed_at: float) -> State:
+    armed = since >= armed_at
     set_point = float(_set_point(np.array([since]))[0])
     return State(
         run="0" * 16,
         time=start + since,
         mode="automatic" if armed else "disarmed",
         armed=armed,
-        armed_since=start + ARMED_AT if armed else None,
+        armed_since=start + armed_at if armed else None,
         alarms=[],
         pilot_dropped=0,
         refusals=[],

@@ -132,14 +132,3 @@ def check_report(page: Page, browser: Browser, path: Path) -> None:
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
     assert complaints == []
     context.close()
-
-
-def test_an_address_without_sessions_shows_the_remedy(any_page: Page, stack: Stack) -> None:
-    any_page.goto(f"{stack.url}/#/sessions/compare/")
-    expect(any_page.get_by_text("No session selected")).to_be_visible()
-    any_page.goto(f"{stack.url}/#/sessions/compare/999999")
-    expect(
-        any_page.get_by_text("There is no session 999999; choose one from the list of sessions.")
-    ).to_be_visible()
-    wider = "document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth"
-    assert any_page.evaluate(wider) == 0

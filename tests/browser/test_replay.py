@@ -85,8 +85,3 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     # The page still shows the recording, and not what the robot did meanwhile.
     page.get_by_role("button", name="Next bookmark").click()
     wait_for_depth(page, there - 0.0051, there + 0.0051)
-
-
-def test_a_replay_of_a_missing_session_is_reported(page: Page, stack: Stack) -> None:
-    page.goto(f"{stack.url}/#/replay/999999")
-    expect(page.get_by_role("alert").get_by_text("There is no session 999999")).to_be_visible()

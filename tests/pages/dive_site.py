@@ -1,13 +1,13 @@
-"""A whole server in a thread; in place of a robot, a synthetic dive sends it samples as fast as a robot."""
+"""A whole server in a thread; in place of a robot, `bench.dive` sends it samples of one that floats."""
 
 import asyncio
 import threading
+from math import inf
 from pathlib import Path
 from typing import Any, Self
 
 from bench.dive import Dive
 from robot_runtime.clock import SteadyClock
-from robot_runtime.config import SessionsConfig
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.control import Commander
 from tests.server.runtime_end import RuntimeEnd
@@ -16,7 +16,7 @@ from tests.server.waiting import SECONDS
 from tests.shell import ShellToken
 from tests.stack import ROOT
 
-DIVE_SECONDS = 1800.0
+FLOAT_SECONDS = 1800.0
 PERIOD = 0.1
 """s between two blocks of a topic."""
 
@@ -71,15 +71,11 @@ class DiveSite:
     async def _serve(self) -> None:
         folder, clock = DataFolder(self.data), SteadyClock()
         make_folders(folder)
-        # The dive arms by itself, and the tests record what they need.
-        settings = Settings(
-            data=folder, config=ROOT / "robot.toml", sessions=SessionsConfig(record_at_arming=False)
-        )
-        async with serve(settings) as served:
+        async with serve(Settings(data=folder, config=ROOT / "robot.toml")) as served:
             self._runtime = served.runtime
             (await served.api.post("/control/release")).raise_for_status()
             self.port = served.settings.port
-            dive = Dive(clock.now(), DIVE_SECONDS, 1)
+            dive = Dive(clock.now(), FLOAT_SECONDS, 1, armed_at=inf)
             self._started.set()
             while not self._end.is_set():
                 served.runtime.publish(*dive.until(clock.now()))

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from server.features.comm_tests.reference import read_table
-from tests.stack import Stack
+from tests.browser.site import Site
 
 SWEEP_MS = 60_000
 """Four cells take about ten seconds on two free cores; other work may make it several times as long."""
@@ -73,11 +73,11 @@ def test_a_run_of_the_thesis_s_example_with_fewer_cells(page: Page, tmp_path: Pa
     check_run(page, tmp_path, SMALL, timeout=SWEEP_MS)
 
 
-def test_the_shipped_run_of_the_thesis_s_example(page: Page, stack: Stack, tmp_path: Path) -> None:
+def test_the_shipped_run_of_the_thesis_s_example(page: Page, site: Site, tmp_path: Path) -> None:
     """The sample that `tests/server/features/comm_tests/test_thesis_example.py` runs again, cell by cell."""
-    runs = stack.api.get("/comm-tests/runs").json()
+    runs = site.api.get("/comm-tests/runs").json()
     (sample,) = (run["id"] for run in runs if run["sample"] == "grid-thesis")
-    page.goto(f"{stack.url}/#/comm-tests/runs/{sample}")
+    page.goto(f"{site.url}/#/comm-tests/runs/{sample}")
     check_run(page, tmp_path, THESIS, timeout=STEP_MS)
 
 
@@ -210,10 +210,10 @@ def test_a_newcomer_sees_the_samples_beside_the_thesis(any_page: Page) -> None:
     assert any_page.evaluate(wider) == 0
 
 
-def test_the_page_keeps_to_its_content_policy(page: Page, stack: Stack) -> None:
+def test_the_page_keeps_to_its_content_policy(page: Page, site: Site) -> None:
     complaints: list[str] = []
     page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
-    page.goto(f"{stack.url}/#/comm-tests/compare/table5/table6")
+    page.goto(f"{site.url}/#/comm-tests/compare/table5/table6")
     expect(page.locator(".point").first).to_be_visible(timeout=STEP_MS)
     page.locator(".point path").first.hover(force=True)
     expect(page.locator(".hoverlayer .hovertext")).to_be_visible()
