@@ -28,10 +28,10 @@ def session(settings: Settings) -> int:
 
 
 @pytest.fixture
-def python(tmp_path: Path) -> Callable[[str], SimpleNamespace]:
+def python(tmp_path: Path) -> Callable[[str, int], SimpleNamespace]:
     """An interpreter in whose process these lines are run in place of writing the report."""
 
-    def write(work: str) -> SimpleNamespace:
+    def write(work: str, seconds_max: int) -> SimpleNamespace:
         script = tmp_path / "python"
         script.write_text(
             f"""#!{sys.executable}
@@ -43,7 +43,8 @@ def work(comparison, view):
     return ""
 
 process.write_report = work
-process.SECONDS_MAX = 5
+process.NICENESS = 0
+process.SECONDS_MAX = {seconds_max}
 del sys.argv[:2]
 sys.exit(process.main())
 """
@@ -84,21 +85,21 @@ def test_a_report_is_not_made_in_the_server_s_process(
 
 
 FAILURES = [
-    ("bytearray(1_500_000_000)", 422, "Choose fewer sessions"),
-    ("while time.process_time() < 15: pass", 503, "was ended by signal SIGKILL"),
-    ("raise LookupError('odd')", 503, "LookupError: odd"),
+    ("bytearray(1_500_000_000)", 60, 422, "Choose fewer sessions"),
+    ("while time.process_time() < 5: pass", 1, 503, "was ended by signal SIGKILL"),
+    ("raise LookupError('odd')", 60, 503, "LookupError: odd"),
 ]
 
 
 def test_a_report_that_fails_or_exceeds_its_limits_is_an_error_in_words_and_the_next_one_is_made(
     settings: Settings,
     session: int,
-    python: Callable[[str], SimpleNamespace],
+    python: Callable[[str, int], SimpleNamespace],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     async def scenario(served: Served) -> None:
-        for work, status, why in FAILURES:
-            monkeypatch.setattr(report_process, "sys", python(work))
+        for work, seconds_max, status, why in FAILURES:
+            monkeypatch.setattr(report_process, "sys", python(work, seconds_max))
             answer = await ask(served, session)
             assert (answer.status_code, why in answer.json()["detail"]) == (status, True), answer.text[:500]
         monkeypatch.undo()
