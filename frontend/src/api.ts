@@ -123,6 +123,7 @@ export const api = {
   takeControlOver: () => command('POST', '/control/take?over=true'),
   me: () => request<CallerDetails>('GET', '/access/me'),
   pair: (code: string, name: string) => request<CallerDetails>('POST', '/access/pair', { code, name }),
+  confirm: (code: string) => command('POST', '/access/confirm', { code }),
   signOut: () => command('POST', '/access/sign-out'),
   invite: (role: Role) => request<Invitation>('POST', '/access/codes', { role }),
   devices: () => request<Device[]>('GET', '/access/devices'),

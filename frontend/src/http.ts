@@ -7,10 +7,12 @@ const texts = connection.requests;
 const TIMEOUT = 5000;
 const SAFE = 'GET';
 const UNAUTHORISED = 401;
+const FORBIDDEN = 403;
 
 /** what names the live socket of this page as the one that asks; null while there is none */
 let clientKey: string | null = null;
 let signedOut: (why: string) => void = () => undefined;
+let confirmed: () => Promise<boolean> = () => Promise.resolve(false);
 
 /** Send this key of the page with every call that changes something; null sends none. */
 export function nameClient(key: string | null): void {
@@ -20,6 +22,27 @@ export function nameClient(key: string | null): void {
 /** Have this called wherever the server says that nobody is signed in here. */
 export function onSignedOut(call: (why: string) => void): void {
   signedOut = call;
+}
+
+/** Have this called where the server asks for a confirmation; it answers whether there is one now. */
+export function onUnconfirmed(call: () => Promise<boolean>): void {
+  confirmed = call;
+}
+
+/** Fetch, and once more where the server asks for a confirmation and gets it. */
+async function fetchConfirmed(path: string, options: () => RequestInit): Promise<Response> {
+  const response = await fetch(`/api${path}`, options());
+  if (response.status !== FORBIDDEN) return response;
+  const asked = kindOf(await response.clone().text()) === 'confirmation';
+  return asked && (await confirmed()) ? fetch(`/api${path}`, options()) : response;
+}
+
+function kindOf(text: string): unknown {
+  try {
+    return (JSON.parse(text) as { kind?: unknown }).kind;
+  } catch {
+    return undefined;
+  }
 }
 
 /** A form of another site cannot set headers: the first shows that this page asks. */
@@ -42,12 +65,12 @@ export async function send<T>(
   read: (response: Response) => Promise<T>,
 ): Promise<Answer<T>> {
   try {
-    const response = await fetch(`/api${path}`, {
+    const response = await fetchConfirmed(path, () => ({
       method,
       headers: { ...headers(method), ...(body ? { 'Content-Type': 'application/json' } : {}) },
       ...(body ? { body: JSON.stringify(body) } : {}),
       signal: AbortSignal.timeout(timeout ?? TIMEOUT),
-    });
+    }));
     if (!response.ok) return refused(response.status, await response.text());
     return { value: await read(response) };
   } catch {
@@ -98,7 +121,7 @@ export interface Downloaded {
 /** A file; `progress` is told of its bytes. It may take as long as it takes: a large one is copied first. */
 export async function download(path: string, progress: (received: number, total: number) => void): Promise<Answer<Downloaded>> {
   try {
-    const response = await fetch(`/api${path}`);
+    const response = await fetchConfirmed(path, () => ({}));
     if (!response.ok || response.body === null) return refused(response.status, await response.text());
     const total = Number(response.headers.get('Content-Length'));
     const name = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition') ?? '')?.[1] ?? 'download';

@@ -15,6 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from robot_runtime.clock import Clock
 from server.http.dependencies import find_service
 from server.http.security import SAFE_METHODS
+from server.http.sign_in.confirmation import UNCONFIRMED
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.platform.audit_file import AuditEntry, Outcome, append_entries, clean
 
@@ -213,6 +214,8 @@ class _Request:
         query = self._scope.get("query_string", b"").decode(errors="replace")
         said = self._read_body()
         asked = f"{self._scope['method']} {self._scope['path']}" + (f"?{query}" if query else "")
+        if UNCONFIRMED in self._scope:
+            asked = f"not confirmed: {asked}"
         return f"{asked} {json.dumps(said, ensure_ascii=False)}" if said else asked
 
     def _read_body(self) -> dict[str, Any]:

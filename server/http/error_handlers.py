@@ -24,7 +24,7 @@ def add_error_handlers(app: FastAPI) -> None:
 
 async def _answer_api_error(_: Request, problem: Exception) -> JSONResponse:
     assert isinstance(problem, ApiError)
-    return _answer(problem.status, problem.detail, problem.headers)
+    return _answer(problem.status, problem.detail, problem.headers, kind=problem.kind)
 
 
 async def _answer_refusal(_: Request, problem: Exception) -> JSONResponse:
@@ -55,6 +55,11 @@ def _answer(
     detail: str,
     headers: Mapping[str, str] | None = None,
     problems: Sequence[EntryProblem] = (),
+    kind: str = "",
 ) -> JSONResponse:
-    body = {"detail": detail} | ({"problems": [asdict(one) for one in problems]} if problems else {})
+    body = (
+        {"detail": detail}
+        | ({"kind": kind} if kind else {})
+        | ({"problems": [asdict(one) for one in problems]} if problems else {})
+    )
     return JSONResponse(body, status, headers)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from inspect import cleandoc
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 from fastapi import APIRouter, Path
 from fastapi.params import Depends
@@ -11,6 +11,7 @@ from starlette.responses import Response
 from starlette.routing import BaseRoute
 
 from robot_runtime.contract.problems import EntryProblem
+from server.http.sign_in.confirmation import UnconfirmedError
 from server.http.sign_in.policy import Need, needs
 from server.platform.errors import ApiError
 from server.platform.models import IDENTIFIER_MAX
@@ -25,10 +26,12 @@ Errors = type[ApiError] | Mapping[int, str]
 class Problem(BaseModel):
     """An error: what happened, why, and what to do.
 
-    `problems` are those of a document or a request, by entry.
+    `problems` are those of a document or a request, by entry. `kind` is `confirmation` where a browser must
+    confirm first, by `POST /api/access/confirm`.
     """
 
     detail: str
+    kind: Literal["", "confirmation"] = ""
     problems: list[EntryProblem] = []
 
 
@@ -90,6 +93,8 @@ class Operations:
         """
         method, _, path = place.partition(" ")
         texts = {423: "Control is with somebody else"} if need is Need.CONTROL else {}
+        if need is Need.ADMINISTER:
+            texts |= UnconfirmedError.answers()
         for error in errors:
             texts |= error if isinstance(error, Mapping) else error.answers()
         responses: dict[int | str, Any] = {

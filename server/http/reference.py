@@ -22,12 +22,13 @@ Times are in s, lengths in m and angles in rad, unless a field says otherwise.
 | viewer | is signed in |
 | operator | is signed in as an operator |
 | control | is an operator who has control of the robot |
-| administer | is signed in as an operator; a program's token has the scope `administer` |
+| administer | is a browser of an operator who confirmed or signed in lately, or a token of this scope |
 
 ## Errors
 
 An error is `{"detail": "..."}`: what happened, why, what to do. Where entries of a document or a request
-are not valid, `problems` has each of them with its path, see [EntryProblem](#entryproblem).
+are not valid, `problems` has each of them with its path, see [EntryProblem](#entryproblem). Where a browser
+must confirm first, `kind` is `confirmation`.
 
 | status | reason |
 | --- | --- |

@@ -13,6 +13,8 @@ class ApiError(Exception):
     status: int = 500
     headers: Mapping[str, str] = {}
     """Additional headers of the answer."""
+    kind: str = ""
+    """Tells a program what to do, where the status alone does not."""
 
     @property
     def detail(self) -> str:

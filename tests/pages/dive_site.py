@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any, Self
 
 from bench.dive import Dive
-from robot_runtime.clock import SteadyClock
+from robot_runtime.clock import Clock, SteadyClock
+from server.http.sign_in.access import Access
+from server.http.sign_in.confirmation import Confirmations
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.control import Commander
 from tests.server.runtime_end import RuntimeEnd
@@ -31,6 +33,7 @@ class DiveSite:
         self._end = threading.Event()
         self._problem: BaseException | None = None
         self._runtime: RuntimeEnd | None = None
+        self._access: Access | None = None
         self._thread = threading.Thread(target=self._run, daemon=True)
         self.api = Commander(timeout=5.0, auth=ShellToken(DataFolder(data)))
 
@@ -38,6 +41,11 @@ class DiveSite:
     def url(self) -> str:
         """The address of the page."""
         return f"http://127.0.0.1:{self.port}"
+
+    def forget_confirmations(self, clock: Clock) -> None:
+        """Ask every browser for a new confirmation, whose age `clock` tells from now on."""
+        assert self._access is not None
+        self._access.confirmations = Confirmations(clock)
 
     @property
     def commands(self) -> list[tuple[str, dict[str, Any]]]:
@@ -73,6 +81,7 @@ class DiveSite:
         make_folders(folder)
         async with serve(Settings(data=folder, config=ROOT / "robot.toml")) as served:
             self._runtime = served.runtime
+            self._access = served.container.access
             (await served.api.post("/control/release")).raise_for_status()
             self.port = served.settings.port
             dive = Dive(clock.now(), FLOAT_SECONDS, 1, armed_at=inf)

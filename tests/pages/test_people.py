@@ -1,11 +1,24 @@
 """People: links, roles, revocation."""
 
 import re
+from collections.abc import Iterator
 
-from playwright.sync_api import Browser, Page, expect
+import pytest
+from playwright.sync_api import Browser, Page, ViewportSize, expect
 
-from tests.browser.people import make_link
+from robot_runtime.clock import SimulatedClock
+from server.http.sign_in.confirmation import CONFIRMED_SECONDS
+from tests.browser.opening import DESKTOP, PHONE
+from tests.browser.people import make_link, somebody
 from tests.browser.site import Site
+from tests.pages.dive_site import DiveSite
+
+
+@pytest.fixture
+def fresh(browser: Browser, site: Site) -> Iterator[Page]:
+    """The page of an operator who has just signed in, and so needs no confirmation."""
+    with somebody(browser, site, "operator") as page:
+        yield page
 
 
 def test_a_link_signs_in_and_is_removed_from_the_address(browser: Browser, site: Site) -> None:
@@ -38,7 +51,8 @@ def test_a_code_can_be_typed(browser: Browser, site: Site) -> None:
         expect(page.get_by_role("alert").filter(has_text="You have signed out.")).to_be_visible()
 
 
-def test_an_operator_pairs_promotes_and_revokes(page: Page, browser: Browser, site: Site) -> None:
+def test_an_operator_pairs_promotes_and_revokes(fresh: Page, browser: Browser, site: Site) -> None:
+    page = fresh
     page.goto(f"{site.url}/#/people")
     page.get_by_role("region", name="Invite").get_by_role("button", name="Create link").click()
     expect(page.get_by_alt_text("QR code of the link")).to_have_js_property("complete", True)
@@ -67,7 +81,8 @@ def test_an_operator_pairs_promotes_and_revokes(page: Page, browser: Browser, si
         expect(page.get_by_role("row", name=re.compile("guest"))).to_be_hidden()
 
 
-def test_a_token_is_shown_once(page: Page, site: Site) -> None:
+def test_a_token_is_shown_once(fresh: Page, site: Site) -> None:
+    page = fresh
     page.goto(f"{site.url}/#/people")
     tokens = page.get_by_role("region", name="Token for a program")
     tokens.get_by_label("Name of the program").fill("depth logger")
@@ -78,3 +93,43 @@ def test_a_token_is_shown_once(page: Page, site: Site) -> None:
     page.get_by_role("button", name="Revoke depth logger").click()
     page.get_by_role("button", name="Revoke", exact=True).click()
     expect(page.get_by_role("row", name=re.compile("depth logger"))).to_be_hidden()
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_a_dangerous_act_asks_for_a_code_and_is_then_done(
+    fresh: Page, site: DiveSite, size: ViewportSize
+) -> None:
+    clock = SimulatedClock(1000.0)
+    site.forget_confirmations(clock)
+    fresh.set_viewport_size(size)
+    fresh.goto(f"{site.url}/#/people")
+    tokens = fresh.get_by_role("region", name="Token for a program")
+    tokens.get_by_label("Name of the program").fill("sonar logger")
+    create = tokens.get_by_role("button", name="Create token")
+    create.click()
+    dialog = fresh.get_by_role("dialog", name="Confirmation needed")
+    code = dialog.get_by_label("Operator code or link")
+    expect(code).to_be_focused()
+    fresh.get_by_role("button", name="STOP").click(trial=True)
+    dialog.get_by_role("button", name="Cancel").click()
+    expect(dialog).to_be_hidden()
+    expect(create).to_be_focused()
+    expect(tokens.get_by_role("alert")).to_contain_text("fresh confirmation")
+
+    create.click()
+    code.fill("nonsense")
+    code.press("Enter")
+    expect(dialog.get_by_role("alert")).to_contain_text("does not confirm")
+    expect(dialog.get_by_role("button", name="Confirm")).to_be_enabled()
+    code.fill(make_link(site, "operator"))
+    code.press("Enter")
+    expect(tokens.get_by_label("Token", exact=True)).to_have_value(re.compile("^mucat_"))
+    expect(dialog).to_be_hidden()
+
+    clock.forward(CONFIRMED_SECONDS)
+    fresh.goto(f"{site.url}/#/system")
+    fresh.get_by_role("button", name="Download a backup").click()
+    code.fill(make_link(site, "operator"))
+    with fresh.expect_download() as download:
+        code.press("Enter")
+    assert download.value.suggested_filename.startswith("mucat-backup-")

@@ -3,8 +3,9 @@
 import re
 from datetime import datetime, timedelta
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Page, expect
 
+from tests.browser.people import somebody
 from tests.browser.site import Site
 
 AHEAD = datetime.now() + timedelta(days=9000, hours=7)
@@ -27,13 +28,14 @@ def test_the_duration_of_a_recording_is_by_the_robot_s_clock(page: Page, site: S
         site.api.post(f"/sessions/{session}/stop").raise_for_status()
 
 
-def test_the_validity_of_an_invitation_is_by_the_robot_s_clock(page: Page, site: Site) -> None:
-    page.clock.install(time=AHEAD)
-    page.goto(f"{site.url}/#/people")
-    page.reload()
-    people = page.get_by_role("region", name="Invite")
-    people.get_by_role("button", name="Create link").click()
-    expect(people.get_by_text(re.compile(r"valid for (10:00|09:\d\d)"))).to_be_visible()
+def test_the_validity_of_an_invitation_is_by_the_robot_s_clock(browser: Browser, site: Site) -> None:
+    with somebody(browser, site, "operator") as page:
+        page.clock.install(time=AHEAD)
+        page.goto(f"{site.url}/#/people")
+        page.reload()
+        people = page.get_by_role("region", name="Invite")
+        people.get_by_role("button", name="Create link").click()
+        expect(people.get_by_text(re.compile(r"valid for (10:00|09:\d\d)"))).to_be_visible()
 
 
 def test_the_clock_shows_the_robots_time(page: Page) -> None:

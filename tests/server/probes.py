@@ -15,7 +15,8 @@ NOT_THERE = 404
 GONE = "It would be gone for all that is asked afterwards."
 STARTS = "It would start a process each time."
 CODE = "a new code"
-"""In a body: a code that the shell has just made."""
+OPERATOR_CODE = "a new operator's code"
+"""In a body: codes that the shell has just made."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,7 @@ PROBES: dict[tuple[str, str], Probe] = {
     ("HEAD", "/help"): Probe(307),
     ("GET", "/api/alive"): Probe(204),
     ("POST", "/api/access/pair"): Probe(body={"code": CODE, "name": "somebody"}),
+    ("POST", "/api/access/confirm"): Probe(204, {"code": OPERATOR_CODE}),
     ("POST", "/api/access/codes"): Probe(201),
     ("PATCH", "/api/access/devices/{device}"): Probe(body={"name": "viewer"}),
     ("DELETE", "/api/access/devices/{device}"): absent("device", "There is no device 999", GONE),

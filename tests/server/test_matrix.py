@@ -22,7 +22,7 @@ from server.http.sign_in.policy import MESSAGES
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
 from tests.server.new_database import place_with_samples
-from tests.server.probes import CODE, PROBES, THERE, Probe, place_things
+from tests.server.probes import CODE, OPERATOR_CODE, PROBES, THERE, Probe, place_things
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import until
 from tests.shell import shell_headers
@@ -50,6 +50,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("HEAD", "/api/openapi.json"): "viewer",
     ("GET", "/api/access/me"): "anyone",
     ("POST", "/api/access/pair"): "anyone",
+    ("POST", "/api/access/confirm"): "operator",
     ("POST", "/api/access/codes"): "administer",
     ("GET", "/api/access/devices"): "operator",
     ("PATCH", "/api/access/devices/{device}"): "administer",
@@ -250,9 +251,10 @@ class House:
 
     async def fill(self, body: dict[str, Any]) -> dict[str, Any]:
         """The body of a request, with a new code of the shell where it needs one."""
-        if body.get("code") != CODE:
+        roles = {CODE: "viewer", OPERATOR_CODE: "operator"}
+        if (role := roles.get(body.get("code", ""))) is None:
             return body
-        return body | {"code": await self._code("viewer")}
+        return body | {"code": await self._code(role)}
 
     async def _code(self, role: str) -> str:
         right = self.places("right", "right")

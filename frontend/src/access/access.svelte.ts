@@ -1,8 +1,9 @@
 import { createContext } from 'svelte';
 import { api, type Identity, type CallerDetails } from '../api';
 import type { operations } from '../generated/api';
-import { onSignedOut } from '../http';
+import { onSignedOut, onUnconfirmed } from '../http';
 import { access as texts } from '../texts/access';
+import { Confirmation } from './confirmation.svelte';
 
 /** what the server can be asked for, by the names in its interface */
 export type Operation = keyof operations;
@@ -20,10 +21,12 @@ export class Access {
   reason = $state('');
   /** the server has not answered so far */
   silent = $state(false);
+  readonly confirmation = new Confirmation();
   #operatorsOnly: readonly string[] = [];
 
   constructor() {
     onSignedOut((why) => this.leave(why));
+    onUnconfirmed(() => this.confirmation.ask());
   }
 
   /** Find out who this is, and use the code of a link where there is one and it is of use. */
@@ -66,6 +69,7 @@ export class Access {
   /** This page is not signed in any more. */
   leave(reason: string): void {
     if (this.state !== 'in') return;
+    this.confirmation.cancel();
     this.state = 'out';
     this.identity = null;
     this.reason = reason;

@@ -24,6 +24,30 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/access/confirm": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Confirm who uses this browser, with a new operator's code
+         * @description Confirm who uses this browser, with a new operator's code.
+         *
+         *     Dangerous acts of a browser (`administer`) need it where the browser has neither signed in nor confirmed
+         *     in the last ten minutes. The code is used up. One that this browser has made itself does not confirm.
+         *     Programs and the shell need no confirmation.
+         */
+        post: operations["confirmBrowser"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/access/devices": {
         parameters: {
             query?: never;
@@ -2451,6 +2475,14 @@ export interface components {
             view?: components["schemas"]["TimeRange"] | null;
         };
         /**
+         * Confirmation
+         * @description A code that confirms who uses this browser.
+         */
+        Confirmation: {
+            /** Code */
+            code: string;
+        };
+        /**
          * ControlDetails
          * @description The holder of control, and the counts of stick commands.
          */
@@ -3458,11 +3490,18 @@ export interface components {
          * Problem
          * @description An error: what happened, why, and what to do.
          *
-         *     `problems` are those of a document or a request, by entry.
+         *     `problems` are those of a document or a request, by entry. `kind` is `confirmation` where a browser must
+         *     confirm first, by `POST /api/access/confirm`.
          */
         Problem: {
             /** Detail */
             detail: string;
+            /**
+             * Kind
+             * @default
+             * @enum {string}
+             */
+            kind: "" | "confirmation";
             /**
              * Problems
              * @default []
@@ -4875,6 +4914,73 @@ export interface operations {
                     "application/json": components["schemas"]["MadeCode"];
                 };
             };
+            /** @description Not allowed; a browser that has not confirmed for ten minutes gets the kind `confirmation` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    confirmBrowser: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Confirmation"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The code is not valid, or does not confirm */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A wrong code was tried a moment ago; Retry-After says how long to wait */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Something that the server needs does not work */
             503: {
                 headers: {
@@ -4951,6 +5057,15 @@ export interface operations {
                 };
                 content?: never;
             };
+            /** @description Not allowed; a browser that has not confirmed for ten minutes gets the kind `confirmation` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description There is no such device */
             404: {
                 headers: {
@@ -5011,6 +5126,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["DeviceDetails"];
+                };
+            };
+            /** @description Not allowed; a browser that has not confirmed for ten minutes gets the kind `confirmation` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description There is no such device */
@@ -5225,6 +5349,15 @@ export interface operations {
                     "application/json": components["schemas"]["MadeToken"];
                 };
             };
+            /** @description Not allowed; a browser that has not confirmed for ten minutes gets the kind `confirmation` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Too many devices are paired */
             409: {
                 headers: {
@@ -5396,6 +5529,15 @@ export interface operations {
                 };
                 content: {
                     "application/vnd.sqlite3": unknown;
+                };
+            };
+            /** @description Not allowed; a browser that has not confirmed for ten minutes gets the kind `confirmation` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Another copy is being made or downloaded */

@@ -9,6 +9,7 @@ from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.http.dependencies import find_service
 from server.http.sign_in.access import Access
+from server.http.sign_in.confirmation import UNCONFIRMED, UnconfirmedError
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.http.sign_in.policy import Need, need_of, refusal
 from server.platform.errors import ConflictError, ForbiddenError, SignedOutError
@@ -21,8 +22,8 @@ async def admit(connection: HTTPConnection) -> None:
 
     The sign-in was checked at the request's head: until now it may have been revoked, or its role changed.
     The live socket needs a sign-in; each of its messages is checked by itself (`may_say`). Raises
-    SignedOutError, ForbiddenError, or NotInControlError if the operation needs control and another client
-    has it.
+    SignedOutError, ForbiddenError, UnconfirmedError if a browser asks for a dangerous act without a fresh
+    confirmation, or NotInControlError if the operation needs control and another client has it.
     """
     socket = connection.scope["type"] == "websocket"
     need = Need.VIEWER if socket else need_of(connection.scope["route"])
@@ -33,8 +34,18 @@ async def admit(connection: HTTPConnection) -> None:
     reason = refusal(identity, need)
     if reason is not None:
         raise ForbiddenError(reason)
+    if need == Need.ADMINISTER:
+        _require_confirmation(connection)
     if need == Need.CONTROL:
         require_control(connection)
+
+
+def _require_confirmation(connection: HTTPConnection) -> None:
+    try:
+        find_service(connection, Access).confirmations.require(connection.scope[IDENTITY])
+    except UnconfirmedError:
+        connection.scope[UNCONFIRMED] = True
+        raise
 
 
 def require_control(connection: HTTPConnection) -> None:

@@ -8,6 +8,7 @@ from fastapi import Request, Response
 from server.features.people.pairing_links import pairing_link, qr_svg
 from server.features.people.schemas import (
     CallerDetails,
+    Confirmation,
     DeviceChanges,
     DeviceDetails,
     MadeCode,
@@ -22,7 +23,12 @@ from server.http.operations import Identifier, Operations
 from server.http.sign_in.access import Access
 from server.http.sign_in.devices import Device, UnknownDeviceError
 from server.http.sign_in.identity import IDENTITY, Caller, Identity
-from server.http.sign_in.pairing_codes import CODE_SECONDS, TooManyTriesError, WrongCodeError
+from server.http.sign_in.pairing_codes import (
+    CODE_SECONDS,
+    TooManyTriesError,
+    WrongCodeError,
+    WrongConfirmationError,
+)
 from server.http.sign_in.policy import Need, list_needs
 from server.platform.settings import Settings
 
@@ -69,6 +75,19 @@ async def pair_browser(
     return _describe_caller(request, settings, access, identity)
 
 
+@router.operation("POST /confirm", Need.OPERATOR, WrongConfirmationError, TooManyTriesError)
+async def confirm_browser(
+    request: Request, access: Provided[Access], caller: Caller, body: Confirmation
+) -> None:
+    """Confirm who uses this browser, with a new operator's code.
+
+    Dangerous acts of a browser (`administer`) need it where the browser has neither signed in nor confirmed
+    in the last ten minutes. The code is used up. One that this browser has made itself does not confirm.
+    Programs and the shell need no confirmation.
+    """
+    access.confirm(body.code, caller, address_of(request.scope))
+
+
 @router.operation("POST /sign-out", Need.VIEWER, {409: "The shell is not signed in"})
 async def sign_out(access: Provided[Access], caller: Caller, response: Response) -> None:
     """Sign this browser out.
@@ -81,10 +100,10 @@ async def sign_out(access: Provided[Access], caller: Caller, response: Response)
 
 @router.operation("POST /codes", Need.ADMINISTER, status_code=201)
 async def make_code(
-    request: Request, settings: Provided[Settings], access: Provided[Access], body: NewCode
+    request: Request, settings: Provided[Settings], access: Provided[Access], caller: Caller, body: NewCode
 ) -> MadeCode:
     """Make a pairing code for one browser, valid for ten minutes."""
-    code = access.codes.make(body.role)
+    code = access.codes.make(body.role, caller.device)
     link = pairing_link(settings.base_url(_called(request)), code)
     expires = time.time() + CODE_SECONDS
     return MadeCode(code=code, link=link, role=body.role, expires=expires, qr_svg=qr_svg(link))

@@ -39,6 +39,13 @@ class Pairing(BaseModel):
     name: Name
 
 
+class Confirmation(BaseModel):
+    """A code that confirms who uses this browser."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+    code: Annotated[str, Field(min_length=1, max_length=64)]
+
+
 class NewCode(BaseModel):
     """A pairing code to be made."""
 

@@ -1,6 +1,7 @@
 """Access to the server: pairing, signing in by cookie or token, roles, revocation."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from hmac import compare_digest
 
 from starlette.requests import HTTPConnection
@@ -9,6 +10,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract import documents
 from robot_runtime.durable_files import write_whole
 from robot_runtime.errors import RefusedError
+from server.http.sign_in.confirmation import Confirmations
 from server.http.sign_in.devices import Device, Devices, SignInEndedError
 from server.http.sign_in.identity import SHELL, Identity, Role, Scope
 from server.http.sign_in.pairing_codes import PairingCodes, WrongCodeError
@@ -40,6 +42,7 @@ class Access:
         self.cookie = f"mucat_{settings.port}"
         """Its name: browsers keep the cookies of all ports of a computer together."""
         self.codes = PairingCodes(clock)
+        self.confirmations = Confirmations(clock)
         self.devices = Devices(store)
         self._token_file = settings.data.token
         self._token = token
@@ -79,21 +82,26 @@ class Access:
         Such a one keeps its name, and its role where the code's is not a higher one.
         Raises WrongCodeError, TooManyTriesError, RefusedError, StoreError.
         """
-        try:
+        with self._reporting_wrong_codes(address):
             role = self.codes.use(code, address)
-        except WrongCodeError:
-            if self.codes.many_wrong and not self._limit_reported:
-                self._notify("access", "caution", f"Somebody at {address} tries pairing codes.")
-                self._limit_reported = True
-            raise
-        self._limit_reported = False
         if known is not None and known.kind == "browser":
             if role == "operator" and known.role == "viewer":
                 await self.set_role(known.device, role, by=known)
+                self.confirmations.confirm(known.device)
             return self.devices.get(known.device).identity, None
         device, secret = await self.devices.add_browser(name, role)
+        self.confirmations.confirm(device.id)
         self._notify("access", "info", f"“{name}” was paired as {role}.")
         return device.identity, secret
+
+    def confirm(self, code: str, identity: Identity, address: str) -> None:
+        """Confirm who uses this browser, for dangerous acts of the next ten minutes.
+
+        Raises WrongConfirmationError, TooManyTriesError.
+        """
+        with self._reporting_wrong_codes(address):
+            self.codes.confirm(code, identity.device, address)
+        self.confirmations.confirm(identity.device)
 
     async def make_program(
         self, name: str, scope: Scope, days: int | None, by: Identity
@@ -141,6 +149,17 @@ class Access:
             raise RefusedError("The shell of this computer is not signed in, and needs not sign out.")
         await self._remove(self.devices.get(identity.device), "Signed out.")
         self._notify("access", "info", f"“{identity.name}” signed out.")
+
+    @contextmanager
+    def _reporting_wrong_codes(self, address: str) -> Iterator[None]:
+        try:
+            yield
+        except WrongCodeError:
+            if self.codes.many_wrong and not self._limit_reported:
+                self._notify("access", "caution", f"Somebody at {address} tries pairing codes.")
+                self._limit_reported = True
+            raise
+        self._limit_reported = False
 
     async def _remove(self, device: Device, reason: str) -> None:
         try:

@@ -4,12 +4,13 @@ Both are in memory only: codes become invalid when the server ends.
 """
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from hmac import compare_digest
 from math import ceil
 
 from robot_runtime.clock import Clock
-from server.http.sign_in.identity import Role
+from server.http.sign_in.identity import SHELL, Role
 from server.http.sign_in.tokens import digest, make_code, normal_code
 from server.platform.errors import ApiError, ForbiddenError
 
@@ -33,6 +34,17 @@ class WrongCodeError(ForbiddenError):
         )
 
 
+class WrongConfirmationError(WrongCodeError):
+    """The code is not valid, or does not confirm"""
+
+    def __init__(self) -> None:
+        super(WrongCodeError, self).__init__(
+            "This code does not confirm. It takes a valid code for an operator that this browser has not "
+            "made itself: from another operator, or from `mucat pair --role operator` on the robot's "
+            "computer."
+        )
+
+
 class TooManyTriesError(ApiError):
     """A wrong code was tried a moment ago; Retry-After says how long to wait"""
 
@@ -49,6 +61,7 @@ class _Code:
     digest: str
     role: Role
     expires: float
+    maker: int
 
 
 class PairingCodes:
@@ -72,10 +85,10 @@ class PairingCodes:
         """True where somebody has just tried many wrong codes."""
         return len(self._wrong) == MANY and self._wrong[0] > self._clock.now() - MANY_SECONDS
 
-    def make(self, role: Role) -> str:
-        """A new code, for one pairing in this role."""
+    def make(self, role: Role, maker: int = SHELL.device) -> str:
+        """A new code, for one pairing in this role; `maker` is the device that asks for it."""
         code = make_code()
-        self._codes.append(_Code(digest(normal_code(code)), role, self._clock.now() + CODE_SECONDS))
+        self._codes.append(_Code(digest(normal_code(code)), role, self._clock.now() + CODE_SECONDS, maker))
         return code
 
     def use(self, typed: str, address: str) -> Role:
@@ -83,6 +96,20 @@ class PairingCodes:
 
         Raises WrongCodeError, after which this address waits, and TooManyTriesError while it does.
         """
+        return self._use(typed, address, lambda _: True, WrongCodeError())
+
+    def confirm(self, typed: str, device: int, address: str) -> None:
+        """Use a code up that confirms who uses this device: an operator's, made by anybody else.
+
+        Raises WrongConfirmationError, after which this address waits, and TooManyTriesError while it does.
+        """
+
+        def fits(code: _Code) -> bool:
+            return code.role == "operator" and code.maker != device
+
+        self._use(typed, address, fits, WrongConfirmationError())
+
+    def _use(self, typed: str, address: str, fits: Callable[[_Code], bool], wrong: WrongCodeError) -> Role:
         now = self._clock.now()
         self._waiting = {one: until for one, until in self._waiting.items() if until > now}
         if (until := self._waiting.get(address)) is not None:
@@ -90,11 +117,11 @@ class PairingCodes:
         self._forget_old()
         typed_digest = digest(normal_code(typed))
         # Every code is compared in full, so that the time taken reveals nothing.
-        found = [code for code in self._codes if compare_digest(code.digest, typed_digest)]
+        found = [code for code in self._codes if compare_digest(code.digest, typed_digest) and fits(code)]
         if not found:
             self._wrong.append(now)
             self._waiting[address] = now + TRY_SECONDS
-            raise WrongCodeError
+            raise wrong
         self._codes.remove(found[0])
         return found[0].role
 
