@@ -61,9 +61,9 @@ test-checks:
 	(cd frontend && nice npm test --silent) || status=1; \
 	exit $$status
 
-# Three at once: many of them wait for a process.
+# Four at once: many of them wait for a process.
 test-rest:
-	@nice $(IN_LANES) --jobs 3 $(PARTS:%=test-in-%)
+	@nice $(IN_LANES) --jobs 4 $(PARTS:%=test-in-%)
 
 $(PARTS:%=test-in-%): test-in-%:
 	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))
