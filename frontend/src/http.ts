@@ -33,15 +33,16 @@ export function onUnconfirmed(call: () => Promise<boolean>): void {
 async function fetchConfirmed(path: string, options: () => RequestInit): Promise<Response> {
   const response = await fetch(`/api${path}`, options());
   if (response.status !== FORBIDDEN) return response;
-  const asked = kindOf(await response.clone().text()) === 'confirmation';
+  const asked = readProblem(await response.clone().text()).kind === 'confirmation';
   return asked && (await confirmed()) ? fetch(`/api${path}`, options()) : response;
 }
 
-function kindOf(text: string): unknown {
+/** The fields of an error; none where something between the page and the server answered in its place. */
+function readProblem(text: string): { detail?: unknown; kind?: unknown } {
   try {
-    return (JSON.parse(text) as { kind?: unknown }).kind;
+    return Object(JSON.parse(text)) as object;
   } catch {
-    return undefined;
+    return {};
   }
 }
 
@@ -141,12 +142,8 @@ export async function download(path: string, progress: (received: number, total:
 }
 
 function describe(status: number, text: string): string {
-  try {
-    const { detail } = JSON.parse(text) as { detail?: unknown };
-    if (typeof detail === 'string') return detail;
-    if (Array.isArray(detail)) return detail.map((one: { msg?: string }) => one.msg ?? '').join('; ');
-  } catch {
-    // Not JSON: something between the page and the server answered in its place.
-  }
+  const { detail } = readProblem(text);
+  if (typeof detail === 'string') return detail;
+  if (Array.isArray(detail)) return detail.map((one: { msg?: string }) => one.msg ?? '').join('; ');
   return texts.noReason(status);
 }

@@ -121,7 +121,7 @@ class HttpProtocol(H11Protocol):
         self._body_until = 0.0
         self._made = False
         self._early = b""
-        """What arrived before `connection_made`, as TLS may let it."""
+        """Bytes that arrived before `connection_made`, as TLS may let them."""
 
     @property
     def waits(self) -> bool:

@@ -3,11 +3,12 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.experiments.comm_test.results import Direction
 from server.features.comm_tests.reference import TableName
+from server.http.request_body import RequestBody
 
 Place = Literal["emulated", "robot"]
 State = Literal["running", "complete", "cancelled", "failed", "interrupted"]
@@ -26,10 +27,9 @@ class TestDocument(BaseModel):
     text: str
 
 
-class DocumentText(BaseModel):
+class DocumentText(RequestBody):
     """The text of a test document."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     text: Annotated[str, Field(max_length=TEXT_MAX)]
 
 

@@ -2,16 +2,15 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from server.features.comparison.moments import ControlHistory
 from server.features.sessions.timeline import Moment
+from server.http.request_body import RequestBody
 
 
-class Align(BaseModel):
+class Align(RequestBody):
     """The moment that becomes 0 s in every session."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     by: Literal["start", "armed", "set_point", "marker"] = "start"
     number: Annotated[int, Field(ge=1, le=1000, description="number of the set-point step")] = 1

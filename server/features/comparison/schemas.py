@@ -9,6 +9,7 @@ from server.features.comparison.differences import Difference
 from server.features.comparison.signals import Signal
 from server.features.metrics.figure import Figure, FigureMeaning
 from server.features.sessions.timeline import Moment
+from server.http.request_body import RequestBody
 from server.platform.models import IDENTIFIER_MAX
 
 SESSIONS_MAX = 12
@@ -22,18 +23,16 @@ Identifier = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 SignalName = Annotated[str, Field(pattern=r"^[a-z_]{1,40}\.[a-z0-9_]{1,60}$")]
 
 
-class TimeRange(BaseModel):
+class TimeRange(RequestBody):
     """A time range, s on the common time axis, where the aligned moment is 0."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     start: Annotated[float, Field(allow_inf_nan=False)]
     end: Annotated[float, Field(allow_inf_nan=False)]
 
 
-class LinesQuery(BaseModel):
+class LinesQuery(RequestBody):
     """Sessions, their signals, and their alignment."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     sessions: Annotated[list[Identifier], Field(min_length=1, max_length=SESSIONS_MAX)]
     signals: Annotated[list[SignalName], Field(max_length=SIGNALS_MAX)]
     align: Align = Align()

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from server.http.request_body import RequestBody
 from server.platform.models import IDENTIFIER_MAX
 
 Format = Literal["csv", "csv-grid", "jsonl", "parquet", "mcap", "archive", "report"]
@@ -17,10 +18,10 @@ Name = Annotated[str, Field(min_length=1, max_length=100)]
 Seconds = Annotated[float, Field(ge=-SECONDS_MAX, le=SECONDS_MAX)]
 
 
-class ExportOptions(BaseModel):
+class ExportOptions(RequestBody):
     """Choice of a session's topics, range and file format."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(allow_inf_nan=False)
     format: Format
     topics: Annotated[list[Name], Field(min_length=1, max_length=100)] | None = Field(
         default=None, description="names of topics; null for all. Not for csv-grid, archive and report"

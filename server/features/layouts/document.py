@@ -3,8 +3,10 @@
 from itertools import combinations
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
+
+from server.http.request_body import RequestBody
 
 VERSION = 1
 COLUMNS = 24
@@ -16,18 +18,16 @@ PanelName = Annotated[str, Field(pattern=r"^(own/)?[A-Za-z0-9][A-Za-z0-9 _-]{0,5
 Word = Annotated[str, Field(min_length=1, max_length=60)]
 
 
-class ShownChart(BaseModel):
+class ShownChart(RequestBody):
     """A chart's signals, by the names in recordings (`motor.angle_2`), and its length in s."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     signals: Annotated[list[Word], Field(max_length=SIGNALS_MOST)]
     seconds: Annotated[float, Field(ge=1, le=3600, allow_inf_nan=False)]
 
 
-class PlacedPanel(BaseModel):
+class PlacedPanel(RequestBody):
     """A panel, and its place in columns and rows of the grid from the upper left corner."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     id: Word
     panel: PanelName
     x: Annotated[int, Field(ge=0, lt=COLUMNS)]
@@ -46,10 +46,9 @@ class PlacedPanel(BaseModel):
         )
 
 
-class LayoutDocument(BaseModel):
+class LayoutDocument(RequestBody):
     """The places of the panels of Operate."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     format: Literal["mucat-layout"]
     version: int
     panels: Annotated[list[PlacedPanel], Field(max_length=PANELS_MOST)]

@@ -3,21 +3,21 @@
 from collections.abc import Sequence
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, StringConstraints
+from pydantic import StringConstraints
 
 from server.features.layouts.document import LayoutDocument
 from server.features.layouts.library import LayoutDetails, Layouts, SavedLayout, UnknownLayoutError
 from server.http.dependencies import Provided
 from server.http.operations import Identifier, Operations
+from server.http.request_body import RequestBody
 from server.http.sign_in.policy import Need
 
 router = Operations(prefix="/api/layouts", tags=["layouts"])
 
 
-class NewLayout(BaseModel):
+class NewLayout(RequestBody):
     """A layout to be saved under a name."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=60)]
     document: LayoutDocument
 

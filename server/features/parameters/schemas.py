@@ -3,7 +3,9 @@
 from datetime import datetime
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, StrictBool, StrictInt, StringConstraints
+from pydantic import BaseModel, Field, FiniteFloat, StrictBool, StrictInt, StringConstraints
+
+from server.http.request_body import RequestBody
 
 PARAMETERS_MAX = 1000
 
@@ -36,10 +38,9 @@ class Change(BaseModel):
     undoable: bool = Field(description="true for the next change that can be undone")
 
 
-class Undo(BaseModel):
+class Undo(RequestBody):
     """The change to undo: the newest that is not undone."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     change: int
 
 
@@ -53,10 +54,9 @@ class Profile(BaseModel):
     values: dict[str, Value]
 
 
-class NewProfile(BaseModel):
+class NewProfile(RequestBody):
     """The name under which the present parameters are saved."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     name: ProfileName
     note: ProfileNote = ""
 
@@ -75,10 +75,9 @@ class Restored(BaseModel):
     left_out: list[LeftOut]
 
 
-class ProfileText(BaseModel):
+class ProfileText(RequestBody):
     """A profile's file, as text."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     text: Annotated[str, Field(max_length=200_000)]
 
 

@@ -3,8 +3,9 @@
 from typing import Annotated
 from unicodedata import normalize
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, Field
 
+from server.http.request_body import RequestBody
 from server.http.sign_in.identity import Identity, Kind, Role, Scope
 
 NAME_LENGTH_MAX = 40
@@ -31,25 +32,22 @@ class CallerDetails(BaseModel):
     operators_only: list[str] = Field(description="names of the operations that viewers may not call")
 
 
-class Pairing(BaseModel):
+class Pairing(RequestBody):
     """A code, and a name for this browser."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     code: Annotated[str, Field(min_length=1, max_length=64)]
     name: Name
 
 
-class Confirmation(BaseModel):
+class Confirmation(RequestBody):
     """A code that confirms who uses this browser."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     code: Annotated[str, Field(min_length=1, max_length=64)]
 
 
-class NewCode(BaseModel):
+class NewCode(RequestBody):
     """A pairing code to be made."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     role: Role = "viewer"
 
 
@@ -78,23 +76,20 @@ class DeviceDetails(BaseModel):
     you: Annotated[bool, Field(description="true for the caller itself")]
 
 
-class DeviceChanges(BaseModel):
+class DeviceChanges(RequestBody):
     """Changes of a device; null leaves a field unchanged."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     name: Name | None = None
     role: Role | None = None
 
 
-class NewToken(BaseModel):
+class NewToken(RequestBody):
     """A program that gets a token."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     name: Name
     scope: Scope = "read"
     days: Annotated[
-        int | None,
-        Field(strict=True, ge=1, le=TOKEN_DAYS_MAX, description="until it ends; null: it never ends"),
+        int | None, Field(ge=1, le=TOKEN_DAYS_MAX, description="until it ends; null: it never ends")
     ] = TOKEN_DAYS
 
 

@@ -2,12 +2,13 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.experiments.scenario.document import Scenario
+from server.http.request_body import RequestBody
 
 Place = Literal["live", "simulated"]
 BoardKind = Literal["host", "emulated"]
@@ -26,10 +27,9 @@ class ScenarioText(BaseModel):
     summary: "ScenarioSummary | None" = Field(description="null if it is not valid")
 
 
-class ScenarioDocument(BaseModel):
+class ScenarioDocument(RequestBody):
     """The text of a scenario."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     text: Text
 
 
@@ -61,13 +61,12 @@ class ScenarioCheck(BaseModel):
     summary: ScenarioSummary | None
 
 
-class ScenarioStart(BaseModel):
+class ScenarioStart(RequestBody):
     """A scenario to run: on the robot in real time, or in simulated time.
 
     `board`, in simulated time alone: the firmware built for this computer, or on the emulated board.
     """
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     text: Text
     place: Place
     board: BoardKind = "host"

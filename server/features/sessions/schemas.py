@@ -3,7 +3,9 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, Field, StringConstraints
+
+from server.http.request_body import RequestBody
 
 State = Literal["recording", "complete", "interrupted"]
 GapKind = Literal["missed", "restarted", "not stored", "damaged"]
@@ -95,20 +97,18 @@ class SessionDetail(Session):
     topics: list[RecordedTopic]
 
 
-class SessionChanges(BaseModel):
+class SessionChanges(RequestBody):
     """Changes of a session's texts; null leaves a field unchanged."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     name: Annotated[Name, Field(min_length=1)] | None = None
     note: Note | None = None
     tags: Annotated[list[Tag], Field(max_length=20)] | None = None
     kept: bool | None = None
 
 
-class NewSession(BaseModel):
+class NewSession(RequestBody):
     """A new session; its default name is its date and time."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     name: Name = ""
     note: Note = ""
 
@@ -117,17 +117,15 @@ Text = Annotated[str, StringConstraints(strip_whitespace=True, max_length=500)]
 Moment = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 
-class NewBookmark(BaseModel):
+class NewBookmark(RequestBody):
     """A new bookmark; its time in s since the session's start, or null for now."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     time: Moment | None = None
     text: Text = ""
 
 
-class BookmarkChanges(BaseModel):
+class BookmarkChanges(RequestBody):
     """Changes of a bookmark; null leaves a field unchanged."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     time: Moment | None = None
     text: Text | None = None

@@ -2,11 +2,12 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import Field, FiniteFloat
 
 from robot_runtime.errors import RefusedError
 from server.http.dependencies import Provided
 from server.http.operations import Operations
+from server.http.request_body import RequestBody
 from server.http.sign_in.policy import Need
 from server.platform.settings import Settings
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessSupervisor
@@ -15,17 +16,15 @@ from server.stream.bridge import Bridge, RuntimeSilentError
 router = Operations(prefix="/api")
 
 
-class SimulatorPlace(BaseModel):
+class SimulatorPlace(RequestBody):
     """The computer of the simulator; `here` is true for this one."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     here: bool
 
 
-class SceneView(BaseModel):
+class SceneView(RequestBody):
     """The bystander's view; all pages share it."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     name: Annotated[
         Literal["follow", "side", "top"], Field(description="follow turns with the robot, the others do not")
     ]

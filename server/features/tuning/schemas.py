@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import BaseModel, Field, FiniteFloat
 
 from robot_runtime.contract.commands import (
     ExperimentCommand,
@@ -22,16 +22,16 @@ from robot_runtime.contract.limits import (
 from robot_runtime.errors import RefusedError
 from server.features.metrics.figure import Figure, FigureMeaning
 from server.features.tuning.curve import TuningCurve
+from server.http.request_body import RequestBody
 
 RunState = Literal["running", "complete", "stopped", "failed", "interrupted"]
 RunName = Annotated[str, Field(min_length=1, max_length=100)]
 Value = Annotated[FiniteFloat, Field(ge=-20, le=20, description="m, of an angle rad")]
 
 
-class Limits(BaseModel):
+class Limits(RequestBody):
     """Limits of the value; once inside them, leaving them ends the experiment at once."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     low: Value
     high: Value
 
@@ -148,10 +148,9 @@ class TuningStarted(BaseModel):
     run: int
 
 
-class TuningName(BaseModel):
+class TuningName(RequestBody):
     """A run's new name."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     name: RunName
 
 

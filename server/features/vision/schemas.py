@@ -2,9 +2,10 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import BaseModel, Field, FiniteFloat
 
 from robot_runtime.contract.vision_settings import ColourRange, Share, VisionSettings
+from server.http.request_body import RequestBody
 
 TEXT_MAX = 20_000
 
@@ -16,10 +17,9 @@ class VisionSetup(BaseModel):
     configured: VisionSettings
 
 
-class PickPlace(BaseModel):
+class PickPlace(RequestBody):
     """A point of the picture that was clicked."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     x: Annotated[Share, Field(description="share of the picture's width")]
     y: Annotated[Share, Field(description="share of its height")]
     radius: Annotated[
@@ -35,8 +35,7 @@ class PickedColour(BaseModel):
     share: float
 
 
-class VisionText(BaseModel):
+class VisionText(RequestBody):
     """robot.toml, or a piece of it with the table [vision]."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
     text: Annotated[str, Field(max_length=TEXT_MAX)]
