@@ -5,22 +5,22 @@ const WELL: Heard = {
   connection: 'open',
   farewell: '',
   parts: [{ name: 'runtime', state: 'ok', text: 'It runs.' }],
-  stateFresh: true,
+  silent: false,
   state: { connected: true, connection: 'connected' },
 };
 
 describe('findBroken', () => {
   it('finds nothing where all is well, or while nothing is known yet', () => {
     expect(findBroken(WELL)).toBeNull();
-    expect(findBroken({ ...WELL, connection: 'connecting', stateFresh: false })).toBeNull();
-    expect(findBroken({ ...WELL, parts: [], stateFresh: false, state: null })).toBeNull();
+    expect(findBroken({ ...WELL, connection: 'connecting', silent: true })).toBeNull();
+    expect(findBroken({ ...WELL, parts: [], silent: true, state: null })).toBeNull();
   });
 
   it('blames the hop nearest to the page', () => {
-    const all: Heard = { ...WELL, stateFresh: false, state: { connected: false, connection: 'no answer' } };
+    const all: Heard = { ...WELL, silent: true, state: { connected: false, connection: 'no answer' } };
     expect(findBroken({ ...all, connection: 'lost' })?.hop).toBe(0);
     expect(findBroken(all)?.hop).toBe(1);
-    expect(findBroken({ ...all, stateFresh: true })?.hop).toBe(2);
+    expect(findBroken({ ...all, silent: false })?.hop).toBe(2);
   });
 
   it.each(['starting', 'failed', 'absent'] as const)('says in the words of the server that the runtime is %s', (state) => {

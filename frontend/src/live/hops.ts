@@ -22,13 +22,14 @@ export interface Heard {
   /** why the server ended the connection, where it said so */
   readonly farewell: string;
   readonly parts: readonly Part[];
-  /** whether the runtime's state is current, and what it says of the serial link */
-  readonly stateFresh: boolean;
+  /** whether the runtime's state has not come to this page for a while */
+  readonly silent: boolean;
+  /** what it says of the serial link */
   readonly state: { readonly connected: boolean; readonly connection: string } | null;
 }
 
 /** The first hop, seen from the page, that does not carry; null where all do or nothing is known yet. */
-export function findBroken({ connection, farewell, parts, stateFresh, state }: Heard): Broken | null {
+export function findBroken({ connection, farewell, parts, silent, state }: Heard): Broken | null {
   if (connection === 'lost') {
     return {
       hop: 0,
@@ -41,7 +42,7 @@ export function findBroken({ connection, farewell, parts, stateFresh, state }: H
   if (runtime?.state === 'starting') {
     return { hop: 1, title: texts.runtimeStarting, what: runtime.text };
   }
-  if (runtime?.state === 'failed' || runtime?.state === 'absent' || (runtime !== undefined && !stateFresh)) {
+  if (runtime?.state === 'failed' || runtime?.state === 'absent' || (runtime !== undefined && silent)) {
     return {
       hop: 1,
       title: texts.runtimeSilent,
