@@ -11,8 +11,13 @@ from typing import Any, Self
 from websockets.sync.client import ClientConnection, connect
 
 EXECUTABLE = "firefox-esr"
-ANSWER_SECONDS = 30.0
+ANSWER_SECONDS = 90.0
+"""s to wait for an answer of the browser."""
+PAGE_SECONDS = 60.0
+"""s to wait for something on the page."""
 LISTENING = re.compile(r"WebDriver BiDi listening on (ws://\S+)")
+MOVES = 5
+"""Moves of the pointer, which follows a button, before the button counts as restless."""
 PREFERENCES = {
     # No proxy is there, and none is asked for the loopback: nothing else can be reached.
     "network.proxy.type": 1,
@@ -72,23 +77,41 @@ class Firefox:
         """Load a page."""
         self.call("browsingContext.navigate", context=self._page, url=url, wait="complete")
 
-    def wait_for(self, expression: str) -> None:
-        """Wait until a JavaScript expression holds in the page; it is asked for at each frame."""
-        look = f"const look = () => ({expression}) ? done(true) : requestAnimationFrame(look); look();"
-        self.call(
-            "script.evaluate",
-            expression=f"new Promise((done) => {{ {look} }})",
-            target={"context": self._page},
-            awaitPromise=True,
+    def evaluate(self, expression: str) -> dict[str, Any]:
+        """The value of a JavaScript expression, or of its promise, with its type."""
+        answer = self.call(
+            "script.evaluate", expression=expression, target={"context": self._page}, awaitPromise=True
         )
+        return dict(answer["result"])
+
+    def wait_for(self, expression: str) -> None:
+        """Wait until a JavaScript expression holds in the page; it is asked for at each frame.
+
+        Where it never does, the failure shows the page's text.
+        """
+        shown = self.evaluate(f"""new Promise((done) => {{
+            const began = performance.now();
+            const look = () => {{
+                if ({expression}) done(null);
+                else if (performance.now() - began > {1000 * PAGE_SECONDS}) done(document.body.innerText);
+                else requestAnimationFrame(look);
+            }};
+            look();
+        }})""")
+        assert shown["type"] == "null", f"not seen: {expression}; the page shows: {shown['value']}"
 
     def move_to_button(self, name: str) -> None:
-        """Put the pointer on a button."""
+        """Put the pointer on a button, and follow it where the page moves it meanwhile."""
         locator = {"type": "accessibility", "value": {"role": "button", "name": name}}
         found = self.call("browsingContext.locateNodes", context=self._page, locator=locator)["nodes"]
         assert len(found) == 1, (name, found)
         origin = {"type": "element", "element": {"sharedId": found[0]["sharedId"]}}
-        self._act("pointer", {"type": "pointerMove", "x": 0, "y": 0, "origin": origin})
+        for _ in range(MOVES):
+            self._act("pointer", {"type": "pointerMove", "x": 0, "y": 0, "origin": origin})
+            under = self.evaluate("document.querySelector('button:hover')?.textContent.trim()")
+            if under.get("value") == name:
+                return
+        raise AssertionError(f"{name} does not stay where it is")
 
     def press_mouse(self) -> None:
         """Press the first button of the mouse where it is."""
