@@ -124,6 +124,7 @@ class Access:
             return
         if role == "viewer":
             self._keep_an_operator(device, by)
+            self.codes.discard(number)
         try:
             await self.devices.set_role(number, role)
         finally:
@@ -162,6 +163,7 @@ class Access:
         self._limit_reported = False
 
     async def _remove(self, device: Device, reason: str) -> None:
+        self.codes.discard(device.id)
         try:
             await self.devices.remove(device.id)
         finally:

@@ -91,6 +91,11 @@ class PairingCodes:
         self._codes.append(_Code(digest(normal_code(code)), role, self._clock.now() + CODE_SECONDS, maker))
         return code
 
+    def discard(self, maker: int) -> None:
+        """Make all codes of this device void: it may not admit anybody any more."""
+        for code in [one for one in self._codes if one.maker == maker]:
+            self._codes.remove(code)
+
     def use(self, typed: str, address: str) -> Role:
         """The role of a code, which is then void.
 

@@ -263,6 +263,27 @@ def test_signing_out_removes_the_browser(settings: Settings) -> None:
     play(settings, scenario)
 
 
+@pytest.mark.parametrize("end", ["demoted", "revoked", "signed out"])
+def test_whoever_may_not_admit_others_any_more_leaves_no_valid_code(settings: Settings, end: str) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "operator") as maker, browser(served, None, "phone") as stranger:
+            other = await new_code(served, "viewer")
+            answer = await maker.api.post("/access/codes", json={"role": "operator"})
+            code = answer.raise_for_status().json()["code"]
+            device = f"/access/devices/{await maker.device()}"
+            if end == "demoted":
+                ended = await served.api.patch(device, json={"role": "viewer"})
+            elif end == "revoked":
+                ended = await served.api.delete(device)
+            else:
+                ended = await maker.api.post("/access/sign-out")
+            ended.raise_for_status()
+            assert (await stranger.pair(code)).status_code == 403
+            assert served.container.access.codes.use(other, "127.0.0.2") == "viewer"
+
+    play(settings, scenario)
+
+
 def test_a_paired_browser_is_not_paired_twice(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "viewer", "tablet") as one:
