@@ -5,7 +5,7 @@ import re
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.browser.people import somebody
-from tests.stack import Stack
+from tests.pages.dive_site import DiveSite
 
 MINE = re.compile("^Control: this page$")
 
@@ -15,9 +15,9 @@ def control(page: Page) -> Locator:
     return page.get_by_role("button", name=re.compile("^Control:"))
 
 
-def test_control_passes_from_one_page_to_another(page: Page, browser: Browser, stack: Stack) -> None:
+def test_control_passes_from_one_page_to_another(page: Page, browser: Browser, site: DiveSite) -> None:
     expect(control(page)).to_have_accessible_name(MINE)
-    with somebody(browser, stack, "operator") as other:
+    with somebody(browser, site, "operator") as other:
         expect(control(other)).not_to_have_accessible_name(MINE)
         expect(other.get_by_role("button", name="Hold to arm")).to_be_disabled()
 
