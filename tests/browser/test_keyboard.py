@@ -43,15 +43,6 @@ def test_setting_a_bookmark_does_not_take_the_keyboard_from_driving(
     assert notes(stack, session) == ["bubbles"]
 
 
-def test_the_note_field_of_a_bookmark_closes_by_itself(page: Page, stack: Stack, session: int) -> None:
-    expect(page.get_by_role("button", name=re.compile("^REC"))).to_be_visible()
-    page.keyboard.press("m")
-    notice = page.get_by_role("region", name="Bookmark", exact=True)
-    expect(notice).to_be_visible()
-    expect(notice).to_be_hidden(timeout=15_000)
-    assert notes(stack, session) == [""]
-
-
 def test_escape_stops_and_does_not_close_a_sheet(page: Page) -> None:
     opener = page.get_by_role("button", name=re.compile("^Control:"))
     opener.press("Enter")

@@ -5,9 +5,9 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
+from tests.browser.scenarios import STEP_MS, open_scenarios
 from tests.stack import Stack
 
-STEP_MS = 20_000
 TEXT = """
 name = "from_the_page"
 title = "From the page"
@@ -25,11 +25,6 @@ colour = "yellow"
 """
 
 
-def open_scenarios(page: Page) -> None:
-    page.get_by_role("link", name="Scenarios", exact=True).click()
-    expect(page.get_by_role("button", name="Run in simulation")).to_be_enabled(timeout=STEP_MS)
-
-
 def hold_to_run(page: Page) -> None:
     """Run the scenario on the running robot, as a person does."""
     page.get_by_role("radio", name="On the robot, live").check()
@@ -44,21 +39,6 @@ def hold_to_run(page: Page) -> None:
 @pytest.fixture
 def robot_at_rest(stack: Stack) -> None:
     stack.api.post("/scenarios/cancel").raise_for_status()
-
-
-@pytest.mark.usefixtures("robot_at_rest")
-def test_the_shipped_scenarios_are_shown_with_their_events(any_page: Page) -> None:
-    open_scenarios(any_page)
-    expect(any_page.get_by_role("radio")).to_have_count(7)
-    expect(any_page.get_by_role("radio", name="In simulation")).to_be_checked()
-    expect(any_page.get_by_role("radio", name=re.compile("Figure 14"))).to_be_checked()
-    happens = any_page.get_by_role("list", name="Events").get_by_role("listitem")
-    expect(happens).to_have_count(5)
-    any_page.get_by_role("radio", name=re.compile("The link is lost")).check()
-    expect(happens).to_have_count(12)
-    expect(happens.nth(5)).to_contain_text("Line to the board cut")
-    width = any_page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
-    assert width == 0
 
 
 @pytest.mark.usefixtures("robot_at_rest")

@@ -1,0 +1,18 @@
+"""A bookmark by a key; tests/browser has those that are set while driving."""
+
+import re
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.site import Site
+
+
+def test_the_note_field_of_a_bookmark_closes_by_itself(page: Page, site: Site) -> None:
+    session = site.api.post("/sessions", json={"name": "keys"}).raise_for_status().json()["id"]
+    expect(page.get_by_role("button", name=re.compile("^REC"))).to_be_visible()
+    page.keyboard.press("m")
+    notice = page.get_by_role("region", name="Bookmark", exact=True)
+    expect(notice).to_be_visible()
+    expect(notice).to_be_hidden(timeout=15_000)
+    marks = site.api.get(f"/sessions/{session}/timeline").json()["markers"]
+    assert [mark["text"] for mark in marks] == [""]
