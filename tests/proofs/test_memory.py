@@ -9,7 +9,7 @@ from tests.proofs.memory import LIMITS, Limit, measure
 @pytest.mark.timeout(300)
 def test_memory_does_not_grow(part: str, minutes: int) -> None:
     held = measure(part, minutes)
-    assert LIMITS[part].judge(part, held) == "", held
+    assert LIMITS[part].judge(part, held) == "", f"MB after each minute: {held}"
 
 
 def test_growth_is_a_rise_beyond_noise_and_rate() -> None:
