@@ -145,7 +145,7 @@ def check_heights(page: Page, rows: list[Any]) -> None:
         told = re.search(r"depth (−?[\d.]+)(?: to (−?[\d.]+))? m", words)
         assert told is not None
         depths = [float(one.replace("−", "-")) for one in told.groups() if one is not None]
-        found.append((float(np.mean(depths)), rows[column]))
+        found.append((float(np.mean(depths)), heights[column]))
     depths, seen = np.array(found).T
     assert np.ptp(depths) > 0.1
     scale, zero = np.polyfit(depths, seen, 1)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.bookmarks import notes
 from tests.browser.driving import arm_by_hand, expect_surge
 from tests.stack import Stack
 
@@ -16,11 +17,6 @@ EXPIRES_MS = 10_000
 def session(stack: Stack) -> int:
     """A recording session."""
     return int(stack.api.post("/sessions", json={"name": "keys"}).raise_for_status().json()["id"])
-
-
-def notes(stack: Stack, session: int) -> list[str]:
-    """The texts of the session's bookmarks, in order of time."""
-    return [mark["text"] for mark in stack.api.get(f"/sessions/{session}/timeline").json()["markers"]]
 
 
 def test_setting_a_bookmark_does_not_take_the_keyboard_from_driving(

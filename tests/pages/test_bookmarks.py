@@ -4,6 +4,7 @@ import re
 
 from playwright.sync_api import Page, expect
 
+from tests.browser.bookmarks import notes
 from tests.browser.site import Site
 
 
@@ -14,5 +15,4 @@ def test_the_note_field_of_a_bookmark_closes_by_itself(page: Page, site: Site) -
     notice = page.get_by_role("region", name="Bookmark", exact=True)
     expect(notice).to_be_visible()
     expect(notice).to_be_hidden(timeout=15_000)
-    marks = site.api.get(f"/sessions/{session}/timeline").json()["markers"]
-    assert [mark["text"] for mark in marks] == [""]
+    assert notes(site, session) == [""]
