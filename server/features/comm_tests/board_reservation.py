@@ -17,7 +17,7 @@ from robot_runtime.simulation.boards.firmware import firmware_path
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.processes.logs import ProcessLog
-from server.processes.process import Process
+from server.processes.process import Process, describe_status
 from server.processes.supervisor import Notify, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 
@@ -89,6 +89,7 @@ class RobotBoard:
     async def _upload(self) -> str:
         """Upload the robot's firmware; the problem in words, empty on success."""
         output = ProcessLog(self._settings.data.logs / "restore.log")
+        before = output.size()
         settings = self._settings
         firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
         command = [sys.executable, "-m", "robot_runtime.experiments.comm_test", "--restore", str(firmware)]
@@ -113,9 +114,9 @@ class RobotBoard:
             return f"the upload could not be started: {problem.strerror}"
         finally:
             output.trim()
-        return (
-            "" if status == 0 else output.last(LINES_SHOWN) or f"the upload ended with exit status {status}"
-        )
+        if status == 0:
+            return ""
+        return output.last(LINES_SHOWN, since=before) or f"the upload {describe_status(status)}"
 
 
 class BoardReservation:

@@ -195,6 +195,21 @@ def test_a_failed_firmware_restore_is_reported_and_the_next_test_retries_it(robo
     robot.play(scenario)
 
 
+def test_of_a_restore_without_output_the_end_of_its_process_is_reported(robot: Robot) -> None:
+    async def scenario(served: Served) -> None:
+        robot.upload_does("echo avrdude: not in sync; exit 1")
+        async with reserved_reason(served):
+            pass
+        robot.upload_does("kill -KILL $$")
+        async with reserved_reason(served):
+            pass
+        problem = served.container.monitor.firmware_away
+        assert problem is not None
+        assert "on its board: the upload was ended by signal SIGKILL. Check" in problem
+
+    robot.play(scenario)
+
+
 def test_after_an_interrupted_test_the_firmware_is_restored_before_the_runtime_starts(robot: Robot) -> None:
     robot.marker.touch()
 
