@@ -8,7 +8,7 @@ import asyncio
 import resource
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from ipaddress import ip_address, ip_network
+from ipaddress import ip_address
 from ssl import SSLContext
 from typing import Any, Protocol
 
@@ -16,6 +16,7 @@ from h11 import Request
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from robot_runtime.clock import Clock
+from server.platform.reverse_proxy import Network
 
 HEAD_SECONDS = 10.0
 """From the connection, or the first byte of a further request, to the end of the request's head."""
@@ -50,10 +51,10 @@ class Connections:
     (`server.stream.hub`).
     """
 
-    def __init__(self, clock: Clock, total: int = CONNECTIONS_MAX, proxies: Sequence[str] = ()) -> None:
+    def __init__(self, clock: Clock, total: int = CONNECTIONS_MAX, proxies: Sequence[Network] = ()) -> None:
         self._clock = clock
         self._total = total
-        self._proxies = [ip_network(one) for one in proxies]
+        self._proxies = proxies
         self._open: dict[LimitedConnection, str] = {}
         self._of: Counter[str] = Counter()
 
@@ -97,7 +98,10 @@ class Connections:
 
     def _is_proxy(self, address: str) -> bool:
         """True for a trusted proxy, whose connections are of many clients (`server.http.proxies`)."""
-        return bool(self._proxies) and any(ip_address(address) in one for one in self._proxies)
+        if not self._proxies or not address:
+            return False
+        peer = ip_address(address)
+        return any(peer in one for one in self._proxies)
 
     def _make_room(self, new: "LimitedConnection", address: str) -> bool:
         waiting = [

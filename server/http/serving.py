@@ -22,6 +22,7 @@ from server.http.connections import (
 )
 from server.http.websocket_protocol import WebSocketProtocol
 from server.platform.certificate import Certificate
+from server.platform.reverse_proxy import Network
 from server.platform.settings import SetupError
 
 log = logging.getLogger(__name__)
@@ -127,7 +128,7 @@ class OutOfFiles:
 
 
 def make_server(
-    app: FastAPI, certificate: Certificate | None = None, proxies: Sequence[str] = ()
+    app: FastAPI, certificate: Certificate | None = None, proxies: Sequence[Network] = ()
 ) -> WebServer:
     """A server for the application, with TLS where it has a certificate; it compresses no messages.
 
@@ -146,7 +147,7 @@ def make_server(
         log_level="warning",
         access_log=False,
         proxy_headers=bool(proxies),
-        forwarded_allow_ips=list(proxies),
+        forwarded_allow_ips=[str(one) for one in proxies],
         server_header=False,
         ws_per_message_deflate=False,
         ws_max_size=MESSAGE_BYTES_MAX,

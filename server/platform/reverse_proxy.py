@@ -1,8 +1,10 @@
 """The settings for a reverse proxy: the address that people open, and the proxies that are trusted."""
 
 from collections.abc import Sequence
-from ipaddress import ip_network
+from ipaddress import IPv4Network, IPv6Network, ip_network
 from urllib.parse import urlsplit
+
+Network = IPv4Network | IPv6Network
 
 
 def read_public_url(text: str) -> str:
@@ -26,8 +28,9 @@ def read_public_url(text: str) -> str:
     return f"{parts.scheme}://{host}" + (f":{port}" if port not in (None, usual) else "")
 
 
-def read_proxies(names: Sequence[str]) -> tuple[str, ...]:
-    """`server.trusted_proxies`: addresses or networks. Raises ValueError."""
+def read_proxies(names: Sequence[str]) -> tuple[Network, ...]:
+    """`server.trusted_proxies`: addresses, each a network of one, or networks. Raises ValueError."""
+    networks = []
     for name in names:
         try:
             network = ip_network(name)
@@ -41,4 +44,5 @@ def read_proxies(names: Sequence[str]) -> tuple[str, ...]:
                 f"server.trusted_proxies has {name!r}, which is everybody: each client could say "
                 "then that it is another. Name the proxy alone."
             )
-    return tuple(names)
+        networks.append(network)
+    return tuple(networks)

@@ -15,7 +15,7 @@ from robot_runtime.config import HilConfig, LinkConfig, SessionsConfig, ZenohCon
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import make_folder
 from server.platform.pidfile import running_parts
-from server.platform.reverse_proxy import read_proxies, read_public_url
+from server.platform.reverse_proxy import Network, read_proxies, read_public_url
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
@@ -106,8 +106,8 @@ class Settings:
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
     public_url: str = ""
     """The origin that people open, where a reverse proxy stands before the server."""
-    trusted_proxies: tuple[str, ...] = ()
-    """The addresses and networks whose X-Forwarded-For is believed."""
+    trusted_proxies: tuple[Network, ...] = ()
+    """The networks whose X-Forwarded-For is believed."""
     build: Path = Path(__file__).parents[2] / "build"
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"

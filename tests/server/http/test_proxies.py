@@ -6,6 +6,7 @@ import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from ipaddress import ip_network
 from pathlib import Path
 
 import httpx
@@ -99,7 +100,7 @@ def test_behind_nginx_as_the_manual_has_it(settings: Settings, tmp_path: Path) -
     origin = f"https://{NAME}:{port}"
     settings.page.mkdir()
     (settings.page / "index.html").write_text(PAGE)
-    proxied = replace(settings, public_url=origin, trusted_proxies=("127.0.0.1",))
+    proxied = replace(settings, public_url=origin, trusted_proxies=read_proxies(["127.0.0.1"]))
 
     async def run() -> None:
         async with serve(proxied) as served, nginx(served, tmp_path, port):
@@ -159,7 +160,7 @@ def test_the_client_is_the_last_address_that_a_trusted_proxy_names(
     settings: Settings, proxies: tuple[str, ...], forwarded: str, seen: str
 ) -> None:
     async def run() -> None:
-        async with serve(replace(settings, trusted_proxies=proxies)) as served:
+        async with serve(replace(settings, trusted_proxies=read_proxies(proxies))) as served:
             wrong = {"code": "AAAAA-AAAAA", "name": "x"}
             asked = await served.api.post("/access/pair", json=wrong, headers={"x-forwarded-for": forwarded})
             assert asked.status_code == 403
@@ -215,9 +216,14 @@ class Idle:
 
 
 def test_the_connections_of_a_trusted_proxy_are_not_those_of_one_client() -> None:
-    limits = Connections(SimulatedClock(), proxies=["127.0.0.0/30"])
+    limits = Connections(SimulatedClock(), proxies=read_proxies(["127.0.0.0/30"]))
     assert all(limits.add(Idle(), TABLET) for _ in range(ADDRESS_MAX + 1))
     assert [limits.add(Idle(), CLIENT) for _ in range(ADDRESS_MAX + 1)] == [True] * ADDRESS_MAX + [False]
+
+
+def test_connections_without_an_address_count_together_beside_a_trusted_proxy() -> None:
+    limits = Connections(SimulatedClock(), proxies=read_proxies(["127.0.0.0/30"]))
+    assert [limits.add(Idle(), "") for _ in range(ADDRESS_MAX + 1)] == [True] * ADDRESS_MAX + [False]
 
 
 def test_behind_a_proxy_a_link_is_printed_only_while_there_is_no_operator(settings: Settings) -> None:
@@ -268,6 +274,6 @@ def test_another_public_url_is_refused_in_words(text: str, words: str) -> None:
     ("name", "words"), [("nginx", "no address"), ("10.0.0.1/8", "no address"), ("0.0.0.0/0", "everybody")]
 )
 def test_proxies_are_addresses_or_networks(name: str, words: str) -> None:
-    assert read_proxies(["127.0.0.1", "10.0.0.0/8"]) == ("127.0.0.1", "10.0.0.0/8")
+    assert read_proxies(["127.0.0.1", "10.0.0.0/8"]) == (ip_network("127.0.0.1/32"), ip_network("10.0.0.0/8"))
     with pytest.raises(ValueError, match=words):
         read_proxies([name])
