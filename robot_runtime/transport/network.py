@@ -5,7 +5,7 @@ The Unix sockets in the data folder stay free: their files say who may open them
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from robot_runtime.contract.limits import ConfigError
 
@@ -43,13 +43,7 @@ def listen_settings(folder: Path, robot: str) -> Mapping[str, Any]:
 
     Raises ConfigError where it is not there.
     """
-    files = _files(folder, "mucat run makes them when zenoh.listen is set in robot.toml.")
-    tls = {
-        "root_ca_certificate": files[AUTHORITY],
-        "listen_certificate": files[CERTIFICATE],
-        "listen_private_key": files[KEY],
-        "enable_mtls": True,
-    }
+    tls = _tls(folder, "listen", "mucat run makes them when zenoh.listen is set in robot.toml.")
     return {
         "transport/link/protocols": ["unixsock-stream", "tls"],
         "transport/link/tls": tls,
@@ -62,24 +56,24 @@ def connect_settings(folder: Path) -> Mapping[str, Any]:
 
     Raises ConfigError where it is not there.
     """
-    files = _files(folder, "Copy the folder here that mucat certificate issue has made on the robot.")
-    tls = {
-        "root_ca_certificate": files[AUTHORITY],
-        "connect_certificate": files[CERTIFICATE],
-        "connect_private_key": files[KEY],
-        "enable_mtls": True,
-        # Addresses of robots change. Of this authority's certificates only the robot's own is a server's.
-        "verify_name_on_connect": False,
-    }
+    tls = _tls(folder, "connect", "Copy the folder here that mucat certificate issue has made on the robot.")
+    # Addresses of robots change. Of this authority's certificates only the robot's own is a server's.
+    tls["verify_name_on_connect"] = False
     return {"transport/link/protocols": ["tls"], "transport/link/tls": tls}
 
 
-def _files(folder: Path, remedy: str) -> dict[str, str]:
+def _tls(folder: Path, end: Literal["listen", "connect"], remedy: str) -> dict[str, str | bool]:
+    """Zenoh's settings of TLS at this end, with the certificate in `folder`. Raises ConfigError."""
     files = {name: folder / name for name in (AUTHORITY, CERTIFICATE, KEY)}
     missing = [name for name, path in files.items() if not path.is_file()]
     if missing:
         raise ConfigError(f"{folder} lacks {', '.join(missing)} for Zenoh on the network. {remedy}")
-    return {name: str(path) for name, path in files.items()}
+    return {
+        "root_ca_certificate": str(files[AUTHORITY]),
+        f"{end}_certificate": str(files[CERTIFICATE]),
+        f"{end}_private_key": str(files[KEY]),
+        "enable_mtls": True,
+    }
 
 
 def _access(robot: str, names: list[str]) -> dict[str, Any]:
