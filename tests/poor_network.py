@@ -93,21 +93,20 @@ class FarPage:
         # A socket stays on the host on which it was made, so one thread that lives there is enough.
         self._there = ThreadPoolExecutor(1, initializer=hosts.enter_there)
         self._origin = f"http://{HERE}:{served.settings.port}"
-        self._api = httpx.Client(
-            base_url=f"{self._origin}/api", headers={"origin": self._origin, "x-mucat": "page"}, timeout=20
-        )
+        self._api = httpx.Client(base_url=f"{self._origin}/api", headers={"origin": self._origin}, timeout=20)
         self._socket: ClientConnection | None = None
 
     async def pair(self) -> None:
         """Sign in."""
         code = await new_code(self._served, "operator")
-        await self.post("/access/pair", {"code": code, "name": "far"})
+        paired = await self.post("/access/pair", {"code": code, "name": "far"})
+        self._api.headers["x-mucat"] = paired.json()["page_secret"]
 
-    async def post(self, path: str, body: object = None) -> None:
+    async def post(self, path: str, body: object = None) -> httpx.Response:
         """Ask the server for something, over the network."""
         headers = {"X-Mucat-Client": self.hello.get("client_key", "")}
         ask = lambda: self._api.post(path, json=body, headers=headers)  # noqa: E731 - shorter than a method
-        (await asyncio.get_running_loop().run_in_executor(self._there, ask)).raise_for_status()
+        return (await asyncio.get_running_loop().run_in_executor(self._there, ask)).raise_for_status()
 
     async def send(self, message: dict[str, Any]) -> None:
         """Say something over the socket."""
@@ -132,6 +131,7 @@ class FarPage:
             sock=line,
             origin=self._origin,  # type: ignore[arg-type]
             additional_headers={"cookie": cookie},
+            subprotocols=["mucat", self._api.headers["x-mucat"]],  # type: ignore[list-item]
             max_size=None,
             compression=None,
             proxy=None,

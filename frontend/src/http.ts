@@ -1,4 +1,5 @@
 /** How the page talks to the server: what every call carries, how long it may take, and what went wrong in words. */
+import { secretHeader } from './pageSecret';
 import { connection } from './texts/connection';
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
@@ -46,10 +47,9 @@ function readProblem(text: string): { detail?: unknown; kind?: unknown } {
   }
 }
 
-/** A form of another site cannot set headers: the first shows that this page asks. */
 function headers(method: string): Record<string, string> {
-  if (method === SAFE) return {};
-  return { 'X-Mucat': 'page', ...(clientKey === null ? {} : { 'X-Mucat-Client': clientKey }) };
+  if (method === SAFE || clientKey === null) return secretHeader();
+  return { ...secretHeader(), 'X-Mucat-Client': clientKey };
 }
 
 function refused(status: number, text: string): { problem: string } {
@@ -122,7 +122,7 @@ export interface Downloaded {
 /** A file; `progress` is told of its bytes. It may take as long as it takes: a large one is copied first. */
 export async function download(path: string, progress: (received: number, total: number) => void): Promise<Answer<Downloaded>> {
   try {
-    const response = await fetchConfirmed(path, () => ({}));
+    const response = await fetchConfirmed(path, () => ({ headers: headers(SAFE) }));
     if (!response.ok || response.body === null) return refused(response.status, await response.text());
     const total = Number(response.headers.get('Content-Length'));
     const name = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition') ?? '')?.[1] ?? 'download';

@@ -50,7 +50,7 @@ describe('signing in', () => {
     answers['GET /api/access/me'] = json(NOBODY);
     answers['POST /api/access/pair'] = () => {
       expect(access.state).toBe('unknown');
-      return json(ME)();
+      return json({ ...ME, page_secret: null })();
     };
     await access.open('ABC', 'x');
     expect(access.state).toBe('in');
@@ -108,13 +108,19 @@ describe('signing in', () => {
 });
 
 describe('what every call carries', () => {
-  it('shows that the page asks, and from which client, wherever it changes something', async () => {
+  it('is the page’s secret, and the client wherever it changes something', async () => {
     answers['GET /api/storage'] = json({});
     answers['DELETE /api/exports/1'] = () => new Response(null, { status: 204 });
-    nameClient('secret');
+    answers['GET /api/access/me'] = json(NOBODY);
+    answers['POST /api/access/pair'] = json({ ...ME, page_secret: 'of this page' });
+    await new Access().open('ABC', 'x');
+    nameClient('key');
     await api.storage();
     await api.deleteExport('1');
-    expect(sent.map(({ headers }) => headers)).toEqual([{}, { 'X-Mucat': 'page', 'X-Mucat-Client': 'secret' }]);
+    expect(sent.map(({ headers }) => headers).slice(-2)).toEqual([
+      { 'X-Mucat': 'of this page' },
+      { 'X-Mucat': 'of this page', 'X-Mucat-Client': 'key' },
+    ]);
   });
 });
 

@@ -212,7 +212,7 @@ describe('a page at the control lease', () => {
     expect(access.know).toHaveBeenCalledWith(YOU);
     server().tell(control(null));
     server().tell(control(null));
-    expect(calls).toEqual([{ address: '/api/control/take', headers: { 'X-Mucat': 'page', 'X-Mucat-Client': 'key' } }]);
+    expect(calls).toEqual([{ address: '/api/control/take', headers: { 'X-Mucat-Client': 'key' } }]);
     expect(live.barred).not.toBeNull();
     server().tell(control(7));
     expect(live.barred).toBeNull();

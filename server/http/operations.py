@@ -12,7 +12,7 @@ from starlette.routing import BaseRoute
 
 from robot_runtime.contract.problems import EntryProblem
 from server.http.sign_in.confirmation import UnconfirmedError
-from server.http.sign_in.policy import Need, needs
+from server.http.sign_in.policy import LINKED, Need, needs
 from server.platform.errors import ApiError
 from server.platform.models import IDENTIFIER_MAX
 
@@ -84,12 +84,19 @@ class Operations:
         return add
 
     def operation(
-        self, place: str, need: Need, *errors: Errors, media_type: str = "", **options: Any
+        self,
+        place: str,
+        need: Need,
+        *errors: Errors,
+        media_type: str = "",
+        linked: bool = False,
+        **options: Any,
     ) -> Callable[[Endpoint], Endpoint]:
         """Add the operation at `place`, such as "GET /things".
 
         Its name is the function's, and its summary the first line of the function's docstring. `media_type`
-        is that of an answer other than JSON. A function that returns None is answered with 204.
+        is that of an answer other than JSON. A function that returns None is answered with 204. `linked` is a
+        file, picture or frame that the page names by its address, so that a browser's cookie alone must do.
         """
         method, _, path = place.partition(" ")
         texts = {423: "Control is with somebody else"} if need is Need.CONTROL else {}
@@ -108,7 +115,7 @@ class Operations:
             first, *words = endpoint.__name__.split("_")
             if endpoint.__annotations__["return"] is None:
                 options["status_code"] = 204
-            extra = needs(need) | options.pop("openapi_extra", {})
+            extra = needs(need) | ({LINKED: True} if linked else {}) | options.pop("openapi_extra", {})
             self._declared.append(
                 lambda router: router.add_api_route(
                     path,

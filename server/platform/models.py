@@ -176,7 +176,9 @@ class DeviceRow(SQLModel, table=True):
     """A browser or a program that may come in. Times are UTC (s since 1970); `seen` is kept to the hour.
 
     `secret` is the SHA-256 of what it proves itself with. Kinds: "browser" (a cookie), "program" (a bearer
-    token). A number is never given again, so that old events do not speak of somebody new.
+    token). `page_secret` is the SHA-256 of a browser's second secret, which its page keeps; a browser that
+    was paired before there was one has None, and signs in again.
+    A number is never given again, so that old events do not speak of somebody new.
     `limited` is a token that may not administer, in any role; it never ends where `ends` is None.
     """
 
@@ -192,6 +194,7 @@ class DeviceRow(SQLModel, table=True):
     seen: float
     limited: bool = False
     ends: float | None = None
+    page_secret: str | None = None
 
 
 class ProfileRow(SQLModel, table=True):

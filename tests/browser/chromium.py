@@ -1,5 +1,6 @@
 """Debian's Chromium, for tests and measurements, and its sign-in."""
 
+import json
 from pathlib import Path
 
 import httpx
@@ -24,11 +25,20 @@ ARGUMENTS = [
 ]
 
 
-def sign_in(context: BrowserContext, url: str, data: Path) -> None:
-    """Pair this browser with the server of this data folder, as an operator's."""
+SECRET = "mucat.page_secret"
+"""The key under which the page stores its part of the sign-in."""
+
+
+def sign_in(context: BrowserContext, url: str, data: Path) -> str:
+    """Pair this browser with the server of this data folder, as an operator's; returns its page's secret."""
     with httpx.Client(base_url=f"{url}/api/access", auth=ShellToken(DataFolder(data))) as shell:
         made = shell.post("/codes", json={"role": "operator"}).raise_for_status().json()
     paired = context.request.post(
         f"{url}/api/access/pair", data={"code": made["code"], "name": "Chromium"}, headers={"Origin": url}
     )
     assert paired.ok, paired.text()
+    secret: str = paired.json()["page_secret"]
+    # Panels in frames may not store anything.
+    own = f"self === top && location.origin === {json.dumps(url)}"
+    context.add_init_script(f"if ({own}) localStorage.setItem({json.dumps(SECRET)}, {json.dumps(secret)})")
+    return secret

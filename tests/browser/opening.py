@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, sync_playwright
 
-from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL, sign_in
+from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL, SECRET, sign_in
 from tests.browser.site import Site
 
 DESKTOP: ViewportSize = {"width": 1440, "height": 900}
@@ -33,8 +33,9 @@ def closing_pages(browser: Browser) -> Iterator[None]:
 def signed_in(browser: Browser, site: Site) -> StorageState:
     """Cookies and storage of an operator who has just signed in."""
     context = browser.new_context()
-    sign_in(context, site.url, site.data)
+    secret = sign_in(context, site.url, site.data)
     kept = context.storage_state()
+    kept["origins"] = [{"origin": site.url, "localStorage": [{"name": SECRET, "value": secret}]}]
     context.close()
     return kept
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
+import httpx
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, StorageState
 
@@ -82,10 +83,17 @@ ATTACKS = """async (target) => {
 }"""
 
 
+ROBOT = """() => fetch('/api/robot', { headers: { 'X-Mucat': localStorage.getItem('mucat.page_secret') } })
+  .then((answer) => answer.status)"""
+
+
 class Evil(BaseHTTPRequestHandler):
-    """A foreign page."""
+    """A foreign page, whose server keeps the cookies that browsers send it."""
+
+    cookies = ""
 
     def do_GET(self) -> None:
+        Evil.cookies = self.headers.get("cookie", "")
         self.send_response(200)
         self.send_header("content-type", "text/html")
         self.end_headers()
@@ -138,7 +146,7 @@ def test_a_foreign_page_gets_no_data(
 ) -> None:
     own = victim.new_page()
     own.goto(site.url)
-    assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it is not signed in"
+    assert own.evaluate(ROBOT) == 200, "it is not signed in"
     before = snapshot(site)
     page = victim.new_page()
     changed: list[str] = []
@@ -149,7 +157,25 @@ def test_a_foreign_page_gets_no_data(
     assert posts
     assert all(one.endswith((" 401", " 403")) for one in posts), posts
     assert snapshot(site) == before
-    assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it was signed out"
+    assert own.evaluate(ROBOT) == 200, "it was signed out"
+
+
+def test_a_server_of_another_port_can_do_nothing_with_the_cookie_that_it_gets(
+    victim: BrowserContext, site: DiveSite, evil_port: int
+) -> None:
+    before = snapshot(site)
+    victim.new_page().goto(f"http://127.0.0.1:{evil_port}/")
+    assert f"mucat_{site.port}=" in Evil.cookies
+    headers = {"cookie": Evil.cookies, "origin": site.url}
+    with httpx.Client(base_url=f"{site.url}/api", headers=headers) as thief:
+        for made_up in ({}, {"x-mucat": ""}, {"x-mucat": "page"}):
+            thief.headers.update(made_up)
+            for path in ("/robot", "/sessions", "/audit/csv", "/backup", "/access/devices"):
+                assert thief.get(path).status_code == 401, path
+            for path in ("/robot/commands/arm", "/access/codes", "/access/sign-out", "/control/take"):
+                assert thief.post(path, json={}).status_code == 401, path
+            assert thief.get("/access/me").json()["signed_in"] is False
+    assert snapshot(site) == before
 
 
 def test_a_foreign_host_name_is_refused(victim: BrowserContext, site: DiveSite) -> None:

@@ -36,6 +36,7 @@ Who = Literal[
     "program that reads",
     "program that operates",
     "program that administers",
+    "thief of a cookie",
 ]
 Where = Literal["right", "wrong", "missing"]
 
@@ -151,6 +152,17 @@ ROUTES: dict[tuple[str, str], Least] = {
 }
 LIVE: dict[str, Least] = {"ping": "viewer", "watch": "viewer", "stop": "viewer", "drive": "control"}
 SOCKETS = {"/api/live"}
+LINKED = {
+    "/api/compare/report",
+    "/api/comm-tests/runs/{run}/csv",
+    "/api/comm-tests/runs/{run}/json",
+    "/api/exports/{export}/file",
+    "/api/panels/frame",
+    "/api/profiles/{profile}/file",
+    "/api/sessions/{session}/thumbnail",
+    "/api/vision/toml",
+}
+"""Files, pictures and frames that a page names by their address, so that the cookie alone must do."""
 
 ROLES: dict[Who, int] = {
     "anonymous": 0,
@@ -160,6 +172,7 @@ ROLES: dict[Who, int] = {
     "program that operates": 2,
     "program that administers": 2,
     "control": 3,
+    "thief of a cookie": 0,
 }
 LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3, "administer": 2}
 SAFE = {"GET", "HEAD"}
@@ -167,12 +180,16 @@ NEAR, FAR = "127.0.0.1", "192.0.2.7"
 """Addresses that ask: this computer's own, and one elsewhere."""
 
 
-def expected(who: Who, least: Least, *, safe: bool, host: Where, origin: Where) -> int | None:
+def expected(
+    who: Who, least: Least, *, safe: bool, host: Where, origin: Where, linked: bool = False
+) -> int | None:
     """The status with which this is refused; None where it is accepted."""
     browser = who in ("viewer", "operator", "control")
     if host != "right" or origin == "wrong":
         return 403
-    if who == "anonymous":
+    if linked and who == "thief of a cookie":
+        return None
+    if ROLES[who] == 0:
         return None if least == "anyone" else 401
     if browser and origin == "missing" and not safe:
         return 403
@@ -188,6 +205,12 @@ class Somebody:
     """A requester, by the headers of each request."""
 
     headers: dict[str, str] = field(default_factory=dict)
+
+
+def signed_in(headers: dict[str, str], told: bytes) -> dict[str, str]:
+    """The headers of a browser's page, by the answer to its sign-in."""
+    cookie, _, _ = headers["set-cookie"].partition(";")
+    return {"cookie": cookie, "x-mucat": json.loads(told)["page_secret"]}
 
 
 class House:
@@ -264,9 +287,9 @@ class House:
     async def _pair(self, role: str) -> Somebody:
         right = self.places("right", "right")
         wanted = {"code": await self._code(role), "name": role}
-        status, headers, _ = await self.ask(Somebody(), "POST", "/api/access/pair", right, wanted)
+        status, headers, told = await self.ask(Somebody(), "POST", "/api/access/pair", right, wanted)
         assert status == 200
-        return Somebody({"cookie": headers["set-cookie"].partition(";")[0], "x-mucat": "page"})
+        return Somebody(signed_in(headers, told))
 
     async def _program(self, scope: str) -> Somebody:
         right = self.places("right", "missing")
@@ -281,7 +304,8 @@ class House:
         """A live socket, accepted or not."""
         socket = LiveSocket()
         scope = self._scope("websocket", "/api/live", places | who.headers, address) | {"scheme": "ws"}
-        running = asyncio.create_task(self.app(scope | {"subprotocols": []}, socket.receive, socket.send))
+        scope["subprotocols"] = ["mucat", who.headers["x-mucat"]] if "x-mucat" in who.headers else []
+        running = asyncio.create_task(self.app(scope, socket.receive, socket.send))
         try:
             await until(lambda: socket.opened is not None, "an answer to the handshake")
             yield socket
@@ -352,7 +376,9 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
             runtime.publish(state_block(0))
             await until(house.container.monitor.state, "the state")
             for who in ROLES:
-                if who != "anonymous":
+                if who == "thief of a cookie":
+                    house.people[who] = Somebody({"cookie": house.people["operator"].headers["cookie"]})
+                elif who != "anonymous":
                     house.people[who] = await house.enter(who)
             right = house.places("right", "right")
             operator, control = house.people["operator"], house.people["control"]
@@ -433,7 +459,9 @@ async def ask_everything(house: House, who: Who) -> list[tuple[object, ...]]:
             status, _, told = await house.ask(
                 house.people[who], method, path, places, body, query=probe.query, address=address
             )
-            refusal = expected(who, least, safe=method in SAFE, host=host, origin=origin)
+            refusal = expected(
+                who, least, safe=method in SAFE, host=host, origin=origin, linked=template in LINKED
+            )
             fine = status == (refusal or probe.status) and (bool(refusal) or probe.words.encode() in told)
             if not fine:
                 wanted = refusal or (probe.status, probe.words)

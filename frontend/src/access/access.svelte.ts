@@ -2,6 +2,7 @@ import { createContext } from 'svelte';
 import { api, type Identity, type CallerDetails } from '../api';
 import type { operations } from '../generated/api';
 import { onSignedOut, onUnconfirmed } from '../http';
+import { keepSecret } from '../pageSecret';
 import { access as texts } from '../texts/access';
 import { Confirmation } from './confirmation.svelte';
 
@@ -54,6 +55,7 @@ export class Access {
     const answer = await api.pair(code, name);
     this.reason = 'problem' in answer ? answer.problem : '';
     if ('problem' in answer) return answer.problem;
+    if (answer.value.page_secret !== null) keepSecret(answer.value.page_secret);
     this.#take(answer.value);
     return null;
   }

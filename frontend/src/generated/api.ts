@@ -129,8 +129,9 @@ export interface paths {
          * Sign this browser in with a code
          * @description Sign this browser in with a code.
          *
-         *     Sets a cookie. A browser that is signed in already keeps its cookie, and gets the code's role if that is
-         *     higher.
+         *     Sets a cookie, and answers the page's own secret: the page sends it as the header `X-Mucat`, and its live
+         *     socket as the second subprotocol, after `mucat`. A browser that is signed in already keeps both, and gets
+         *     the code's role if that is higher.
          */
         post: operations["pairBrowser"];
         delete?: never;
@@ -3371,6 +3372,29 @@ export interface components {
             topic: string;
         };
         /**
+         * Paired
+         * @description The caller after pairing.
+         */
+        Paired: {
+            identity: components["schemas"]["Identity"] | null;
+            /**
+             * Operators Only
+             * @description names of the operations that viewers may not call
+             */
+            operators_only: string[];
+            /**
+             * Page Secret
+             * @description shown only this once; null where the browser was signed in already
+             */
+            page_secret: string | null;
+            /** Pairing Open */
+            pairing_open: boolean;
+            /** Robot */
+            robot: string;
+            /** Signed In */
+            signed_in: boolean;
+        };
+        /**
          * Pairing
          * @description A code, and a name for this browser.
          */
@@ -5232,7 +5256,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CallerDetails"];
+                    "application/json": components["schemas"]["Paired"];
                 };
             };
             /** @description The code is not valid */

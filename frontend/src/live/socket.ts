@@ -1,5 +1,7 @@
 /** The live socket: opens again, forever, whenever it closes or falls silent. */
 
+import { socketProtocols } from '../pageSecret';
+
 const PING_EVERY = 1000;
 const SILENT_AFTER = 4000;
 const RETRY_FIRST = 250;
@@ -71,7 +73,7 @@ export class LiveSocket {
   }
 
   #open(): void {
-    const socket = new WebSocket(this.url);
+    const socket = new WebSocket(this.url, socketProtocols());
     socket.binaryType = 'arraybuffer';
     this.#socket = socket;
     this.#heard = performance.now();

@@ -88,14 +88,18 @@ def get_test_run(comm_tests: Provided[CommTestRunner], run: Identifier) -> CommT
     return comm_tests.runs.whole(comm_tests.runs.find(run))
 
 
-@router.operation("GET /runs/{run}/csv", Need.VIEWER, UnknownCommTestRunError, media_type="text/csv")
+@router.operation(
+    "GET /runs/{run}/csv", Need.VIEWER, UnknownCommTestRunError, media_type="text/csv", linked=True
+)
 def download_test_run_csv(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
     """Download a run as CSV, a line for each cell."""
     found = comm_tests.runs.find(run)
     return _file(tables.write_csv(found, comm_tests.runs.cells(run)), "text/csv", f"comm_test_{run}.csv")
 
 
-@router.operation("GET /runs/{run}/json", Need.VIEWER, UnknownCommTestRunError, media_type="application/json")
+@router.operation(
+    "GET /runs/{run}/json", Need.VIEWER, UnknownCommTestRunError, media_type="application/json", linked=True
+)
 def download_test_run_json(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
     """Download everything that is known of a run, with its cells, as JSON."""
     found = comm_tests.runs.find(run)

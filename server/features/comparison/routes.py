@@ -28,6 +28,7 @@ router = Operations(prefix="/api", tags=["comparison"])
     TooManyHeavyError,
     ReportError,
     media_type="text/html",
+    linked=True,
 )
 async def get_comparison_report(
     _: Turn, settings: Provided[Settings], query: Annotated[ReportQuery, Query()]

@@ -63,6 +63,7 @@ async def delete_export(jobs: Provided[Jobs], export: Identifier) -> None:
     UnknownExportError,
     {409: "It is not finished"},
     media_type="application/octet-stream",
+    linked=True,
 )
 async def download_export(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
     """Download the file of an export.

@@ -23,7 +23,7 @@ from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.page import Page
 from server.http.security import POLICY_VIOLATION
-from server.http.sign_in.access import Access
+from server.http.sign_in.access import PAGE_PROTOCOL, Access
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import MESSAGES, Need, may_say
 from server.platform.audit_file import Outcome
@@ -166,7 +166,8 @@ async def live(
     greeting: Annotated[Greeting, Depends(greet)],
 ) -> None:
     """Serve one page until it leaves."""
-    await socket.accept()
+    offered = PAGE_PROTOCOL in socket.scope["subprotocols"]
+    await socket.accept(subprotocol=PAGE_PROTOCOL if offered else None)
 
     async def send(data: bytes | str) -> None:
         kind = "bytes" if isinstance(data, bytes) else "text"

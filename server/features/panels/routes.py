@@ -25,7 +25,7 @@ def list_panels(settings: Provided[Settings]) -> Sequence[OwnPanel]:
     return scripts.list_panels(settings.data.panels)
 
 
-@router.operation("GET /frame", Need.VIEWER, response_class=HTMLResponse)
+@router.operation("GET /frame", Need.VIEWER, response_class=HTMLResponse, linked=True)
 def get_panel_frame() -> HTMLResponse:
     """Return the frame that runs your own panels.
 

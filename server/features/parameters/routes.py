@@ -96,7 +96,11 @@ async def import_profile(
 
 
 @router.operation(
-    "GET /profiles/{profile}/file", Need.VIEWER, UnknownProfileError, media_type="application/json"
+    "GET /profiles/{profile}/file",
+    Need.VIEWER,
+    UnknownProfileError,
+    media_type="application/json",
+    linked=True,
 )
 async def download_profile(profiles: Provided[Profiles], profile: Identifier) -> Response:
     """Download a profile as a JSON file."""

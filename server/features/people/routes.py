@@ -15,6 +15,7 @@ from server.features.people.schemas import (
     MadeToken,
     NewCode,
     NewToken,
+    Paired,
     Pairing,
 )
 from server.http.audit import address_of
@@ -54,25 +55,27 @@ async def pair_browser(
     access: Provided[Access],
     response: Response,
     body: Pairing,
-) -> CallerDetails:
+) -> Paired:
     """Sign this browser in with a code.
 
-    Sets a cookie. A browser that is signed in already keeps its cookie, and gets the code's role if that is
-    higher.
+    Sets a cookie, and answers the page's own secret: the page sends it as the header `X-Mucat`, and its live
+    socket as the second subprotocol, after `mucat`. A browser that is signed in already keeps both, and gets
+    the code's role if that is higher.
     """
     address = address_of(request.scope)
-    identity, secret = await access.pair(body.code, body.name, request.scope[IDENTITY], address)
+    identity, secrets = await access.pair(body.code, body.name, request.scope[IDENTITY], address)
     request.scope[IDENTITY] = identity
-    if secret is not None:
+    if secrets is not None:
         response.set_cookie(
             access.cookie,
-            secret,
+            secrets.cookie,
             max_age=COOKIE_SECONDS,
             httponly=True,
             samesite="strict",
             secure=request.url.scheme == "https",
         )
-    return _describe_caller(request, settings, access, identity)
+    caller = _describe_caller(request, settings, access, identity)
+    return Paired(page_secret=None if secrets is None else secrets.page, **dict(caller))
 
 
 @router.operation("POST /confirm", Need.OPERATOR, WrongConfirmationError, TooManyTriesError)

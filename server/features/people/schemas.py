@@ -32,6 +32,14 @@ class CallerDetails(BaseModel):
     operators_only: list[str] = Field(description="names of the operations that viewers may not call")
 
 
+class Paired(CallerDetails):
+    """The caller after pairing."""
+
+    page_secret: Annotated[
+        str | None, Field(description="shown only this once; null where the browser was signed in already")
+    ]
+
+
 class Pairing(RequestBody):
     """A code, and a name for this browser."""
 

@@ -137,7 +137,11 @@ async def purge_session(
 
 
 @router.operation(
-    "GET /sessions/{session}/thumbnail", Need.VIEWER, UnknownSessionError, media_type="image/jpeg"
+    "GET /sessions/{session}/thumbnail",
+    Need.VIEWER,
+    UnknownSessionError,
+    media_type="image/jpeg",
+    linked=True,
 )
 def get_thumbnail(
     recording: OpenRecording,

@@ -38,7 +38,7 @@ async def pick_colour(bridge: Provided[Bridge], place: PickPlace) -> PickedColou
     return PickedColour.model_validate(answer, extra="ignore")
 
 
-@router.operation("GET /toml", Need.VIEWER, RuntimeSilentError, response_class=PlainTextResponse)
+@router.operation("GET /toml", Need.VIEWER, RuntimeSilentError, response_class=PlainTextResponse, linked=True)
 async def download_vision(bridge: Provided[Bridge]) -> PlainTextResponse:
     """Download the vision settings as the table [vision] of robot.toml."""
     answer = await bridge.query("vision")

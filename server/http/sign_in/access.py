@@ -11,7 +11,7 @@ from robot_runtime.contract import documents
 from robot_runtime.durable_files import write_whole
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.confirmation import Confirmations
-from server.http.sign_in.devices import Device, Devices, SignInEndedError
+from server.http.sign_in.devices import BrowserSecrets, Device, Devices, SignInEndedError
 from server.http.sign_in.identity import SHELL, Identity, Role, Scope
 from server.http.sign_in.pairing_codes import PairingCodes, WrongCodeError
 from server.http.sign_in.tokens import digest
@@ -23,6 +23,15 @@ CloseSockets = Callable[[int, str], None]
 """Ends the live sockets of a device, with this reason."""
 
 BEARER = "bearer "
+PAGE_HEADER = "x-mucat"
+"""The header in which the page sends its secret."""
+PAGE_PROTOCOL = "mucat"
+"""The subprotocol of the page's live socket, offered with the secret as a second one: a page can give its
+socket no header."""
+NO_PAGE_SECRET = (
+    "This page has lost its part of the sign-in, as when a browser's stored data are cleared, or after an "
+    "update from a version without it. Sign this browser in again."
+)
 
 
 class Access:
@@ -55,9 +64,10 @@ class Access:
         self.devices.load()
         write_whole(self._token_file, f"{self._token}\n".encode(), 0o600)
 
-    def identify(self, connection: HTTPConnection) -> Identity | None:
+    def identify(self, connection: HTTPConnection, *, cookie_suffices: bool = False) -> Identity | None:
         """The caller's identity. An authorization header counts alone: a cookie beside it is ignored.
 
+        A browser shows its page's secret beside the cookie, unless `cookie_suffices`.
         Raises SignInEndedError.
         """
         header = connection.headers.get("authorization")
@@ -65,7 +75,11 @@ class Access:
             if not header.lower().startswith(BEARER):
                 return None
             return self._find_bearer(header[len(BEARER) :].strip())
-        return self._see(self.devices.find(connection.cookies.get(self.cookie, ""), "browser"))
+        device = self.devices.find(connection.cookies.get(self.cookie, ""), "browser")
+        whole = device is None or cookie_suffices or device.has_page_secret(_page_secret(connection))
+        if not whole:
+            raise SignInEndedError(NO_PAGE_SECRET)
+        return self._see(device)
 
     def refresh(self, identity: Identity | None) -> Identity | None:
         """The caller's identity as it is now, perhaps in another role; None where access has ended."""
@@ -76,8 +90,8 @@ class Access:
 
     async def pair(
         self, code: str, name: str, known: Identity | None, address: str
-    ) -> tuple[Identity, str | None]:
-        """Sign a browser in; its identity and its new cookie, None where it has one, being `known`.
+    ) -> tuple[Identity, BrowserSecrets | None]:
+        """Sign a browser in; its identity and its new secrets, None where it has them, being `known`.
 
         Such a one keeps its name, and its role where the code's is not a higher one.
         Raises WrongCodeError, TooManyTriesError, RefusedError, StoreError.
@@ -89,10 +103,10 @@ class Access:
                 await self.set_role(known.device, role, by=known)
                 self.confirmations.confirm(known.device)
             return self.devices.get(known.device).identity, None
-        device, secret = await self.devices.add_browser(name, role)
+        device, secrets = await self.devices.add_browser(name, role)
         self.confirmations.confirm(device.id)
         self._notify("access", "info", f"“{name}” was paired as {role}.")
-        return device.identity, secret
+        return device.identity, secrets
 
     def confirm(self, code: str, identity: Identity, address: str) -> None:
         """Confirm who uses this browser, for dangerous acts of the next ten minutes.
@@ -188,6 +202,16 @@ class Access:
             raise SignInEndedError(reason)
         self.devices.see(device)
         return device.identity
+
+
+def _page_secret(connection: HTTPConnection) -> str:
+    """The secret that a page shows: in a header, or as the second subprotocol of its socket."""
+    if connection.scope["type"] == "http":
+        return connection.headers.get(PAGE_HEADER, "")
+    match connection.scope["subprotocols"]:
+        case [protocol, secret] if protocol == PAGE_PROTOCOL:
+            return str(secret)
+    return ""
 
 
 def _with_article(role: Role) -> str:

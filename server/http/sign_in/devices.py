@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from hmac import compare_digest
 from math import inf
 
 from sqlalchemy import delete, update
@@ -39,11 +40,23 @@ class SignInEndedError(SignedOutError):
     """The token or the sign-in has ended"""
 
 
+@dataclass(frozen=True, slots=True)
+class BrowserSecrets:
+    """The two secrets of a browser.
+
+    `cookie` goes to every server of this host name, whatever its port; `page` to this server's page alone.
+    """
+
+    cookie: str
+    page: str
+
+
 @dataclass(slots=True)
 class Device:
     """A paired browser or program, as in DeviceRow.
 
-    `stored` is the last visit in the database, `used` the last one since this server began (s, steady clock).
+    `page_secret` is a digest. `stored` is the last visit in the database, `used` the last one since this
+    server began (s, steady clock).
     """
 
     id: int
@@ -55,7 +68,12 @@ class Device:
     stored: float
     limited: bool
     ends: float | None
+    page_secret: str | None
     used: float = -inf
+
+    def has_page_secret(self, secret: str) -> bool:
+        """Check the second secret of a browser; one that was paired without it has none that fits."""
+        return self.page_secret is not None and compare_digest(digest(secret), self.page_secret)
 
     @property
     def identity(self) -> Identity:
@@ -132,12 +150,14 @@ class Devices:
             if (one.kind, one.role) == ("browser", "operator") and self.explain_end(one) is None
         ]
 
-    async def add_browser(self, name: str, role: Role) -> tuple[Device, str]:
-        """A new browser, and its secret, which is not stored.
+    async def add_browser(self, name: str, role: Role) -> tuple[Device, BrowserSecrets]:
+        """A new browser, and its secrets, which are not stored.
 
         Raises RefusedError where there are too many devices, StoreError.
         """
-        return await self._add(name, role, "browser")
+        page = make_token()
+        device, cookie = await self._add(name, role, "browser", page_secret=digest(page))
+        return device, BrowserSecrets(cookie, page)
 
     async def add_program(self, name: str, scope: Scope, days: int | None) -> tuple[Device, str]:
         """A new program, and its token, which is not stored; it ends after `days`, never where that is None.
@@ -149,7 +169,14 @@ class Devices:
         return await self._add(name, role, "program", limited=scope != "administer", ends=ends)
 
     async def _add(
-        self, name: str, role: Role, kind: Kind, *, limited: bool = False, ends: float | None = None
+        self,
+        name: str,
+        role: Role,
+        kind: Kind,
+        *,
+        limited: bool = False,
+        ends: float | None = None,
+        page_secret: str | None = None,
     ) -> tuple[Device, str]:
         if len(self._devices) >= DEVICES_MAX:
             raise RefusedError(f"{DEVICES_MAX} devices are paired already. Revoke those that nobody uses.")
@@ -164,6 +191,7 @@ class Devices:
             seen=now,
             limited=limited,
             ends=ends,
+            page_secret=page_secret,
         )
         values = row.model_dump(exclude={"id"})
         number = await self._store.write(lambda connection: insert_row(connection, DeviceRow, values))
@@ -234,6 +262,7 @@ class Devices:
             stored=row.seen,
             limited=row.limited,
             ends=row.ends,
+            page_secret=row.page_secret,
         )
         self._devices[number] = device
         self._by_secret[row.secret] = number

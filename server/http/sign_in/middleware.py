@@ -2,20 +2,19 @@
 
 from contextlib import suppress
 
+from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.http.dependencies import find_service
 from server.http.security import SAFE_METHODS, refuse
-from server.http.sign_in.access import Access
+from server.http.sign_in.access import PAGE_HEADER, Access
 from server.http.sign_in.devices import SignInEndedError
 from server.http.sign_in.identity import IDENTITY, Identity
+from server.http.sign_in.policy import is_linked
 
 OPEN = frozenset({("GET", "/api/alive"), ("GET", "/api/access/me"), ("POST", "/api/access/pair")})
 """The operations that need no sign-in."""
-PAGE_HEADER, PAGE_VALUE = "x-mucat", "page"
-"""A header that a foreign page cannot send: its browser asks this server first, which refuses."""
-
 NOBODY = (
     "You are not signed in. Open the link that the server printed when it started, or that `mucat pair` "
     "prints; a program sends Authorization: Bearer with a token from `mucat access token`."
@@ -39,7 +38,7 @@ class SignInMiddleware:
         connection = HTTPConnection(scope)
         nobody = NOBODY
         try:
-            identity = find_service(connection, Access).identify(connection)
+            identity = find_service(connection, Access).identify(connection, cookie_suffices=_is_link(scope))
         except SignInEndedError as problem:
             identity, nobody = None, str(problem)
         path = scope["path"]
@@ -78,12 +77,17 @@ def _is_api(path: str) -> bool:
 
 
 def _foreign(connection: HTTPConnection, identity: Identity) -> str | None:
-    """Reason why a foreign page may have caused this request: browsers add the cookie to every request."""
+    """Reason why a foreign page may have caused this request of a browser."""
     socket = connection.scope["type"] == "websocket"
     if identity.kind != "browser" or (not socket and connection.scope["method"] in SAFE_METHODS):
         return None
     if "origin" not in connection.headers:
         return "A browser must name the page that asks (Origin). Open this server's own page."
-    if not socket and connection.headers.get(PAGE_HEADER) != PAGE_VALUE:
-        return "What a browser changes needs the header X-Mucat: page, which this server's page sends."
     return None
+
+
+def _is_link(scope: Scope) -> bool:
+    """True for a link or a picture on the page, which a browser fetches with the cookie alone."""
+    if scope.get("method") != "GET" or PAGE_HEADER in Headers(scope=scope):
+        return False
+    return is_linked(scope["app"].routes, scope["path"])

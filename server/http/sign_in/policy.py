@@ -12,11 +12,22 @@ from server.http.sign_in.identity import Identity
 DECLARED = "x-need"
 """The entry of an operation in the interface's document that says its need."""
 
+LINKED = "x-linked"
+"""The entry of an operation that the page links to."""
+
 
 def needs(need: Need) -> dict[str, Any]:
     """A route's `openapi_extra` that declares its need. Where the need depends on what is asked (a scenario
     on the robot), the route itself asks for more."""
     return {DECLARED: need.name.lower()}
+
+
+def is_linked(routes: Iterable[BaseRoute], path: str) -> bool:
+    """True where the page links to this path, or shows it as a picture or a frame, as its route declares."""
+    return any(
+        LINKED in (getattr(one, "openapi_extra", None) or {}) and one.path_regex.match(path) is not None
+        for one in iter_route_contexts([*routes])
+    )
 
 
 def need_of(route: Any) -> Need | None:

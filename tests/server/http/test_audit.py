@@ -16,7 +16,7 @@ from server.http.sign_in.policy import list_needs
 from server.platform import audit_file
 from server.platform.audit_file import AuditEntry, append_entries, read_entries
 from server.platform.settings import Settings
-from tests.server.test_matrix import FAR, House, Somebody, open_house
+from tests.server.test_matrix import FAR, House, Somebody, open_house, signed_in
 
 ANNA = Identity(7, "Anna", "operator", "browser")
 
@@ -74,7 +74,7 @@ async def act(house: House) -> None:
     async def ask(who: Somebody, method: str, path: str, body: object = None) -> tuple[int, bytes]:
         status, headers, told = await house.ask(who, method, path, right, body, address=FAR)
         if path.endswith("/pair"):
-            who.headers |= {"cookie": headers["set-cookie"].partition(";")[0], "x-mucat": "page"}
+            who.headers |= signed_in(headers, told)
         return status, told
 
     _, told = await ask(house.shell, "POST", "/api/access/codes", {"role": "viewer"})

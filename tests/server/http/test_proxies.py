@@ -107,7 +107,7 @@ def test_behind_nginx_as_the_manual_has_it(settings: Settings, tmp_path: Path) -
             tls = trust_only(served.settings.data)
             made = (await served.api.post("/access/codes", json={"role": "operator"})).json()
             assert made["link"] == f"{origin}/#pair={made['code']}"
-            headers = {"host": f"{NAME}:{port}", "origin": origin, "x-mucat": "page"}
+            headers = {"host": f"{NAME}:{port}", "origin": origin}
             base = f"https://127.0.0.1:{port}"
             transport = httpx.AsyncHTTPTransport(verify=tls, local_address=TABLET)
             async with httpx.AsyncClient(
@@ -122,7 +122,8 @@ def test_behind_nginx_as_the_manual_has_it(settings: Settings, tmp_path: Path) -
                 assert paired.json()["identity"]["name"] == "tablet"
                 assert "secure" in paired.headers["set-cookie"].lower()
                 cookie = paired.headers["set-cookie"].partition(";")[0]
-                signed = {"cookie": cookie}
+                secret = paired.json()["page_secret"]
+                signed = {"cookie": cookie, "x-mucat": secret}
                 upload = await browser.post("/api/imports", content=b"no archive" * 20_000, headers=signed)
                 assert (upload.status_code, "archive" in upload.text) == (422, True)
                 foreign = await browser.post(
@@ -134,7 +135,8 @@ def test_behind_nginx_as_the_manual_has_it(settings: Settings, tmp_path: Path) -
                     host="127.0.0.1",
                     origin=origin,  # type: ignore[arg-type]
                     ssl=tls,
-                    additional_headers=signed,
+                    additional_headers={"cookie": cookie},
+                    subprotocols=["mucat", secret],  # type: ignore[list-item]
                     max_size=None,
                 )
                 async with live as page:

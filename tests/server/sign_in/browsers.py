@@ -1,4 +1,4 @@
-"""Browsers as the server sees them: a cookie, the page's header and its origin."""
+"""Browsers as the server sees them: a cookie, the page's secret and its origin."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -21,11 +21,14 @@ class Browser:
         self.name = name
         self._served = served
         self.origin = f"http://127.0.0.1:{served.settings.port}"
-        headers = {"origin": self.origin, "x-mucat": "page"}
+        headers = {"origin": self.origin}
         self.api = httpx.AsyncClient(base_url=f"{self.origin}/api", headers=headers, timeout=10)
 
     async def pair(self, code: str) -> httpx.Response:
-        return await self.api.post("/access/pair", json={"code": code, "name": self.name})
+        answer = await self.api.post("/access/pair", json={"code": code, "name": self.name})
+        if answer.is_success and (secret := answer.json()["page_secret"]) is not None:
+            self.api.headers["x-mucat"] = secret
+        return answer
 
     async def device(self) -> int:
         number: int = (await self.api.get("/access/me")).json()["identity"]["device"]
@@ -37,7 +40,9 @@ class Browser:
 
     def connect(self, **options: Any) -> connect:
         """Open the browser's live socket."""
-        return self._served.connect(additional_headers={"cookie": self.cookie}, **options)
+        secret = self.api.headers.get("x-mucat")
+        shown = {} if secret is None else {"subprotocols": ["mucat", secret]}
+        return self._served.connect(additional_headers={"cookie": self.cookie}, **(shown | options))
 
 
 @asynccontextmanager

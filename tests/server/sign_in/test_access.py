@@ -99,12 +99,13 @@ def test_only_hashes_are_stored(settings: Settings) -> None:
         async with browser(served, "operator") as one:
             token = (await served.api.post("/access/tokens", json={"name": "script"})).json()["token"]
             secrets = [*one.api.cookies.values(), token, settings.data.token.read_text().strip()]
+            secrets.append(one.api.headers["x-mucat"])
             listed = (await one.api.get("/access/devices")).text
         with closing(sqlite3.connect(settings.data.database)) as database:
             stored = "\n".join(database.iterdump())
         assert "script" in stored
         assert not [secret for secret in secrets if secret in stored or secret in listed]
-        assert len(secrets) == 3
+        assert len(secrets) == 4
         assert settings.data.token.stat().st_mode & 0o777 == 0o600
 
     play(settings, scenario)
@@ -113,12 +114,14 @@ def test_only_hashes_are_stored(settings: Settings) -> None:
 def test_pairings_survive_a_restart_and_the_shell_token_does_not(settings: Settings) -> None:
     async def run() -> None:
         async with serve(settings) as served, browser(served, "viewer") as one:
-            cookies = dict(one.api.cookies)
+            cookies, page_secret = dict(one.api.cookies), one.api.headers["x-mucat"]
             token = settings.data.token.read_text()
             made = (await served.api.post("/access/tokens", json={"name": "script"})).json()["token"]
         async with serve(settings) as served, browser(served, None) as one:
             (secret,) = cookies.values()
             one.api.cookies.set(f"mucat_{served.settings.port}", secret)
+            assert (await one.api.get("/access/me")).json()["identity"] is None
+            one.api.headers["x-mucat"] = page_secret
             assert (await one.api.get("/access/me")).json()["identity"]["role"] == "viewer"
             old = {"authorization": f"Bearer {token.strip()}"}
             assert (await one.api.get("/access/me", headers=old)).json()["identity"] is None
@@ -166,13 +169,21 @@ def test_viewers_may_read_and_stop_only(settings: Settings) -> None:
 def test_a_cookie_alone_changes_nothing(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "operator") as one:
-            for spoilt in ({"x-mucat": ""}, {"x-mucat": "Page"}, {"origin": ""}, {"origin": "null"}):
-                answer = await one.api.post("/robot/commands/arm", headers=spoilt)
+            secret = one.api.headers["x-mucat"]
+            for spoilt in ("", "page", secret[:-1], secret.swapcase()):
+                answer = await one.api.post("/robot/commands/arm", headers={"x-mucat": spoilt})
+                assert (answer.status_code, "its part of the sign-in" in answer.text) == (401, True), spoilt
+            for spoilt in ("", "null"):
+                answer = await one.api.post("/robot/commands/arm", headers={"origin": spoilt})
                 assert answer.status_code == 403, spoilt
-            for missing in ("x-mucat", "origin"):
+            for missing, status in (("x-mucat", 401), ("origin", 403)):
                 kept = one.api.headers.pop(missing)
-                assert (await one.api.post("/robot/commands/arm")).status_code == 403, missing
+                assert (await one.api.post("/robot/commands/arm")).status_code == status, missing
                 one.api.headers[missing] = kept
+            spoilt_offers: list[list[str]] = [[], ["mucat"], [secret], ["mucat", "page"], ["other", secret]]
+            for offered in [*spoilt_offers, ["mucat", "page", secret]]:
+                with pytest.raises(InvalidStatus):
+                    await one.connect(subprotocols=offered)
             with pytest.raises(InvalidStatus):
                 await one.connect(origin=None)
             assert served.runtime.asked == []
@@ -180,6 +191,41 @@ def test_a_cookie_alone_changes_nothing(settings: Settings) -> None:
             assert (await one.api.post("/robot/commands/arm")).status_code == 423
 
     play(settings, scenario)
+
+
+def test_a_thief_of_a_cookie_gets_neither_sign_in_nor_confirmation_of_its_owner(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "operator", "owner") as owner, browser(served, None, "thief") as thief:
+            thief.api.cookies.update(owner.api.cookies)
+            # The owner has signed in a moment ago, and need not confirm.
+            assert (await owner.api.post("/access/codes", json={})).status_code == 201
+            assert (await thief.api.post("/access/codes", json={})).status_code == 401
+            assert (await thief.api.get("/backup")).status_code == 401
+            paired = await thief.pair(await new_code(served, "viewer"))
+            identity = paired.json()["identity"]
+            assert (identity["device"], identity["role"]) == (2, "viewer")
+            assert (await owner.api.get("/access/me")).json()["identity"]["role"] == "operator"
+
+    play(settings, scenario)
+
+
+def test_a_browser_that_signed_in_before_there_were_page_secrets_signs_in_again(settings: Settings) -> None:
+    async def run() -> None:
+        async with serve(settings) as served, browser(served, "operator") as one:
+            (cookie,) = one.api.cookies.values()
+        with closing(sqlite3.connect(settings.data.database)) as database:
+            database.execute("UPDATE device SET page_secret = NULL")
+            database.commit()
+        async with serve(settings) as served, browser(served, None) as one:
+            one.api.cookies.set(served.container.access.cookie, cookie)
+            answer = await one.api.get("/robot")
+            assert (answer.status_code, "Sign this browser in again" in answer.text) == (401, True)
+            one.api.headers["x-mucat"] = ""
+            assert (await one.api.get("/robot")).status_code == 401
+            assert (await one.pair(await new_code(served, "viewer"))).json()["identity"]["device"] == 2
+            assert (await one.api.get("/robot")).status_code == 503
+
+    asyncio.run(run())
 
 
 def test_revocation_closes_live_sockets_and_ends_everything(settings: Settings) -> None:
@@ -291,7 +337,7 @@ def test_a_paired_browser_is_not_paired_twice(settings: Settings) -> None:
             for role, then in (("viewer", "viewer"), ("operator", "operator"), ("viewer", "operator")):
                 answer = await one.pair(await new_code(served, "viewer" if role == "viewer" else "operator"))
                 assert answer.json()["identity"]["role"] == then
-                assert "set-cookie" not in answer.headers
+                assert ("set-cookie" in answer.headers, answer.json()["page_secret"]) == (False, None)
             assert dict(one.api.cookies) == cookies
         assert len((await served.api.get("/access/devices")).json()) == 1
 

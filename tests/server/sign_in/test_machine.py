@@ -16,6 +16,7 @@ from starlette.requests import HTTPConnection
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.access import Access
+from server.http.sign_in.devices import SignInEndedError
 from server.http.sign_in.identity import SHELL, Identity, Kind, Role, Scope
 from server.http.sign_in.pairing_codes import CODE_SECONDS, CODES_MAX, TooManyTriesError, WrongCodeError
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
@@ -43,6 +44,7 @@ class Member:
 
     identity: Identity
     secret: str
+    page_secret: str = ""
     out: bool = False
 
 
@@ -144,28 +146,28 @@ class SigningIn(RuleBasedStateMachine):
                 self.run(asking)
             self.wrong.append(self.clock.now())
             return self.nobody()
-        identity, secret = self.run(asking)
+        identity, secrets = self.run(asking)
         code.void = True
         if browser:
             assert known is not None
-            assert secret is None
+            assert secrets is None
             role: Role = "operator" if "operator" in (known.identity.role, code.role) else "viewer"
             known.identity = Identity(known.identity.device, "tablet", role, "browser")
             assert identity == known.identity
             return known
         assert (identity.role, identity.kind) == (code.role, "browser")
-        assert secret is not None
-        return self.let_in(identity, secret)
+        assert secrets is not None
+        return self.let_in(identity, secrets.cookie, secrets.page)
 
     def nobody(self) -> Any:
         """A member with an invalid secret."""
         return Member(Identity(10**6, "", "viewer", "browser"), "no secret", out=True)
 
-    def let_in(self, identity: Identity, secret: str) -> Member:
+    def let_in(self, identity: Identity, secret: str, page_secret: str = "") -> Member:
         """Add a member; numbers and secrets are never reused."""
         assert identity.device not in {one.identity.device for one in self.everybody if not one.out}
         assert secret not in {one.secret for one in self.everybody}
-        member = Member(identity, secret)
+        member = Member(identity, secret, page_secret)
         self.everybody.append(member)
         return member
 
@@ -232,19 +234,24 @@ class SigningIn(RuleBasedStateMachine):
             member.out = True
             assert self.closed == [member.identity.device]
 
-    async def seen(self, kind: Kind, secret: str) -> Identity | None:
-        """The identity that the server finds for a request with this secret."""
+    async def seen(self, kind: Kind, secret: str, page_secret: str) -> Identity | None:
+        """The identity that the server finds for a request with these secrets."""
         header = (b"authorization", f"Bearer {secret}".encode())
         if kind == "browser":
             header = (b"cookie", f"{self.access.cookie}={secret}".encode())
-        return self.access.identify(HTTPConnection({"type": "http", "headers": [header]}))
+        headers = [header, (b"x-mucat", page_secret.encode())]
+        return self.access.identify(HTTPConnection({"type": "http", "headers": headers}))
 
     @invariant()
     def everybody_is_who_they_are(self) -> None:
         for one in self.everybody:
             other: Kind = "program" if one.identity.kind == "browser" else "browser"
-            assert self.run(self.seen(one.identity.kind, one.secret)) == (None if one.out else one.identity)
-            assert self.run(self.seen(other, one.secret)) is None
+            identity = self.run(self.seen(one.identity.kind, one.secret, one.page_secret))
+            assert identity == (None if one.out else one.identity)
+            assert self.run(self.seen(other, one.secret, one.page_secret)) is None
+            if one.page_secret and not one.out:
+                with pytest.raises(SignInEndedError):
+                    self.run(self.seen("browser", one.secret, one.secret))
             assert (self.access.refresh(one.identity) == one.identity) is not one.out
         there = {one.identity for one in self.everybody if not one.out}
         assert {one.identity for one in self.access.devices.all()} == there

@@ -28,7 +28,8 @@ class HalfSent:
         head = (
             f"{request} HTTP/1.1",
             *(f"Host: 127.0.0.1:{port}", f"Origin: {one.origin}", f"Cookie: {one.cookie}"),
-            *("X-Mucat: page", "Content-Type: application/json", f"Content-Length: {len(body)}"),
+            f"X-Mucat: {one.api.headers['x-mucat']}",
+            *("Content-Type: application/json", f"Content-Length: {len(body)}"),
             *("Expect: 100-continue", "Connection: close", "", ""),
         )
         writer.write("\r\n".join(head).encode())
@@ -121,7 +122,7 @@ def test_a_download_ends_with_the_access_of_its_receiver(settings: Settings) -> 
             async def nothing() -> Message:
                 raise AssertionError("nobody reads the body")
 
-            headers = [(b"cookie", one.cookie.encode())]
+            headers = [(b"cookie", one.cookie.encode()), (b"x-mucat", one.api.headers["x-mucat"].encode())]
             state = SimpleNamespace(services=served.container.services)
             scope = {"type": "http", "method": "GET", "path": "/api/backup", "headers": headers}
             await SignInMiddleware(download)(scope | {"app": SimpleNamespace(state=state)}, nothing, collect)
