@@ -35,8 +35,8 @@ from server.features.sessions.chunks import decode_documents
 from server.stream.hub import HISTORY_SECONDS
 from tests.proofs.counting import count
 from tests.proofs.kills import row_times
-from tests.proofs.memory import anonymous
 from tests.proofs.outages import World
+from tests.proofs.scales import anonymous
 from tests.proofs.slow_page import SlowPage
 from tests.proofs.watching import wait
 from tests.stack import ROOT, Stack

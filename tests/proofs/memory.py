@@ -3,23 +3,18 @@
 Each is loaded in a process of its own, as fast as the computer goes. The runtime dives in simulated time,
 armed and stopped each minute, with cards, current and waves. The server takes an hour's messages, records a
 session each minute, replays, compares and removes it, while pages come and go and commands pass. Once it is
-warm, memory must stay: a process's anonymous memory is read each minute, after a collection. Mapped files are
-left out: whether they count as shared depends on other processes.
+warm, memory must stay: it is weighed each minute (`tests.proofs.scales`).
 """
 
 import asyncio
-import ctypes
-import gc
 import json
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
-from statistics import linear_regression
 from typing import Any
 
 import httpx
@@ -31,10 +26,11 @@ from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.transport import replay_cache
-from server.features.comparison import samples
+from server.features.comparison import comparer, samples
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.stream import hub
 from tests.exports import export_session
+from tests.proofs.scales import ANONYMOUS, IN_USE, Limit, Scales, judge
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
 from tests.shell import ShellToken
@@ -43,9 +39,9 @@ from tests.stack import ROOT
 MINUTE = 60.0
 STEP = 1.0
 """s of messages that are published at once."""
-SMALL_BYTES, SMALL_MESSAGES = 20_000, 40
-"""Buffers and caches of this size are full after a minute. With their own, which take up to an hour, filling
-them would be taken for growth."""
+SMALL_BYTES, SMALL_MESSAGES, SMALL_RESULTS = 20_000, 40, 2
+"""Buffers and caches of this size are full after a minute or two. With their own, which take up to an hour,
+filling them would be taken for growth."""
 PAGES = 3
 COMMANDS = 20
 EXPORT_EVERY = 10
@@ -76,53 +72,10 @@ EVENTS = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """The rise of a process's memory that is allowed once it is warm.
-
-    `noise`, in MB, is that of the allocator, which works in pages and arenas. `rate`, in MB a minute, is what
-    a day on a Raspberry Pi Zero with 512 MB bears.
-    """
-
-    warm: int
-    """minutes"""
-    noise: float
-    rate: float
-
-    def judge(self, part: str, held: Sequence[float]) -> str:
-        """The fault in the MB after each minute, in words; empty where there is none."""
-        after = held[self.warm :]
-        if len(after) < 2:
-            return f"{part}: {len(held)} minutes do not show whether memory grows; {self.warm} warm it"
-        rise = linear_regression(range(len(after)), after).slope * len(after)
-        most = self.noise + self.rate * len(after)
-        if rise <= most:
-            return ""
-        return f"{part}: memory rose by {rise:.2f} MB in {len(after)} minutes; the limit is {most:.2f} MB"
-
-
-LIMITS = {"runtime": Limit(1, 0.1, 0.02), "server": Limit(6, 1.0, 0.05)}
-
-
-def anonymous(pid: int | str = "self") -> int:
-    """Bytes of memory of a process without a file behind it."""
-    lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
-    (size,) = (int(line.split()[1]) for line in lines if line.startswith("Anonymous:"))
-    return 1024 * size
-
-
-class Scales:
-    """Weighs this process."""
-
-    def __init__(self) -> None:
-        self.held: list[float] = []
-        self._libc = ctypes.CDLL(None)
-
-    def weigh(self) -> None:
-        """Note what is held now, without what is only not yet freed."""
-        gc.collect()
-        self._libc.malloc_trim(0)
-        self.held.append(round(anonymous() / 1e6, 3))
+LIMITS: Mapping[str, Mapping[str, Limit]] = {
+    "runtime": {IN_USE: Limit(1, 0.1, 0.02), ANONYMOUS: Limit(1, 0.1, 0.02)},
+    "server": {IN_USE: Limit(6, 0.5, 0.02), ANONYMOUS: Limit(6, 3.0, 0.05)},
+}
 
 
 class _Minutes:
@@ -142,8 +95,8 @@ class _Minutes:
             self._scales.weigh()
 
 
-def load_runtime(minutes: int) -> list[float]:
-    """MB after each minute of a dive in simulated time."""
+def load_runtime(minutes: int) -> dict[str, list[float]]:
+    """MB of each kind after each minute of a dive in simulated time."""
     events = (
         f"[[events]]\nat = {minute * MINUTE + at}\n{what}\n"
         for minute in range(minutes)
@@ -157,9 +110,10 @@ def load_runtime(minutes: int) -> list[float]:
     return scales.held
 
 
-def load_server(minutes: int) -> list[float]:
-    """MB after each minute of messages and of what people do."""
+def load_server(minutes: int) -> dict[str, list[float]]:
+    """MB of each kind after each minute of messages and of what people do."""
     hub.HISTORY_TOPIC_BYTES = samples.CACHE_BYTES = replay_cache.BYTES_MAX = SMALL_BYTES
+    comparer.RESULTS_MAX = SMALL_RESULTS
     hub.ROWS_MESSAGES = hub.DOCUMENTS_MESSAGES = SMALL_MESSAGES
     scales = Scales()
     with tempfile.TemporaryDirectory(prefix="mucat-") as name:
@@ -265,12 +219,12 @@ class _Day:
         return answer.json() if answer.content else None
 
 
-def measure(part: str, minutes: int) -> list[float]:
-    """MB after each minute, from a process of its own."""
+def measure(part: str, minutes: int) -> dict[str, list[float]]:
+    """MB of each kind after each minute, from a process of its own."""
     command = [sys.executable, "-m", "tests.proofs.memory", part, str(minutes)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-4000:]
-    found: list[float] = json.loads(done.stdout)
+    found: dict[str, list[float]] = json.loads(done.stdout)
     return found
 
 
@@ -281,13 +235,15 @@ def main() -> int:
         print(json.dumps(load(int(sys.argv[2]))))
         return 0
     minutes = int(sys.argv[1]) if len(sys.argv) > 1 else 60
-    problems = []
-    for part, limit in LIMITS.items():
+    grown = False
+    for part, limits in LIMITS.items():
         held = measure(part, minutes)
-        print(f"{part}: {', '.join(f'{one:.2f}' for one in held)} MB")
-        problems.append(limit.judge(part, held))
-    print("\n".join(filter(None, problems)) or "Memory does not grow.")
-    return 1 if any(problems) else 0
+        for kind, sizes in held.items():
+            print(f"{part}, {kind}: {', '.join(f'{one:.2f}' for one in sizes)} MB")
+        problem = judge(limits, held)
+        grown |= bool(problem)
+        print(f"{part}: {problem or 'memory does not grow'}.")
+    return 1 if grown else 0
 
 
 if __name__ == "__main__":

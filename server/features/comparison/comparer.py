@@ -46,6 +46,8 @@ from server.platform.models import SessionRow
 from server.platform.store import Reader
 
 EVENTS_MAX = 500
+RESULTS_MAX = 64
+"""Of each cache of results about a session."""
 THREADS = 2
 """Only decompression and SQLite run in parallel: more threads do not help."""
 
@@ -76,9 +78,9 @@ class Comparer:
         self._store = store
         self._samples = Samples()
         self._threads = ThreadPoolExecutor(THREADS, "compare")
-        self._histories: ResultCache[ControlHistory] = ResultCache()
-        self._measured: ResultCache[dict[str, Figure]] = ResultCache()
-        self._counted: ResultCache[dict[str, Figure]] = ResultCache()
+        self._histories: ResultCache[ControlHistory] = ResultCache(RESULTS_MAX)
+        self._measured: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
+        self._counted: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
 
     def signals(self, session: int) -> list[Signal]:
         """The signals of a session that can be drawn."""

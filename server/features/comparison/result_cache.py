@@ -9,13 +9,11 @@ from server.platform.models import SessionRow
 
 T = TypeVar("T")
 
-RESULTS_MAX = 64
-
 
 class ResultCache(Generic[T]):
     """The newest results about complete sessions, of a limited total size; several threads may use it."""
 
-    def __init__(self, most: int = RESULTS_MAX, size: Callable[[T], int] = lambda _: 1) -> None:
+    def __init__(self, most: int, size: Callable[[T], int] = lambda _: 1) -> None:
         self._most = most
         self._size = size
         self._total = 0
