@@ -48,3 +48,5 @@ def test_firefox_opens_every_page(firefox: Firefox, stack: Stack) -> None:
         firefox.open(f"{stack.url}/#/{view.address}")
         headings = "[...document.querySelectorAll('h1, h2')]"
         firefox.wait_for(f"{headings}.some((one) => one.textContent.includes('{view.shows}'))")
+        # Firefox complains of fonts that are still under way when a page is left.
+        firefox.wait_for("document.fonts.status === 'loaded'")
