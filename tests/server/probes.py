@@ -17,6 +17,8 @@ STARTS = "It would start a process each time."
 CODE = "a new code"
 OPERATOR_CODE = "a new operator's code"
 """In a body: codes that the shell has just made."""
+NEW_NAME = "a new name"
+"""In a body: a name that nobody has."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ PROBES: dict[tuple[str, str], Probe] = {
     ("POST", "/api/access/codes"): Probe(201),
     ("PATCH", "/api/access/devices/{device}"): Probe(body={"name": "viewer"}),
     ("DELETE", "/api/access/devices/{device}"): absent("device", "There is no device 999", GONE),
-    ("POST", "/api/access/tokens"): Probe(201, {"name": "program"}),
+    ("POST", "/api/access/tokens"): Probe(201, {"name": NEW_NAME}),
     ("POST", "/api/control/take"): Probe(query="over=true"),
     ("POST", "/api/robot/stop"): Probe(204),
     ("POST", "/api/robot/commands/acknowledge"): Probe(204),

@@ -9,6 +9,7 @@ import json
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field, replace
+from itertools import count
 from typing import Any, Literal, cast
 
 import pytest
@@ -22,7 +23,7 @@ from server.http.sign_in.policy import MESSAGES
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
 from tests.server.new_database import place_with_samples
-from tests.server.probes import CODE, OPERATOR_CODE, PROBES, THERE, Probe, place_things
+from tests.server.probes import CODE, NEW_NAME, OPERATOR_CODE, PROBES, THERE, Probe, place_things
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import until
 from tests.shell import shell_headers
@@ -223,6 +224,7 @@ class House:
         self.runtime = runtime
         self.people: dict[Who, Somebody] = {"anonymous": Somebody()}
         self.shell = Somebody(shell_headers(settings.data))
+        self._numbers = count(1)
 
     def places(self, host: Where, origin: Where) -> dict[str, str]:
         """The headers that name the origin of a request."""
@@ -270,10 +272,12 @@ class House:
         verb = who.removeprefix("program that ")
         if verb != who:
             return await self._program(verb.removesuffix("s"))
-        return await self._pair("viewer" if who == "viewer" else "operator")
+        return await self._pair("viewer" if who == "viewer" else "operator", who)
 
     async def fill(self, body: dict[str, Any]) -> dict[str, Any]:
-        """The body of a request, with a new code of the shell where it needs one."""
+        """The body of a request, with a new code of the shell, or a new name, where it needs one."""
+        if body.get("name") == NEW_NAME:
+            return body | {"name": f"program {next(self._numbers)}"}
         roles = {CODE: "viewer", OPERATOR_CODE: "operator"}
         if (role := roles.get(body.get("code", ""))) is None:
             return body
@@ -284,9 +288,9 @@ class House:
         _, _, told = await self.ask(self.shell, "POST", "/api/access/codes", right, {"role": role})
         return str(json.loads(told)["code"])
 
-    async def _pair(self, role: str) -> Somebody:
+    async def _pair(self, role: str, name: str) -> Somebody:
         right = self.places("right", "right")
-        wanted = {"code": await self._code(role), "name": role}
+        wanted = {"code": await self._code(role), "name": name}
         status, headers, told = await self.ask(Somebody(), "POST", "/api/access/pair", right, wanted)
         assert status == 200
         return Somebody(signed_in(headers, told))

@@ -37,7 +37,8 @@ COOKIE_SECONDS = 400 * 86400
 """The longest time for which browsers keep a cookie."""
 
 TOO_MANY = {409: "Too many devices are paired"}
-NO_OPERATOR = {409: "No operator would be left"}
+NO_TOKEN = {409: "Too many devices are paired, or the name looks like another's"}
+NO_CHANGE = {409: "No operator would be left, or the name looks like another's"}
 
 router = Operations(prefix="/api/access", tags=["access"])
 
@@ -60,7 +61,7 @@ async def pair_browser(
 
     Sets a cookie, and answers the page's own secret: the page sends it as the header `X-Mucat`, and its live
     socket as the second subprotocol, after `mucat`. A browser that is signed in already keeps both, and gets
-    the code's role if that is higher.
+    the code's role if that is higher. A new one gets a number after its name if that looks like another's.
     """
     address = address_of(request.scope)
     identity, secrets = await access.pair(body.code, body.name, request.scope[IDENTITY], address)
@@ -118,7 +119,7 @@ async def list_devices(access: Provided[Access], caller: Caller) -> list[DeviceD
     return [_describe(access, caller, device) for device in access.devices.all()]
 
 
-@router.operation("PATCH /devices/{device}", Need.ADMINISTER, UnknownDeviceError, NO_OPERATOR)
+@router.operation("PATCH /devices/{device}", Need.ADMINISTER, UnknownDeviceError, NO_CHANGE)
 async def change_device(
     access: Provided[Access], caller: Caller, device: Identifier, body: DeviceChanges
 ) -> DeviceDetails:
@@ -133,7 +134,9 @@ async def change_device(
     return _describe(access, caller, access.devices.get(device))
 
 
-@router.operation("DELETE /devices/{device}", Need.ADMINISTER, UnknownDeviceError, NO_OPERATOR)
+@router.operation(
+    "DELETE /devices/{device}", Need.ADMINISTER, UnknownDeviceError, {409: "No operator would be left"}
+)
 async def revoke_device(access: Provided[Access], caller: Caller, device: Identifier) -> None:
     """Revoke a device's access.
 
@@ -142,7 +145,7 @@ async def revoke_device(access: Provided[Access], caller: Caller, device: Identi
     await access.revoke(device, caller)
 
 
-@router.operation("POST /tokens", Need.ADMINISTER, TOO_MANY, status_code=201)
+@router.operation("POST /tokens", Need.ADMINISTER, NO_TOKEN, status_code=201)
 async def make_token(access: Provided[Access], caller: Caller, body: NewToken) -> MadeToken:
     """Make a token for a program.
 

@@ -1,25 +1,17 @@
 """Schemas of browsers and programs, and of pairing."""
 
 from typing import Annotated
-from unicodedata import normalize
 
 from pydantic import AfterValidator, BaseModel, Field
 
 from server.http.request_body import RequestBody
 from server.http.sign_in.identity import Identity, Kind, Role, Scope
+from server.http.sign_in.names import NAME_LENGTH_MAX, clean_name
 
-NAME_LENGTH_MAX = 40
 TOKEN_DAYS, TOKEN_DAYS_MAX = 90, 3650
 
 
-def _check_name(name: str) -> str:
-    name = " ".join(normalize("NFKC", name).split())
-    if not name or not name.isprintable():
-        raise ValueError("must have visible characters, and no control characters")
-    return name
-
-
-Name = Annotated[str, Field(max_length=NAME_LENGTH_MAX), AfterValidator(_check_name)]
+Name = Annotated[str, Field(max_length=NAME_LENGTH_MAX), AfterValidator(clean_name)]
 
 
 class CallerDetails(BaseModel):

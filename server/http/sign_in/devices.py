@@ -13,7 +13,8 @@ from sqlalchemy import delete, update
 from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
-from server.http.sign_in.identity import Identity, Kind, Role, Scope
+from server.http.sign_in.identity import SHELL, Identity, Kind, Role, Scope
+from server.http.sign_in.names import find_alike, number_name
 from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
 from server.platform.errors import NotFoundError, SignedOutError
 from server.platform.models import DeviceRow
@@ -96,6 +97,8 @@ class Devices:
         self._devices: dict[int, Device] = {}
         self._by_secret: dict[str, int] = {}
         self._writing: set[asyncio.Task[None]] = set()
+        self._naming = asyncio.Lock()
+        """Held from the look at the names there are until a new one is stored."""
 
     def load(self) -> None:
         """Load all devices from the database. Raises StoreError."""
@@ -153,20 +156,25 @@ class Devices:
     async def add_browser(self, name: str, role: Role) -> tuple[Device, BrowserSecrets]:
         """A new browser, and its secrets, which are not stored.
 
-        Raises RefusedError where there are too many devices, StoreError.
+        Its name gets a number where it looks like another's. Raises RefusedError where there are too many
+        devices, StoreError.
         """
         page = make_token()
-        device, cookie = await self._add(name, role, "browser", page_secret=digest(page))
+        async with self._naming:
+            name = number_name(name, self._list_names())
+            device, cookie = await self._add(name, role, "browser", page_secret=digest(page))
         return device, BrowserSecrets(cookie, page)
 
     async def add_program(self, name: str, scope: Scope, days: int | None) -> tuple[Device, str]:
         """A new program, and its token, which is not stored; it ends after `days`, never where that is None.
 
-        Raises RefusedError where there are too many devices, StoreError.
+        Raises RefusedError where there are too many devices, or the name looks like another's, StoreError.
         """
         role: Role = "viewer" if scope == "read" else "operator"
         ends = None if days is None else self._utc() + days * DAY_SECONDS
-        return await self._add(name, role, "program", limited=scope != "administer", ends=ends)
+        async with self._naming:
+            self._refuse_alike(name, self._list_names())
+            return await self._add(name, role, "program", limited=scope != "administer", ends=ends)
 
     async def _add(
         self,
@@ -209,10 +217,27 @@ class Devices:
         device.role = role
 
     async def rename(self, number: int, name: str) -> None:
-        """Rename a device. Raises UnknownDeviceError, StoreError."""
-        device = self.get(number)
-        await self._update(number, name=name)
-        device.name = name
+        """Rename a device.
+
+        Raises UnknownDeviceError, RefusedError where the name looks like another's, StoreError.
+        """
+        async with self._naming:
+            device = self.get(number)
+            self._refuse_alike(name, self._list_names(but=number))
+            await self._update(number, name=name)
+            device.name = name
+
+    def _list_names(self, but: int | None = None) -> list[str]:
+        """The names of the shell and of all devices but this one."""
+        return [SHELL.name, *(one.name for one in self._devices.values() if one.id != but)]
+
+    @staticmethod
+    def _refuse_alike(name: str, others: list[str]) -> None:
+        if (other := find_alike(name, others)) is not None:
+            raise RefusedError(
+                f"“{name}” is, or looks like, the name of another: “{other}”. Choose one that nobody can "
+                "mistake for it."
+            )
 
     async def remove(self, number: int) -> None:
         """Remove a device; its secret is invalid at once. Raises UnknownDeviceError, StoreError."""

@@ -46,8 +46,8 @@ def test_sign_in_refusals_roles_arm_and_stop_are_written_with_who_and_where(sett
             ("Eve", "viewer", FAR, "refused"),
             ("operator", "operator", FAR, "done"),
             ("operator", "operator", FAR, "refused"),
-            ("operator", "operator", FAR, "done"),
-            ("operator", "operator", FAR, "done"),
+            ("control", "operator", FAR, "done"),
+            ("control", "operator", FAR, "done"),
             ("", "", FAR, "refused"),
         ]
         assert what[1] == 'POST /api/access/pair {"name": "Eve"}'

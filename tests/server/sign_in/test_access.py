@@ -402,7 +402,10 @@ async def notices(socket: ClientConnection, count: int) -> list[dict[str, Any]]:
     return found
 
 
-@pytest.mark.parametrize("name", ["", "   ", "a\nb\x00", "x" * 41, "\x1b[31mred", "a\u202eb"])
+UNSEEN = ["\u3164", "a\u2800b", "op\ufe0f", "op\U000e0100", "op\u034f", "\u0301", "a \u0301b", "\ufdfa" * 40]
+
+
+@pytest.mark.parametrize("name", ["", "   ", "a\nb\x00", "x" * 41, "\x1b[31mred", "a\u202eb", *UNSEEN])
 def test_names_are_short_and_printable(settings: Settings, name: str) -> None:
     async def scenario(served: Served) -> None:
         code = await new_code(served, "operator")

@@ -184,7 +184,9 @@ class SigningIn(RuleBasedStateMachine):
     @rule(target=members, role=ROLES)
     def make_program(self, role: Role) -> Member:
         scope: Scope = "administer" if role == "operator" else "read"
-        device, token = self.run(self.access.make_program("script", scope, None, SHELL))
+        device, token = self.run(
+            self.access.make_program(f"script {len(self.everybody)}", scope, None, SHELL)
+        )
         assert (device.role, device.kind) == (role, "program")
         return self.let_in(device.identity, token)
 
