@@ -1,19 +1,16 @@
-"""One running robot and one Chromium for all browser tests; both end with them.
-
-Playwright keeps an event loop running, which tests of other rooms could not stand beside their own.
-"""
+"""One running robot for all browser tests; it ends with them."""
 
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, StorageState, ViewportSize
 
 from robot_runtime.transport.zenoh_transport import ZenohTransport
-from tests.browser.opening import DESKTOP, PHONE, closing_pages, launched, opened_page, signed_in
+from tests.browser.fixtures import _no_page_is_left, any_page, browser, cookies, page
 from tests.browser.pages import stop_recordings
 from tests.stack import Stack
 
+__all__ = ["_no_page_is_left", "any_page", "browser", "cookies", "page"]
 RESET_SECONDS = 10.0
 
 
@@ -21,18 +18,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if Path(__file__).parent in item.path.parents:
             item.add_marker("stack")
-
-
-@pytest.fixture(scope="package")
-def browser() -> Iterator[Browser]:
-    with launched() as browser:
-        yield browser
-
-
-@pytest.fixture(autouse=True)
-def _no_page_is_left(browser: Browser) -> Iterator[None]:
-    with closing_pages(browser):
-        yield
 
 
 @pytest.fixture(scope="package")
@@ -45,32 +30,17 @@ def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
 
 
 @pytest.fixture(scope="package")
-def cookies(browser: Browser, stack: Stack) -> StorageState:
-    """Cookies and storage of a signed-in operator."""
-    return signed_in(browser, stack)
-
-
-@pytest.fixture(params=[DESKTOP, PHONE], ids=["desktop", "phone"])
-def any_page(
-    request: pytest.FixtureRequest, browser: Browser, stack: Stack, cookies: StorageState
-) -> Iterator[Page]:
-    """The page at both sizes; what its code complains about fails the test."""
-    yield from open_page(browser, stack, cookies, request.param)
+def site(stack: Stack) -> Stack:
+    """The server of the robot."""
+    return stack
 
 
 @pytest.fixture
-def page(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page]:
-    """The page at desktop size; what its code complains about fails the test."""
-    yield from open_page(browser, stack, cookies, DESKTOP)
-
-
-def open_page(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
-    """The page at this size, robot at the surface; afterwards all is at rest."""
+def _at_rest(stack: Stack) -> Iterator[None]:
+    """The robot is at the surface; afterwards all is at rest."""
     bring_to_surface(stack)
-    with opened_page(browser, stack, cookies, size) as page:
-        yield page
-        page.context.close()
-        put_to_rest(stack)
+    yield
+    put_to_rest(stack)
 
 
 def bring_to_surface(stack: Stack) -> None:

@@ -15,9 +15,9 @@ from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expec
 
 from server.platform.settings import DataFolder
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE
-from tests.browser.conftest import open_page, put_to_rest
+from tests.browser.conftest import put_to_rest
 from tests.browser.driving import arm_by_hand, expect_surge
-from tests.browser.opening import DESKTOP, PHONE
+from tests.browser.opening import DESKTOP, PHONE, opened_page
 from tests.exports import export_session
 from tests.proofs.watching import Fins
 from tests.stack import Stack
@@ -56,10 +56,11 @@ def expect_full_speed(page: Page) -> None:
 
 
 @pytest.fixture
-def in_a_window(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page]:
+def in_a_window(browser: Browser, stack: Stack, cookies: StorageState, _at_rest: None) -> Iterator[Page]:
     """The page in the full browser: without windows no page can be hidden by another."""
     whole = browser.browser_type.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
-    yield from open_page(whole, stack, cookies, DESKTOP)
+    with opened_page(whole, stack, cookies, DESKTOP) as page:
+        yield page
     whole.close()
 
 
