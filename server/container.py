@@ -94,6 +94,7 @@ class Container:
             self._notify_control,
             self.bridge.drive,
             lambda text: self.notices.notify("control", "info", text),
+            lambda identity, why: self.audit.record(identity, "", "Lose control", why, "done"),
         )
 
     def _add_health(self, commands: Sequence[ProcessCommand]) -> None:

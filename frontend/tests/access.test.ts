@@ -11,7 +11,7 @@ interface Sent {
 }
 
 const PERSON = { device: 3, name: 'Firefox on Linux', role: 'operator', kind: 'browser' } as const;
-const ME = { signed_in: true, robot: 'turtle', identity: PERSON, pairing_open: false, operators_only: ['startSession'] };
+const ME = { signed_in: true, robot: 'turtle', identity: PERSON, ended: '', pairing_open: false, operators_only: ['startSession'] };
 const NOBODY = { ...ME, signed_in: false, identity: null };
 let answers: Record<string, () => Response>;
 let sent: Sent[];
@@ -43,6 +43,14 @@ describe('signing in', () => {
     await access.open(null, 'x');
     expect(access.state).toBe('in');
     expect(asked()).toEqual(['GET /api/access/me']);
+  });
+
+  it('says why a sign-in counts no longer', async () => {
+    answers['GET /api/access/me'] = json({ ...NOBODY, ended: 'This browser was not used for 90 days.' });
+    const access = new Access();
+    await access.open(null, 'x');
+    expect(access.state).toBe('out');
+    expect(access.reason).toBe('This browser was not used for 90 days.');
   });
 
   it('uses the code of a link, and never shows the sign-in meanwhile', async () => {

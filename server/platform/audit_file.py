@@ -5,19 +5,25 @@ shell writes it beside a running server.
 """
 
 import json
+import logging
 import os
 import time
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
 import click
+from click.exceptions import Exit
 
 from robot_runtime.durable_files import make_folder, sync
 
+log = logging.getLogger(__name__)
+
 Outcome = Literal["done", "refused", "failed", "begun"]
-"""The end of an act; "begun" is a command of the shell, which says itself how it ends."""
+"""The end of an act; "begun" is the start of a shell's command, whose end is another entry. One that was
+killed has none."""
 FILE_BYTES = 512 * 1024
 """Size from which on a new file is begun."""
 FILES_MOST = 8
@@ -75,7 +81,30 @@ def append_shell_command(folder: Path) -> None:
     context.meta[WRITTEN] = True
     named = {name: str(value) for name, value in context.params.items() if value not in (None, (), False)}
     about = json.dumps(named, ensure_ascii=False)
-    append_entries(folder, [_shell_entry(context.command_path, clean(about))])
+    append_entries(folder, [_shell_entry(context.command_path, about, "begun")])
+    context.with_resource(_append_end(folder, context.command_path, about))
+
+
+@contextmanager
+def _append_end(folder: Path, action: str, about: str) -> Iterator[None]:
+    """Append how the command ends. A process that it has forked ends for itself."""
+    process = os.getpid()
+    outcome: Outcome = "failed"
+    try:
+        yield
+        outcome = "done"
+    except Exit as end:
+        outcome = "done" if end.exit_code == 0 else "failed"
+        raise
+    except click.ClickException as problem:
+        about = f"{problem.format_message()} {about}"
+        raise
+    finally:
+        if os.getpid() == process:
+            try:
+                append_entries(folder, [_shell_entry(action, about, outcome)])
+            except OSError as problem:
+                log.warning("the audit log does not say how this command ended: %s", problem)
 
 
 def read_entries(folder: Path) -> Iterator[AuditEntry]:
@@ -96,8 +125,8 @@ def clean(text: str) -> str:
     return shown if len(shown) <= TEXT_MAX else shown[:TEXT_MAX] + "…"
 
 
-def _shell_entry(action: str, about: str) -> AuditEntry:
-    return AuditEntry(time.time(), SHELL_NAME, 0, "operator", "", action, about, "begun")
+def _shell_entry(action: str, about: str, outcome: Outcome) -> AuditEntry:
+    return AuditEntry(time.time(), SHELL_NAME, 0, "operator", "", action, clean(about), outcome)
 
 
 def _files(folder: Path) -> list[Path]:

@@ -1,8 +1,10 @@
 """People: links, roles, revocation."""
 
+import csv
 import re
 from collections.abc import Iterator
 
+import httpx
 import pytest
 from playwright.sync_api import Browser, Page, ViewportSize, expect
 
@@ -104,7 +106,7 @@ def test_a_dangerous_act_asks_for_a_code_and_is_then_done(
     fresh.set_viewport_size(size)
     fresh.goto(f"{site.url}/#/people")
     tokens = fresh.get_by_role("region", name="Token for a program")
-    tokens.get_by_label("Name of the program").fill("sonar logger")
+    tokens.get_by_label("Name of the program").fill(f"logger on {size['width']} px")
     create = tokens.get_by_role("button", name="Create token")
     create.click()
     dialog = fresh.get_by_role("dialog", name="Confirmation needed")
@@ -133,3 +135,34 @@ def test_a_dangerous_act_asks_for_a_code_and_is_then_done(
     with fresh.expect_download() as download:
         code.press("Enter")
     assert download.value.suggested_filename.startswith("mucat-backup-")
+
+
+def test_the_audit_log_shows_filters_and_saves_who_did_what(fresh: Page, site: Site) -> None:
+    name = "<b>Eve</b>"
+    code = make_link(site, "viewer").partition("#pair=")[2]
+    with httpx.Client(base_url=f"{site.url}/api/access", headers={"origin": site.url}) as eve:
+        paired = eve.post("/pair", json={"code": code, "name": name}).raise_for_status().json()
+        eve.post("/sign-out", headers={"x-mucat": paired["page_secret"]}).raise_for_status()
+    fresh.goto(f"{site.url}/#/people")
+    log = fresh.get_by_role("region", name="Audit log")
+    rows = log.get_by_role("table").get_by_role("row")
+    expect(rows.filter(has_text=name)).to_have_count(2)
+
+    log.get_by_label("Who").fill("eve")
+    log.get_by_role("button", name="Show").click()
+    expect(rows).to_have_count(3)
+    expect(rows.nth(1)).to_contain_text(f"{name}viewer, 127.0.0.1Sign this browser out")
+    expect(rows.nth(2)).to_contain_text("Sign this browser in with a code")
+    expect(rows.locator("b")).to_have_count(0)
+    with fresh.expect_download() as download:
+        log.get_by_role("button", name="CSV file").click()
+    assert download.value.suggested_filename.endswith(".csv")
+    _, newest, oldest = csv.reader(download.value.path().read_text().splitlines())
+    assert name in newest
+    assert "Sign this browser out" in newest
+    assert "Sign this browser in with a code" in oldest
+
+    log.get_by_label("What").fill("no such act")
+    log.get_by_role("button", name="Show").click()
+    expect(log.get_by_role("status")).to_be_visible()
+    expect(rows).to_have_count(0)

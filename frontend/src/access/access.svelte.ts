@@ -47,7 +47,7 @@ export class Access {
     const me = await this.#ask();
     if (me === null) return;
     if (me.signed_in) this.#take(me);
-    else this.leave(reason === '' ? texts.noLongerSignedIn : reason);
+    else this.leave(reason || me.ended || texts.noLongerSignedIn);
   }
 
   /** Use a code. Returns what went wrong, or null. */
@@ -98,6 +98,7 @@ export class Access {
     this.#operatorsOnly = me.operators_only;
     this.robot = me.robot;
     this.identity = me.identity;
+    if (this.reason === '') this.reason = me.ended;
     this.state = me.signed_in ? 'in' : 'out';
   }
 }

@@ -2046,6 +2046,11 @@ export interface components {
          * @description The caller, and the robot; `pairing_open` is true while a pairing code is valid.
          */
         CallerDetails: {
+            /**
+             * Ended
+             * @description why the sign-in that was shown counts no longer; else empty
+             */
+            ended: string;
             identity: components["schemas"]["Identity"] | null;
             /**
              * Operators Only
@@ -3376,6 +3381,11 @@ export interface components {
          * @description The caller after pairing.
          */
         Paired: {
+            /**
+             * Ended
+             * @description why the sign-in that was shown counts no longer; else empty
+             */
+            ended: string;
             identity: components["schemas"]["Identity"] | null;
             /**
              * Operators Only

@@ -12,7 +12,7 @@ from typing import Any
 
 from robot_runtime.clock import Clock
 from robot_runtime.errors import RefusedError
-from server.features.lease.clients import ControlClient, ControlClients
+from server.features.lease.clients import PROGRAM_SECONDS, ControlClient, ControlClients
 from server.features.lease.driving import DriveCommand, DriveFilter
 from server.features.lease.lease import Change, Lease, NotInControlError
 from server.features.lease.schemas import ControlState, Holder
@@ -42,7 +42,7 @@ class ControlArbiter:
     """Grants control to one client at a time, and passes its driving commands on.
 
     `notify` gets `{op: "control", ...}` at each change, `publish` the bytes of a stick command, `note` a
-    sentence about each change for the record.
+    sentence about each change for the record, and `audit` who lost control without giving it back, and why.
     """
 
     def __init__(
@@ -51,6 +51,7 @@ class ControlArbiter:
         notify: Callable[[dict[str, Any]], None],
         publish: Callable[[bytes], None],
         note: Callable[[str], None],
+        audit: Callable[[Identity, str], None],
     ) -> None:
         self.clients = ControlClients(clock)
         self.lease = Lease(clock, self._note)
@@ -58,6 +59,7 @@ class ControlArbiter:
         self._clock = clock
         self._notify = notify
         self._write = note
+        self._audit = audit
         self._departure: Departure | None = None
         self._wake = asyncio.Event()
 
@@ -69,7 +71,7 @@ class ControlArbiter:
         try:
             yield client
         finally:
-            self._close(client)
+            self._close(client, "its page was closed, or its connection is gone")
             self.announce()
 
     def open_program(self, identity: Identity) -> ControlClient:
@@ -114,7 +116,7 @@ class ControlArbiter:
     def dismiss(self, device: int) -> None:
         """Close the clients of a device that is signed out or has another role. It may open others."""
         for client in self.clients.of(device):
-            self._close(client)
+            self._close(client, "it was signed out, or has another role")
         self._note_departure()
         self.announce()
 
@@ -131,7 +133,7 @@ class ControlArbiter:
     def expire(self) -> None:
         """Close the clients of programs that have been silent for too long; note a page that stayed away."""
         for client in self.clients.expired():
-            self._close(client)
+            self._close(client, f"it asked nothing for {PROGRAM_SECONDS:.0f} s")
         if self._departure is not None and self._departure.due <= self._clock.now():
             self._note_departure()
 
@@ -150,7 +152,9 @@ class ControlArbiter:
                 async with asyncio.timeout(None if due is None else max(0.0, due - self._clock.now())):
                     await self._wake.wait()
 
-    def _close(self, client: ControlClient) -> None:
+    def _close(self, client: ControlClient, why: str) -> None:
+        if client.number == self.lease.holder:
+            self._audit(client.identity, why)
         self.lease.forget(client.number)
         self.clients.close(client.number)
 

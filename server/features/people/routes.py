@@ -23,7 +23,7 @@ from server.http.dependencies import Provided
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.access import Access
 from server.http.sign_in.devices import Device, UnknownDeviceError
-from server.http.sign_in.identity import IDENTITY, Caller, Identity
+from server.http.sign_in.identity import IDENTITY, SIGN_IN_ENDED, Caller, Identity
 from server.http.sign_in.pairing_codes import (
     CODE_SECONDS,
     TooManyTriesError,
@@ -167,6 +167,7 @@ def _describe_caller(
         signed_in=identity is not None,
         robot=settings.robot,
         identity=identity,
+        ended=request.scope.get(SIGN_IN_ENDED, "") if identity is None else "",
         pairing_open=access.codes.any_valid,
         operators_only=[
             name

@@ -20,6 +20,7 @@ class CallerDetails(BaseModel):
     signed_in: bool
     robot: str
     identity: Identity | None
+    ended: Annotated[str, Field(description="why the sign-in that was shown counts no longer; else empty")]
     pairing_open: bool
     operators_only: list[str] = Field(description="names of the operations that viewers may not call")
 

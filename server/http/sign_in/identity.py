@@ -15,6 +15,8 @@ Scope = Literal["read", "operate", "administer"]
 
 IDENTITY = "identity"
 """The entry of an ASGI scope that holds the caller's identity."""
+SIGN_IN_ENDED = "sign_in_ended"
+"""The entry of an ASGI scope that says why a sign-in that the caller shows counts no longer."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from server.http.dependencies import find_service
 from server.http.security import SAFE_METHODS, refuse
 from server.http.sign_in.access import PAGE_HEADER, Access
 from server.http.sign_in.devices import SignInEndedError
-from server.http.sign_in.identity import IDENTITY, Identity
+from server.http.sign_in.identity import IDENTITY, SIGN_IN_ENDED, Identity
 from server.http.sign_in.policy import is_linked
 
 OPEN = frozenset({("GET", "/api/alive"), ("GET", "/api/access/me"), ("POST", "/api/access/pair")})
@@ -41,6 +41,7 @@ class SignInMiddleware:
             identity = find_service(connection, Access).identify(connection, cookie_suffices=_is_link(scope))
         except SignInEndedError as problem:
             identity, nobody = None, str(problem)
+            scope[SIGN_IN_ENDED] = nobody
         path = scope["path"]
         if identity is None and _is_api(path) and (scope.get("method"), path) not in OPEN:
             await refuse(scope, receive, send, 401, nobody)

@@ -49,10 +49,12 @@ def test_sign_in_refusals_roles_arm_and_stop_are_written_with_who_and_where(sett
             ("control", "operator", FAR, "done"),
             ("control", "operator", FAR, "done"),
             ("", "", FAR, "refused"),
+            ("control", "operator", "", "done"),
         ]
         assert what[1] == 'POST /api/access/pair {"name": "Eve"}'
         assert '{"role": "operator"}' in what[3]
-        assert what[-1] == "GET /api/robot"
+        assert what[-2] == "GET /api/robot"
+        assert "page was closed" in what[-1]
 
     asyncio.run(scenario())
 
@@ -159,12 +161,20 @@ def test_texts_of_others_turn_and_move_nothing(tmp_path: Path) -> None:
     assert len(found.about) <= audit_file.TEXT_MAX + 1
 
 
-def test_a_command_in_the_shell_is_written(settings: Settings) -> None:
+def test_a_command_in_the_shell_is_written_with_its_end(settings: Settings) -> None:
     options = ["--data", str(settings.data.path), "--config", str(settings.config)]
     assert cli.main(["sessions", "delete", "5", *options]) == 1
-    (found,) = read_entries(settings.data.audit)
-    assert (found.who, found.action, found.outcome) == (SHELL.name, "mucat sessions delete", "begun")
-    assert json.loads(found.about)["session"] == "5"
+    assert cli.main(["sessions", "list", *options]) == 0
+    assert cli.main(["backup", str(settings.data.path / "copy.db"), *options]) == 0
+    copied, copying, failed, begun = read_entries(settings.data.audit)
+    assert {one.who for one in (copied, copying, failed, begun)} == {SHELL.name}
+    assert (begun.action, begun.outcome) == (failed.action, "begun") == ("mucat sessions delete", "begun")
+    assert json.loads(begun.about)["session"] == "5"
+    assert (failed.outcome, "There is no session 5" in failed.about) == ("failed", True)
+    assert [(one.action, one.outcome) for one in (copying, copied)] == [
+        ("mucat backup", "begun"),
+        ("mucat backup", "done"),
+    ]
 
 
 def test_the_list_is_filtered_and_exported_without_formulas(settings: Settings) -> None:

@@ -21,10 +21,16 @@ class Seen:
         self.told: list[dict[str, Any]] = []
         self.driven: list[dict[str, Any]] = []
         self.noted: list[str] = []
-        self.arbiter = ControlArbiter(self.clock, self.told.append, self._drive, self.noted.append)
+        self.lost: list[tuple[str, str]] = []
+        self.arbiter = ControlArbiter(
+            self.clock, self.told.append, self._drive, self.noted.append, self._lose
+        )
 
     def _drive(self, data: bytes) -> None:
         self.driven.append(json.loads(data))
+
+    def _lose(self, identity: Identity, why: str) -> None:
+        self.lost.append((identity.name, why))
 
     def drive(self, **changes: Any) -> DriveCommand:
         """A valid driving command, but for the changes."""

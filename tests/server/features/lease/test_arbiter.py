@@ -111,7 +111,7 @@ def test_a_restarted_server_continues_above_the_last_epoch() -> None:
             seen.arbiter.take(anna)
             seen.arbiter.release(anna)
     seen.clock.forward(1.5)
-    fresh = ControlArbiter(seen.clock, seen.told.append, print, print)
+    fresh = ControlArbiter(seen.clock, seen.told.append, print, print, print)
     assert fresh.lease.epoch > seen.arbiter.lease.epoch
 
 
@@ -198,11 +198,31 @@ def test_signing_out_or_becoming_a_viewer_ends_clients_and_control() -> None:
     assert arbiter.lease.holder is None
 
 
+def test_control_that_nobody_gave_back_is_audited_with_the_reason() -> None:
+    seen = Seen()
+    arbiter = seen.arbiter
+    with arbiter.page(ANNA) as anna, arbiter.page(BEN):
+        arbiter.take(anna)
+        arbiter.release(anna)
+        assert seen.lost == []
+        arbiter.take(anna)
+    assert seen.lost == [("Anna", "its page was closed, or its connection is gone")]
+    with arbiter.page(ANNA) as anna:
+        arbiter.take(anna)
+        arbiter.dismiss(BEN.device)
+        arbiter.dismiss(ANNA.device)
+    assert seen.lost[1:] == [("Anna", "it was signed out, or has another role")]
+    arbiter.take(arbiter.open_program(SCRIPT))
+    seen.clock.forward(10.1)
+    arbiter.expire()
+    assert seen.lost[2:] == [("script", "it asked nothing for 10 s")]
+
+
 def test_the_leaving_of_a_page_is_recorded_in_time() -> None:
     noted: list[str] = []
 
     async def run() -> None:
-        arbiter = ControlArbiter(SteadyClock(), print, print, noted.append)
+        arbiter = ControlArbiter(SteadyClock(), print, print, noted.append, print)
         with arbiter.page(ANNA) as anna:
             arbiter.take(anna)
         assert arbiter._departure is not None
@@ -225,7 +245,7 @@ def test_the_silence_of_a_program_is_recorded_in_time() -> None:
 
     async def run() -> None:
         clock = SteadyClock()
-        arbiter = ControlArbiter(clock, told.append, print, noted.append)
+        arbiter = ControlArbiter(clock, told.append, print, noted.append, print)
         task = asyncio.create_task(arbiter.run())
         script = arbiter.open_program(SCRIPT)
         arbiter.take(script)
