@@ -36,6 +36,7 @@ def test_every_operation_needs_a_sign_in(settings: Settings) -> None:
                 "signed_in": False,
                 "robot": "tested",
                 "identity": None,
+                "ended": "",
                 "pairing_open": False,
                 "operators_only": [],
             }
