@@ -141,7 +141,10 @@ class FarPage:
         ) as self._socket:
             self.connections += 1
             while True:
-                self._take(await asyncio.wait_for(self._socket.recv(), SILENT_SECONDS))
+                # Not wait_for: in Python 3.11 it ignores a cancellation that comes with the message.
+                async with asyncio.timeout(SILENT_SECONDS):
+                    message = await self._socket.recv()
+                self._take(message)
 
     def _take(self, message: str | bytes) -> None:
         now = time.monotonic()

@@ -8,6 +8,7 @@ the disk, a few at a time as well (the database's auto_vacuum is incremental).
 import asyncio
 import logging
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from math import inf
 from time import time
 from typing import NamedTuple
@@ -74,10 +75,10 @@ class RetentionWorker:
                 await self.apply(time())
             except StoreError as problem:
                 log.warning("the rules of retention cannot be applied: %s", problem)
-            try:
-                await asyncio.wait_for(self._requested.wait(), PERIOD)
-            except TimeoutError:
-                continue
+            # Not wait_for: in Python 3.11 it ignores a cancellation that comes with the request.
+            with suppress(TimeoutError):
+                async with asyncio.timeout(PERIOD):
+                    await self._requested.wait()
 
     async def apply(self, now: float) -> None:
         """Apply the rules once, at this time (UTC, s since 1970). Raises StoreError."""

@@ -254,3 +254,35 @@ def test_free_space_is_read_from_the_real_disk(store: Store, settings: Settings)
     assert shown.database == settings.data.database.stat().st_size + sum(
         path.stat().st_size for path in settings.data.path.glob("mucat.db-*")
     )
+
+
+async def take_turns(count: int) -> None:
+    """Waits for so many turns of the event loop."""
+    for _ in range(count):
+        await asyncio.sleep(0)
+
+
+@pytest.mark.parametrize("turns", range(6))
+def test_the_worker_ends_also_where_it_is_asked_to_run_at_that_moment(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch, turns: int
+) -> None:
+    async def scenario() -> None:
+        clock = SimulatedClock()
+        worker = RetentionWorker(store, settings, Notices(clock, print), clock)
+        applied = asyncio.Event()
+
+        async def apply(_: float) -> None:
+            applied.set()
+
+        monkeypatch.setattr(worker, "apply", apply)
+        running = asyncio.create_task(worker.run())
+        await applied.wait()
+        await take_turns(10)
+        worker.wake()
+        await take_turns(turns)
+        running.cancel()
+        done, _ = await asyncio.wait([running], timeout=1.0)
+        running.cancel()
+        assert done
+
+    asyncio.run(scenario())
