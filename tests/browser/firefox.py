@@ -101,15 +101,15 @@ class Firefox:
         assert shown["type"] == "null", f"not seen: {expression}; the page shows: {shown['value']}"
 
     def move_to_button(self, name: str) -> None:
-        """Put the pointer on a button, and follow it where the page moves it meanwhile."""
-        locator = {"type": "accessibility", "value": {"role": "button", "name": name}}
-        found = self.call("browsingContext.locateNodes", context=self._page, locator=locator)["nodes"]
-        assert len(found) == 1, (name, found)
-        origin = {"type": "element", "element": {"sharedId": found[0]["sharedId"]}}
+        """Put the pointer on a button, follow it where the page moves it; wait until it may be pressed."""
+        # Not by its role: that starts Firefox's accessibility engine, which takes the computer for seconds.
+        named = f"[...document.querySelectorAll('button')].filter((one) => one.innerText.trim() === '{name}')"
+        self.wait_for(f"{named}.length === 1")
+        origin = {"type": "element", "element": {"sharedId": self.evaluate(f"{named}[0]")["sharedId"]}}
         for _ in range(MOVES):
             self._act("pointer", {"type": "pointerMove", "x": 0, "y": 0, "origin": origin})
-            under = self.evaluate("document.querySelector('button:hover')?.textContent.trim()")
-            if under.get("value") == name:
+            self.wait_for(f"{named}[0]?.ariaDisabled !== 'true'")
+            if self.evaluate(f"{named}[0]?.matches(':hover')").get("value") is True:
                 return
         raise AssertionError(f"{name} does not stay where it is")
 
