@@ -11,7 +11,6 @@ from server.platform.folder_lock import claim
 from server.platform.settings import Settings, SetupError
 
 if TYPE_CHECKING:
-    from server.container import Container
     from server.http.sign_in.access import Access
     from server.platform.certificate import Certificate
 
@@ -48,12 +47,11 @@ def _serve(settings: Settings) -> int:
     with open_socket(settings.host, settings.port) as listener:
         certificate = prepare_certificate(settings) if settings.tls else None
 
-        def started(container: "Container") -> None:
-            container.comparison.prepare()
+        def greet(access: "Access") -> None:
             if not app.state.ended:
-                _greet(settings, container.access, certificate)
+                _greet(settings, access, certificate)
 
-        app = create_app(settings, plan(settings), started)
+        app = create_app(settings, plan(settings), greet)
         server = make_server(app, certificate, settings.trusted_proxies)
         server.config.load()
 

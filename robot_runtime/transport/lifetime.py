@@ -36,25 +36,13 @@ def end_with_parent(parent: int | None = None, number: signal.Signals = signal.S
 
 
 def limit_process(memory: int, seconds: int) -> None:
-    """Limits this process: bytes of its own memory as `limit_memory`, and s on a processor.
+    """Limits this process: bytes of its own memory, at most half of the computer's, and s on a processor.
 
-    Beyond the second the kernel ends the process.
+    Beyond the first an allocation raises MemoryError; beyond the second the kernel ends the process.
     """
-    limit_memory(memory)
+    physical = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    resource.setrlimit(resource.RLIMIT_DATA, (min(memory, physical // 2),) * 2)
     resource.setrlimit(resource.RLIMIT_CPU, (seconds,) * 2)
-
-
-def limit_memory(memory: int) -> None:
-    """Limits this process: bytes of its own memory, at most half of the computer's.
-
-    Beyond that an allocation raises MemoryError.
-    """
-    resource.setrlimit(resource.RLIMIT_DATA, (min(memory, memory_bytes() // 2),) * 2)
-
-
-def memory_bytes() -> int:
-    """The computer's memory."""
-    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def add_server_options(parser: argparse.ArgumentParser) -> None:
