@@ -218,7 +218,11 @@ def test_after_a_kill_the_next_server_undoes_the_set_up(stack: Stack) -> None:
     session = state(stack)["active"]["session"]
     stack.kill()
     stack.wait_ready()
-    wait(lambda: settings_of(stack) == before, "everything to be as before")
+    wait(
+        lambda: settings_of(stack) == before,
+        "everything to be as before:",
+        lambda: f"{before}, but there is {settings_of(stack)}",
+    )
     wait(lambda: not (stack.data / "scenario-before.json").exists(), "nothing to be left to put back")
     marks = query(stack, f"SELECT text FROM marker WHERE session_id = {session} ORDER BY id")
     assert marks[-1] == ("The server was killed; the scenario ends here.",)
