@@ -243,6 +243,8 @@ def test_stop_and_an_open_page_are_served_while_300_silent_connections_hang(sett
 
     async def scenario(served: Served) -> None:
         stop = f"{served.api.base_url}robot/stop"
+        # Read first: this process is the server's, and may soon open no more files.
+        headers = shell_headers(settings.data)
         # Started first: a process inherits the limit.
         attacker = subprocess.Popen(
             [sys.executable, "-c", attack, str(served.settings.port)],
@@ -260,7 +262,7 @@ def test_stop_and_an_open_page_are_served_while_300_silent_connections_hang(sett
                 attacker.stdin.write(b"go\n")
                 attacker.stdin.flush()
                 assert await asyncio.to_thread(attacker.stdout.readline) == b"there\n"
-                async with httpx.AsyncClient(headers=shell_headers(settings.data), timeout=10) as fresh:
+                async with httpx.AsyncClient(headers=headers, timeout=10) as fresh:
                     assert (await fresh.post(stop)).status_code == 204
                 await page.send('{"op": "ping", "id": 1}')
                 assert (await next_text(page, "pong"))["id"] == 1
