@@ -64,7 +64,9 @@ class Access:
         self.devices.load()
         write_whole(self._token_file, f"{self._token}\n".encode(), 0o600)
 
-    def identify(self, connection: HTTPConnection, *, cookie_suffices: bool = False) -> Identity | None:
+    def identify(
+        self, connection: HTTPConnection, cookie_suffices: Callable[[], bool] = lambda: False
+    ) -> Identity | None:
         """The caller's identity. An authorization header counts alone: a cookie beside it is ignored.
 
         A browser shows its page's secret beside the cookie, unless `cookie_suffices`.
@@ -76,7 +78,7 @@ class Access:
                 return None
             return self._find_bearer(header[len(BEARER) :].strip())
         device = self.devices.find(connection.cookies.get(self.cookie, ""), "browser")
-        whole = device is None or cookie_suffices or device.has_page_secret(_page_secret(connection))
+        whole = device is None or device.has_page_secret(_page_secret(connection)) or cookie_suffices()
         if not whole:
             raise SignInEndedError(NO_PAGE_SECRET)
         return self._see(device)

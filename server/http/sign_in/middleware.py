@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 
-from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -38,7 +37,7 @@ class SignInMiddleware:
         connection = HTTPConnection(scope)
         nobody = NOBODY
         try:
-            identity = find_service(connection, Access).identify(connection, cookie_suffices=_is_link(scope))
+            identity = find_service(connection, Access).identify(connection, lambda: _is_link(connection))
         except SignInEndedError as problem:
             identity, nobody = None, str(problem)
             scope[SIGN_IN_ENDED] = nobody
@@ -87,8 +86,9 @@ def _foreign(connection: HTTPConnection, identity: Identity) -> str | None:
     return None
 
 
-def _is_link(scope: Scope) -> bool:
+def _is_link(connection: HTTPConnection) -> bool:
     """True for a link or a picture on the page, which a browser fetches with the cookie alone."""
-    if scope.get("method") != "GET" or PAGE_HEADER in Headers(scope=scope):
+    scope = connection.scope
+    if scope.get("method") != "GET" or PAGE_HEADER in connection.headers:
         return False
     return is_linked(scope["app"].routes, scope["path"])

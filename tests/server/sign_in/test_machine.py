@@ -152,7 +152,7 @@ class SigningIn(RuleBasedStateMachine):
             assert known is not None
             assert secrets is None
             role: Role = "operator" if "operator" in (known.identity.role, code.role) else "viewer"
-            known.identity = Identity(known.identity.device, "tablet", role, "browser")
+            known.identity = replace(known.identity, role=role)
             assert identity == known.identity
             return known
         assert (identity.role, identity.kind) == (code.role, "browser")

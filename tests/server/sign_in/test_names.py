@@ -10,7 +10,6 @@ from server.platform.settings import Settings
 from tests.server.serving import Served, play
 from tests.server.sign_in.browsers import browser, new_code
 
-IVA, EVA = "\u0418\u0432\u0430", "\u0415\u0432\u0430"
 CYRILLIC_OP = "\u043e\u0440"
 ALIKE = [
     ("op", "op"),
