@@ -34,7 +34,6 @@ from server.http.operations import EVERYWHERE
 from server.http.page import Page, make_router
 from server.http.proxies import RequestsOfAddress
 from server.http.security import SecurityMiddleware
-from server.http.sign_in.access import Access
 from server.http.sign_in.middleware import SignInMiddleware
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.settings import Settings
@@ -49,7 +48,7 @@ ROUTES = (
 def create_app(
     settings: Settings,
     commands: Sequence[ProcessCommand] = (),
-    started: Callable[[Access], None] | None = None,
+    started: Callable[[Container], None] | None = None,
 ) -> FastAPI:
     """The server for one robot; `commands` are the processes that it keeps running (`supervisor.plan`).
 
@@ -66,7 +65,7 @@ def create_app(
         app.state.services = container.services
         async with container.run():
             if started is not None:
-                started(container.access)
+                started(container)
             yield
 
     app = FastAPI(

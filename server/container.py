@@ -17,7 +17,7 @@ from server.features.comm_tests.board_reservation import BoardReservation, Robot
 from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import import_samples
-from server.features.comparison.comparisons import Comparisons
+from server.features.comparison.worker import ComparisonWorker
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
 from server.features.layouts.library import Layouts
@@ -113,7 +113,7 @@ class Container:
         self.arming = AutoRecorder(self.recorder, self.clock, self.notices, self._armed_row)
         self.jobs = Jobs(self.settings.data, self.store, self.clock)
         self.imports = Imports(self.settings.data, self.store)
-        self.comparisons = Comparisons(self.store)
+        self.comparison = ComparisonWorker(self.settings.data.database)
 
     def _add_comm_tests(self) -> None:
         board = RobotBoard(self.settings, self.notices.notify)
@@ -210,6 +210,7 @@ class Container:
             await self.tuning.close()
             await self.scenarios.close()
             await self.comm_tests.close()
+            await self.comparison.close()
             await self.processes.stop()
             await self.arming.close()
             await self._end_session()

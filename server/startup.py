@@ -11,6 +11,7 @@ from server.platform.folder_lock import claim
 from server.platform.settings import Settings, SetupError
 
 if TYPE_CHECKING:
+    from server.container import Container
     from server.http.sign_in.access import Access
     from server.platform.certificate import Certificate
 
@@ -47,11 +48,12 @@ def _serve(settings: Settings) -> int:
     with open_socket(settings.host, settings.port) as listener:
         certificate = prepare_certificate(settings) if settings.tls else None
 
-        def greet(access: "Access") -> None:
+        def started(container: "Container") -> None:
+            container.comparison.prepare()
             if not app.state.ended:
-                _greet(settings, access, certificate)
+                _greet(settings, container.access, certificate)
 
-        app = create_app(settings, plan(settings), greet)
+        app = create_app(settings, plan(settings), started)
         server = make_server(app, certificate, settings.trusted_proxies)
         server.config.load()
 

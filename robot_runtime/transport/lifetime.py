@@ -36,13 +36,30 @@ def end_with_parent(parent: int | None = None, number: signal.Signals = signal.S
 
 
 def limit_process(memory: int, seconds: int) -> None:
-    """Limits this process: bytes of its own memory, at most half of the computer's, and s on a processor.
+    """Limits this process: bytes of its own memory as `limit_memory`, and s on a processor.
 
-    Beyond the first an allocation raises MemoryError; beyond the second the kernel ends the process.
+    Beyond the second the kernel ends the process.
     """
-    physical = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    resource.setrlimit(resource.RLIMIT_DATA, (min(memory, physical // 2),) * 2)
+    limit_memory(memory)
     resource.setrlimit(resource.RLIMIT_CPU, (seconds,) * 2)
+
+
+def limit_memory(memory: int) -> None:
+    """Limits this process: bytes of its own memory, at most half of the computer's.
+
+    Beyond that an allocation raises MemoryError.
+    """
+    resource.setrlimit(resource.RLIMIT_DATA, (min(memory, memory_bytes() // 2),) * 2)
+
+
+def give_way(niceness: int) -> None:
+    """Gives this process at least this niceness, also where it inherits one already."""
+    os.setpriority(os.PRIO_PROCESS, 0, max(niceness, os.getpriority(os.PRIO_PROCESS, 0)))
+
+
+def memory_bytes() -> int:
+    """The computer's memory."""
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def add_server_options(parser: argparse.ArgumentParser) -> None:

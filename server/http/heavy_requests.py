@@ -2,15 +2,17 @@
 
 import asyncio
 from collections import Counter, defaultdict
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Coroutine
 from contextlib import asynccontextmanager
-from typing import Annotated
+from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Request
 
 from server.http.dependencies import Provided
 from server.http.sign_in.identity import Caller
 from server.platform.errors import ApiError
+
+T = TypeVar("T")
 
 WAITING_MAX = 3
 """A page may ask again before its last request was answered, as when somebody types."""
@@ -63,6 +65,28 @@ async def _take_reading_turn(
         if await request.is_disconnected():
             raise TooManyHeavyError("The request was given up before its turn came.")
         yield
+
+
+async def while_connected(request: Request, work: Coroutine[Any, Any, T]) -> T:
+    """The result of this work, which is cancelled when the client of a request without a body has gone.
+
+    Raises TooManyHeavyError then.
+    """
+    working, gone = asyncio.create_task(work), asyncio.create_task(_wait_until_gone(request))
+    try:
+        await asyncio.wait((working, gone), return_when=asyncio.FIRST_COMPLETED)
+        if not working.done():
+            raise TooManyHeavyError("The request was given up before its answer was ready.")
+        return working.result()
+    finally:
+        for task in (working, gone):
+            task.cancel()
+        await asyncio.gather(working, gone, return_exceptions=True)
+
+
+async def _wait_until_gone(request: Request) -> None:
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
 
 
 Turn = Annotated[None, Depends(_take_turn)]

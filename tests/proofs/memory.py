@@ -27,6 +27,8 @@ from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.transport import replay_cache
 from server.features.comparison import comparer, samples
+from server.features.comparison.comparer import Comparer
+from server.features.comparison.schemas import ComparisonQuery
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.stream import hub
 from tests.exports import export_session
@@ -147,6 +149,8 @@ class _Day:
         self._dive = Dive(self._start, minutes * MINUTE, 1)
         self._sent = 0
         self._before: int | None = None
+        # As the process has that compares for a server; here it is weighed too.
+        self._comparer = Comparer(served.container.store)
 
     async def live_through(self, minute: int) -> None:
         """A minute: the robot sends, and people record, watch, command, look back and tidy up."""
@@ -198,7 +202,9 @@ class _Day:
         for path in (f"/sessions/{session}/timeline", "/sessions", "/storage", "/health"):
             await self._get(path)
         both = [one for one in (session, self._before) if one is not None]
-        await self._post("/compare", {"sessions": both, "signals": ["depth.depth"]})
+        compared = ComparisonQuery(sessions=both, signals=["depth.depth"])
+        await self._post("/compare", compared.model_dump(mode="json"))
+        await asyncio.to_thread(self._comparer.compare, compared)
 
     def _export(self, session: int) -> None:
         settings = self._served.settings

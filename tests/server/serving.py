@@ -88,7 +88,7 @@ async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> 
                 url = f"{settings.scheme}://127.0.0.1:{settings.port}/api"
                 shell = ShellToken(settings.data)
                 verify = trust_only(settings.data) if settings.tls else False
-                async with httpx.AsyncClient(base_url=url, timeout=10, auth=shell, verify=verify) as api:
+                async with httpx.AsyncClient(base_url=url, timeout=SECONDS, auth=shell, verify=verify) as api:
                     served = Served(settings, app.state.container, api, runtime)
                     await served.heard(STREAM)
                     await served.heard(SIMULATOR_STREAM)

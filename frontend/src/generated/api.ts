@@ -6060,7 +6060,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something that the server needs does not work */
+            /** @description The sessions cannot be compared */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6120,7 +6120,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something that the server needs does not work */
+            /** @description The sessions cannot be compared */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6188,7 +6188,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The report cannot be made */
+            /** @description The sessions cannot be compared */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -9309,7 +9309,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something that the server needs does not work */
+            /** @description The sessions cannot be compared */
             503: {
                 headers: {
                     [name: string]: unknown;

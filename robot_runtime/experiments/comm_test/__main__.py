@@ -6,7 +6,6 @@ On its standard output are JSON objects, one to a line; docs/reference/comm-test
 """
 
 import argparse
-import os
 import signal
 import sys
 from pathlib import Path
@@ -24,7 +23,7 @@ from robot_runtime.experiments.comm_test.lab import (
 )
 from robot_runtime.experiments.comm_test.line import Cancellation
 from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
-from robot_runtime.transport.lifetime import end_with_parent
+from robot_runtime.transport.lifetime import end_with_parent, give_way
 
 REFUSED = 2
 """The exit status for a document that cannot be run."""
@@ -54,7 +53,7 @@ def main() -> int:
         return REFUSED
     lab: CommTestLab = EmulatedLab(arguments.build, stop)
     if arguments.where == "emulated":
-        os.nice(NICENESS)
+        give_way(NICENESS)
     else:
         try:
             pull = find_reset(arguments.reset)

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from robot_runtime.durable_files import put_in_place, sync, write_whole
+from robot_runtime.transport.lifetime import give_way
 from server.platform.command_line import FILE, with_settings
 from server.platform.database_copies import (
     CHECKSUM,
@@ -37,7 +38,7 @@ def backup(settings: Settings, file: Path | None) -> None:
 
     FILE is a new one in the folder `backups` of the data folder by default.
     """
-    os.nice(NICENESS)
+    give_way(NICENESS)
     record_command(settings.data)
     echo(back_up(settings.data, file))
 

@@ -9,13 +9,12 @@ prints lines of JSON: {"progress": 0..1}, and last {"bytes", "sha256"}, {"examin
 """
 
 import json
-import os
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.transport.lifetime import end_with_parent, limit_process
+from robot_runtime.transport.lifetime import end_with_parent, give_way, limit_process
 from server.features.exports.archive_reader import examine
 from server.features.exports.files import write_part
 from server.features.exports.formats import check
@@ -36,7 +35,7 @@ SECONDS_MAX = 3600
 def main() -> int:
     """Run the action. Exit status: 1 after a problem, which was reported."""
     end_with_parent()
-    os.nice(NICENESS)
+    give_way(NICENESS)
     limit_process(BYTES_MAX, SECONDS_MAX)
     try:
         match sys.argv[1:]:

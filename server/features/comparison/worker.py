@@ -1,0 +1,155 @@
+"""Runs `python -m server.features.comparison`: comparing costs seconds, which the server has for others."""
+
+import asyncio
+import json
+import sys
+from asyncio.subprocess import PIPE, Process
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+from typing import Literal
+
+from robot_runtime.transport.lifetime import memory_bytes
+from server.platform.errors import UnavailableError
+from server.processes.process import describe_status
+
+Task = Literal["compare", "lines", "signals", "report"]
+
+SECONDS_MAX = 120.0
+REPORT_SECONDS_MAX = 600.0
+"""Time that an answer may take: three hours of recording take 2 s on a desktop computer."""
+IDLE_SECONDS = 300.0
+"""Time after which the process ends that nobody asks anything: its caches take memory."""
+
+
+ROOMY_BYTES = 2_000_000_000
+"""Memory of a computer on which the process is there before anybody asks, and stays: it starts for 0.7 s, and
+takes 80 MB."""
+
+
+class ComparisonError(UnavailableError):
+    """The sessions cannot be compared"""
+
+    def __init__(self, problem: str, status: int = UnavailableError.status) -> None:
+        super().__init__(problem)
+        self.status = status
+
+
+class ComparisonWorker:
+    """The process of a server that compares: started when it is needed, and kept for its caches.
+
+    It answers one task after the other. A report has a process of its own, so that nobody waits for it.
+    """
+
+    def __init__(self, database: Path) -> None:
+        self._database = database
+        self._turn = asyncio.Lock()
+        self._process: Process | None = None
+        self._idle: asyncio.TimerHandle | None = None
+        self._preparing: asyncio.Task[None] | None = None
+        self._leaving: asyncio.Task[None] | None = None
+
+    def prepare(self) -> None:
+        """Start the process now where the computer has memory to spare; it stays then."""
+        if memory_bytes() >= ROOMY_BYTES:
+            self._preparing = asyncio.create_task(self._prepare())
+
+    async def _prepare(self) -> None:
+        async with self._turn:
+            if self._process is None:
+                # Whoever asks for a comparison is told why there is none.
+                with suppress(ComparisonError):
+                    self._process = await _start(self._database)
+
+    async def ask(self, task: Task, query: str) -> bytes:
+        """The answer to a query, both as JSON. Raises ComparisonError."""
+        async with self._turn:
+            if self._idle is not None:
+                self._idle.cancel()
+            if self._process is None or self._process.returncode is not None:
+                self._process = await _start(self._database)
+            async with _ending_if_unfinished(self._process):
+                answer = await _ask(self._process, task, query, SECONDS_MAX)
+            if self._preparing is None:
+                self._idle = asyncio.get_running_loop().call_later(IDLE_SECONDS, self._end_idle)
+        return _read(*answer)
+
+    async def report(self, query: str) -> bytes:
+        """A report as HTML, by its query as JSON. Raises ComparisonError."""
+        process = await _start(self._database)
+        async with _ending_if_unfinished(process):
+            answer = await _ask(process, "report", query, REPORT_SECONDS_MAX)
+        await _end(process)
+        return _read(*answer)
+
+    async def close(self) -> None:
+        """End the process."""
+        if self._preparing is not None:
+            self._preparing.cancel()
+        begun = [task for task in (self._preparing, self._leaving) if task is not None]
+        await asyncio.gather(*begun, return_exceptions=True)
+        if self._idle is not None:
+            self._idle.cancel()
+        if self._process is not None:
+            await _end(self._process)
+
+    def _end_idle(self) -> None:
+        if self._process is not None and not self._turn.locked():
+            self._leaving = asyncio.create_task(_end(self._process))
+            self._process = None
+
+
+async def _start(database: Path) -> Process:
+    command = [sys.executable, "-m", "server.features.comparison", str(database)]
+    try:
+        return await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
+    except OSError as problem:
+        raise ComparisonError(
+            f"The sessions cannot be compared: no process can be started for it ({problem.strerror})."
+        ) from problem
+
+
+async def _ask(process: Process, task: Task, query: str, seconds: float) -> tuple[int, bytes]:
+    """Status and body of the answer. Raises ComparisonError where the process ends, or takes too long."""
+    assert process.stdin is not None
+    assert process.stdout is not None
+    try:
+        async with asyncio.timeout(seconds):
+            process.stdin.write(json.dumps({"task": task, "query": query}).encode() + b"\n")
+            await process.stdin.drain()
+            head = json.loads(await process.stdout.readuntil())
+            return head["status"], await process.stdout.readexactly(head["bytes"])
+    except TimeoutError:
+        raise ComparisonError(
+            f"Comparing these sessions was given up after {seconds:.0f} s. Choose fewer sessions or signals."
+        ) from None
+    except (asyncio.IncompleteReadError, ConnectionError):
+        status = await process.wait()
+        raise ComparisonError(
+            f"The sessions cannot be compared: the process that does it {describe_status(status)}. The "
+            "computer may lack memory. Try again, with fewer sessions or signals."
+        ) from None
+
+
+def _read(status: int, body: bytes) -> bytes:
+    if status != 200:
+        raise ComparisonError(body.decode(), status)
+    return body
+
+
+@asynccontextmanager
+async def _ending_if_unfinished(process: Process) -> AsyncIterator[None]:
+    """Ends a process whose answer was not read to its end: the next one would read its rest."""
+    try:
+        yield
+    except BaseException:
+        await _end(process)
+        raise
+
+
+async def _end(process: Process) -> None:
+    if process.returncode is None:
+        process.kill()
+    assert process.stdin is not None
+    process.stdin.close()
+    await process.wait()

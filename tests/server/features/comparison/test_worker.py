@@ -1,0 +1,237 @@
+"""Comparisons and reports over HTTP: made in processes of their own, whose end costs nobody else anything."""
+
+import asyncio
+import os
+import signal
+import sys
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import httpx
+import pytest
+
+from server.features.comparison import report, worker
+from server.features.comparison.comparer import Comparer
+from server.features.comparison.schemas import ComparisonQuery, LinesQuery
+from server.features.comparison.worker import ComparisonError, ComparisonWorker
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+from server.platform.store import Reader, Store
+from tests.server.features.comparison.dives import dive, record
+from tests.server.serving import Served, play
+from tests.server.waiting import SECONDS, until
+
+Python = Callable[[str], SimpleNamespace]
+
+
+@pytest.fixture
+def session(settings: Settings) -> int:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        return record(store, settings, dive(), name="one")
+
+
+@pytest.fixture
+def python(tmp_path: Path) -> Python:
+    """An interpreter in whose process comparing is these lines; signals are listed as ever."""
+
+    def write(work: str) -> SimpleNamespace:
+        script = tmp_path / "python"
+        script.write_text(
+            f"""#!{sys.executable}
+import sys, time
+from server.features.comparison import __main__ as process
+
+def work(comparer, query):
+    {work}
+    return b"{{}}"
+
+process.TASKS = {{**process.TASKS, "compare": work, "report": work}}
+process.NICENESS = 0
+del sys.argv[:2]
+sys.exit(process.main())
+"""
+        )
+        script.chmod(0o700)
+        return SimpleNamespace(executable=str(script))
+
+    return write
+
+
+async def ask(served: Served, session: int, **others: Any) -> httpx.Response:
+    return await served.api.get("/compare/report", params={"sessions": f"{session}", "by": "armed", **others})
+
+
+async def compare(served: Served, session: int, path: str = "/compare") -> httpx.Response:
+    query = {"sessions": [session], "signals": ["depth.depth"]}
+    return await served.api.post(path, json=query)
+
+
+def process_of(served: Served) -> int:
+    """The process that compares for this server."""
+    process = served.container.comparison._process
+    assert process is not None
+    return process.pid
+
+
+def test_nothing_is_compared_in_the_server_s_process(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reader = Reader(settings.data.database)
+    query = ComparisonQuery(sessions=[session], signals=["depth.depth"])
+    expected = Comparer(reader).compare(query).model_dump(mode="json")
+    lines = Comparer(reader).lines(LinesQuery(sessions=[session], signals=["depth.depth"]))
+    here: list[object] = []
+    monkeypatch.setattr(Comparer, "__init__", lambda *_: here.append("compares"))
+    monkeypatch.setattr(report, "write_report", lambda *_: here.append("writes"))
+
+    async def scenario(served: Served) -> None:
+        answer = await ask(served, session, view_start=0, view_end=2)
+        assert answer.status_code == 200
+        assert answer.headers["content-disposition"] == f'attachment; filename="comparison_{session}.html"'
+        assert "Time 0 is arming." in answer.text
+        assert "Plotly.newPlot" in answer.text
+        assert (await compare(served, session)).json() == expected
+        process = process_of(served)
+        assert (await compare(served, session, "/compare/lines")).json() == lines.model_dump(mode="json")
+        names = [one["name"] for one in (await served.api.get(f"/sessions/{session}/signals")).json()]
+        assert "depth.depth" in names
+        assert process_of(served) == process
+        for missing in (await ask(served, 99), await compare(served, 99)):
+            detail = missing.json()["detail"]
+            assert (missing.status_code, detail.startswith("There is no session 99")) == (404, True)
+        assert here == []
+
+    play(settings, scenario)
+
+
+FAILURES = [
+    ("bytearray(1_500_000_000)", SECONDS, 422, "Choose fewer sessions"),
+    ("time.sleep(3600)", 1.0, 503, "given up after 1 s. Choose fewer sessions"),
+    ("raise LookupError('odd')", SECONDS, 503, "LookupError: odd"),
+    ("sys.exit(7)", SECONDS, 503, "has ended with exit status 7"),
+]
+
+
+@pytest.mark.parametrize(("work", "seconds", "status", "why"), FAILURES)
+def test_what_fails_or_exceeds_its_limits_is_an_error_in_words_and_the_next_is_answered(
+    settings: Settings,
+    session: int,
+    python: Python,
+    monkeypatch: pytest.MonkeyPatch,
+    work: str,
+    seconds: float,
+    status: int,
+    why: str,
+) -> None:
+    async def scenario(served: Served) -> None:
+        monkeypatch.setattr(worker, "sys", python(work))
+        monkeypatch.setattr(worker, "SECONDS_MAX", seconds)
+        monkeypatch.setattr(worker, "REPORT_SECONDS_MAX", seconds)
+        for answer in (await ask(served, session), await compare(served, session)):
+            assert (answer.status_code, why in answer.json()["detail"]) == (status, True), answer.text[:500]
+        monkeypatch.setattr(worker, "SECONDS_MAX", SECONDS)
+        assert (await served.api.get(f"/sessions/{session}/signals")).status_code == 200
+
+    play(settings, scenario)
+
+
+def test_a_killed_process_is_started_again(settings: Settings, session: int) -> None:
+    async def scenario(served: Served) -> None:
+        before = await compare(served, session)
+        process = served.container.comparison._process
+        assert process is not None
+        os.kill(process.pid, signal.SIGKILL)
+        await process.wait()
+        assert (await compare(served, session)).json() == before.json()
+        assert process_of(served) != process.pid
+
+    play(settings, scenario)
+
+
+def test_a_process_that_is_killed_while_it_compares_is_told_in_words(
+    settings: Settings, session: int, python: Python, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario(served: Served) -> None:
+        monkeypatch.setattr(worker, "sys", python("time.sleep(3600)"))
+        asking = asyncio.create_task(compare(served, session))
+        await until(lambda: served.container.comparison._process is not None, "the process")
+        os.kill(process_of(served), signal.SIGKILL)
+        answer = await asking
+        assert (answer.status_code, "was ended by signal SIGKILL" in answer.json()["detail"]) == (503, True)
+        monkeypatch.undo()
+        assert (await compare(served, session)).status_code == 200
+
+    play(settings, scenario)
+
+
+def test_the_process_ends_when_nobody_asks_any_more(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "IDLE_SECONDS", 0.01)
+
+    async def scenario(served: Served) -> None:
+        comparison = served.container.comparison
+        assert (await compare(served, session)).status_code == 200
+        await until(lambda: comparison._process is None, "the process to be left")
+        assert (await compare(served, session)).status_code == 200
+
+    play(settings, scenario)
+
+
+def test_only_a_roomy_computer_has_the_process_before_anybody_asks_and_keeps_it(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "IDLE_SECONDS", 0.01)
+
+    async def scenario(*, roomy: bool) -> None:
+        monkeypatch.setattr(worker, "ROOMY_BYTES", 0 if roomy else 10**18)
+        comparison = ComparisonWorker(settings.data.database)
+        comparison.prepare()
+        assert (comparison._preparing is not None) is roomy
+        if roomy:
+            await until(lambda: comparison._process is not None, "the process")
+        process = comparison._process
+        await comparison.ask("signals", str(session))
+        assert (comparison._process is process) is roomy
+        assert (comparison._idle is None) is roomy
+        await comparison.close()
+
+    for roomy in (True, False):
+        asyncio.run(scenario(roomy=roomy))
+
+
+def test_a_report_ends_with_the_connection_of_its_receiver(
+    settings: Settings, session: int, python: Python, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = tmp_path / "begun"
+    work = f"import os; open({str(begun)!r}, 'w').write(str(os.getpid())); time.sleep(3600)"
+
+    async def scenario(served: Served) -> None:
+        monkeypatch.setattr(worker, "sys", python(work))
+        asking = asyncio.create_task(ask(served, session))
+        await until(lambda: begun.exists() and begun.read_text(), "the report to be begun")
+        asking.cancel()
+        await until(lambda: not Path(f"/proc/{begun.read_text()}").exists(), "its process to end")
+
+    play(settings, scenario)
+
+
+def test_no_process_is_left_and_a_missing_interpreter_is_an_error_in_words(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario() -> None:
+        comparison = ComparisonWorker(settings.data.database)
+        await comparison.ask("signals", str(session))
+        process = comparison._process
+        assert process is not None
+        await comparison.close()
+        assert process.returncode == -signal.SIGKILL
+        monkeypatch.setattr(worker, "sys", SimpleNamespace(executable="/nowhere/python"))
+        with pytest.raises(ComparisonError, match="no process can be started"):
+            await ComparisonWorker(settings.data.database).ask("signals", str(session))
+
+    asyncio.run(scenario())
