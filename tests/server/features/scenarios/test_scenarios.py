@@ -213,6 +213,8 @@ def test_the_end_of_the_simulator_fails_the_run(stack: Stack) -> None:
 
 def test_after_a_kill_the_next_server_undoes_the_set_up(stack: Stack) -> None:
     wait(lambda: not (stack.data / "scenario-before.json").exists(), "the run before to be undone")
+    # The depth loop takes its set point up with the next control step.
+    wait(lambda: settings_of(stack)["loops"][0]["set_point"] != 0.3, "the set point from before that run")
     before = settings_of(stack)
     begin_long(stack)
     session = state(stack)["active"]["session"]
