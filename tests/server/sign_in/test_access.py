@@ -15,6 +15,7 @@ from robot_runtime.transport.blocks import read_blocks
 from server.http.sign_in.devices import Devices
 from server.http.sign_in.pairing_codes import PairingCodes
 from server.platform.settings import Settings
+from server.platform.store import Store
 from tests.server.blocks import state_block
 from tests.server.serving import Served, next_text, play, serve
 from tests.server.sign_in.browsers import browser, closing_of, new_code
@@ -44,13 +45,17 @@ def test_every_operation_needs_a_sign_in(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_everybody_may_ask_whether_the_robot_works_and_learns_nothing_more(settings: Settings) -> None:
+def test_everybody_may_ask_whether_the_robot_works_and_learns_nothing_more(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, None) as stranger:
             served.container.monitor.see(state_block(0))
             answer = await stranger.api.get("/alive")
             assert (answer.status_code, answer.content) == (204, b"")
-            served.container.store.failing = "the disk is full"
+            # No write that succeeds meanwhile ends it.
+            failing = property(lambda _: "the disk is full", lambda *_: None)
+            monkeypatch.setattr(Store, "failing", failing, raising=False)
             answer = await stranger.api.get("/alive")
             assert answer.status_code == 503
             assert "disk" not in answer.text
