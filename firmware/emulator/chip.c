@@ -91,6 +91,17 @@ static void add_phase_correct_pwm(avr_t *avr) {
   }
 }
 
+// Memory at power-on is neither zero nor what it was, and the same at each start of a board.
+static void scramble_memory(avr_t *avr) {
+  uint32_t word = 0x2545F491;
+  for (avr_io_addr_t at = avr->ioend + 1; at <= avr->ramend; at++) {
+    word ^= word << 13;
+    word ^= word >> 17;
+    word ^= word << 5;
+    avr->data[at] = (uint8_t)word;
+  }
+}
+
 bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owner) {
   avr_global_logger_set(log_nothing);
   avr_t *avr = avr_make_mcu_by_name("atmega328p");
@@ -101,6 +112,7 @@ bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owne
   avr->vcc = avr->avcc = avr->aref = 5000;
   avr->sleep = sleep_without_waiting;
   add_phase_correct_pwm(avr);
+  scramble_memory(avr);
   avr->custom.data = chip;
   chip->avr = avr;
   chip->core_reset = avr->reset;

@@ -29,6 +29,7 @@ void advance(uint32_t us) {
 void reset(ResetCause cause) {
   Board& board = the_board;
   board.cause = cause;
+  if (cause == ResetCause::kPowerOn) board.retained = {};
   board.ticks_taken = board.now_us / kTickUs;
   board.to_board.clear();
   board.waiting.clear();

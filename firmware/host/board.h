@@ -41,7 +41,7 @@ extern Board the_board;
 
 // Lets time pass: the line sends waiting bytes at its baud.
 void advance(uint32_t us);
-// Resets the board; the boot counter, retained memory and the surroundings stay.
+// Resets the board; the boot counter and the surroundings stay, and retained memory but at power-on.
 void reset(ResetCause cause);
 
 }  // namespace host

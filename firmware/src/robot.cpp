@@ -25,7 +25,7 @@ void Robot::start() {
   fins_.start();
   epoch_ = board::next_epoch();
   arming_.begin(epoch_);
-  sensors_.start(board::reset_cause() == ResetCause::kPowerOn);
+  sensors_.start();
   report_boot();
   link_.greet(epoch_);
 }

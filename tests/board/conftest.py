@@ -14,6 +14,7 @@ Make = Callable[..., Rig]
 @pytest.fixture(scope="session")
 def built() -> None:
     build(ROOT / "firmware/emulator")
+    build(ROOT / "firmware/bootloader")
     build(ROOT / "tests/board/sketches")
 
 

@@ -17,7 +17,7 @@ from robot_runtime.contract.packets import (
     decode,
 )
 from robot_runtime.link.session import LinkSession
-from tests.board.rig import ROOT, Rig
+from tests.board.rig import OPTIBOOT, ROOT, Rig
 from tests.line_end import LineEnd
 
 FIRMWARE = ROOT / "build/firmware"
@@ -104,8 +104,8 @@ def last(packets: list[Packet], cls: type[P]) -> P:
 
 
 def start(name: str, folder: Path, *options: str) -> Rig:
-    """Start a board with this program of the firmware."""
-    return Rig(FIRMWARE / f"{name}.elf", folder, *options, baud=BAUD)
+    """Start a board with this program of the firmware behind the boot loader of the robot's board."""
+    return Rig(FIRMWARE / f"{name}.elf", folder, "--bootloader", str(OPTIBOOT), *options, baud=BAUD)
 
 
 class Host:

@@ -15,6 +15,7 @@ from robot_runtime.simulation.boards.firmware import build_lock
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/board"
 SKETCHES = ROOT / "build/board_sketches"
+OPTIBOOT = ROOT / "build/firmware/optiboot.hex"
 CLOCK = 16_000_000
 """Hz."""
 PATIENCE = 10.0

@@ -22,9 +22,8 @@ from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.host import BAUD
 from tests.board.monitor import REFUSED_ADDRESS, Monitor
-from tests.board.rig import PROGRAM, ROOT, SKETCHES, Port, Rig, build, wait_for
+from tests.board.rig import OPTIBOOT, PROGRAM, ROOT, SKETCHES, Port, Rig, build, wait_for
 
-OPTIBOOT = ROOT / "build/firmware/optiboot.hex"
 ROBOT = ROOT / "build/firmware/robot.hex"
 BOOT_BAUD = 115200
 TIMEOUT = 131072 / 128e3
@@ -34,11 +33,6 @@ SYNCHRONISE, IN_STEP = b"0 ", b"\x14\x10"
 RESET_PIN = 1 << 1
 LIMIT = 60.0
 """s of real time for an upload."""
-
-
-@pytest.fixture(scope="session", autouse=True)
-def bootloader(built: None) -> None:  # noqa: ARG001 - the board comes first
-    build(ROOT / "firmware/bootloader")
 
 
 def upload(tty: Path, program: Path, *options: str, baud: int = BOOT_BAUD) -> subprocess.Popen[str]:

@@ -33,6 +33,8 @@ from tests.board.rig import ROOT, build
 DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
 FLAPPING = 1.3
 """Hz."""
+BOOT_SECONDS = 2.0
+"""The boot loader waits a second for an upload after the reset pin."""
 
 
 @pytest.fixture(scope="session")
@@ -285,6 +287,22 @@ def test_an_absent_bridge_shows_while_it_has_power(robot: Robot) -> None:
     robot.board.fault("bridge2", "none")
     robot.converse(0.4)
     assert robot.status().faults == 0
+
+
+def test_no_reset_under_water_moves_the_surface(programs: Programs) -> None:
+    robot = programs.start("robot_hang")
+    robot.listen(1.0)  # at the surface, whose pressure it takes as zero depth
+    robot.board.sense(STILL_WATER._replace(pressure=STILL_WATER.pressure + 1.5 * 9810))
+    for _ in range(3):
+        robot.board.reset()
+        robot.listen(BOOT_SECONDS)
+        robot.greet()
+        assert robot.status().reset_cause == ResetCause.EXTERNAL
+        assert last(robot.heard, Depth).depth == pytest.approx(1.5, abs=0.01)
+    robot.arm()
+    robot.converse(3.0, DOWN)
+    assert robot.status().reset_cause == ResetCause.WATCHDOG
+    assert last(robot.heard, Depth).depth == pytest.approx(1.5, abs=0.01)
 
 
 def test_the_boot_counter_survives(programs: Programs, tmp_path: Path) -> None:

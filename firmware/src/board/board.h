@@ -10,6 +10,7 @@ namespace board {
 
 // Safe outputs first, then clocks, buses, pins and the watchdog.
 void start();
+// Behind a boot loader that hides it, a brown-out or a hang with interrupts off appears as the reset pin.
 ResetCause reset_cause();
 
 uint32_t microseconds();

@@ -17,10 +17,10 @@ bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <=
 
 }  // namespace
 
-void Surface::start(bool power_on) {
+void Surface::start() {
   const board::RetainedMemory& retained = board::retained_memory();
   const int32_t pressure = static_cast<int32_t>(retained.value);
-  if (power_on || retained.complement != ~retained.value || !plausible(pressure)) return;
+  if (retained.complement != ~retained.value || !plausible(pressure)) return;
   pressure_ = pressure;
   readings_ = kReadings;
 }

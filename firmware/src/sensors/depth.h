@@ -4,12 +4,12 @@
 
 namespace mucat {
 
-// The pressure at the surface: the mean of the first readings after power-on. Every other reset keeps it, so
-// that a restart under water does not move the surface.
+// The pressure at the surface: the mean of the first readings after power-on. It outlives every reset that its
+// memory outlives, so that a restart under water does not move the surface.
 class Surface {
  public:
-  // Restores the pressure from before the reset, unless this is a power-on or it is implausible.
-  void start(bool power_on);
+  // Restores the pressure from before the reset, if memory holds a plausible one.
+  void start();
   bool known() const { return readings_ == kReadings; }
   // Adds a reading (Pa) at the surface, until the surface is known. The last one stores the mean in memory
   // that survives a reset.

@@ -13,7 +13,7 @@ namespace mucat {
 
 class Sensors {
  public:
-  void start(bool power_on) { surface_.start(power_on); }
+  void start() { surface_.start(); }
   // Call every tick; `ticks` have passed since the last call. The surface is measured only while
   // `at_surface`.
   void step(uint8_t ticks, bool at_surface);

@@ -21,6 +21,7 @@ volatile uint8_t ticks;
 
 ISR(TIMER1_COMPA_vect) {
   if (ticks != UINT8_MAX) ++ticks;
+  if (unfed_ticks != UINT8_MAX) ++unfed_ticks;
 }
 
 void start_clock() {

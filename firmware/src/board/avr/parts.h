@@ -1,5 +1,6 @@
 // The start functions that board::start() calls, in this order.
 #pragma once
+#include <stdint.h>
 
 namespace mucat {
 namespace board {
@@ -9,6 +10,9 @@ void start_clock();
 void start_line();
 void start_i2c();
 void start_spi();
+
+// Ticks since the watchdog was fed, from before the reset until start() has found its cause.
+extern volatile uint8_t unfed_ticks;
 
 }  // namespace board
 }  // namespace mucat
