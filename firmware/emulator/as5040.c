@@ -8,7 +8,8 @@
 
 void as5040_turn(struct as5040 *encoder, double ticks) {
   if (encoder->fault != FAULT_STUCK) {
-    encoder->position = (unsigned)(lround(ticks) & (AS5040_TICKS - 1));
+    long turned = lround(encoder->fault == FAULT_REVERSED ? -ticks : ticks);
+    encoder->position = (unsigned)(turned & (AS5040_TICKS - 1));
   }
 }
 

@@ -146,12 +146,13 @@ static void fault(struct service *service, struct client *client, char *argument
   if (kind) {
     *kind++ = 0;
   }
-  enum fault *device = devices_fault(&service->board.devices, arguments);
-  if (device && kind && devices_set_fault(device, kind)) {
+  if (kind && devices_set_fault(&service->board.devices, arguments, kind)) {
     send_ok(service, client);
     return;
   }
-  refuse(service, client, "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck");
+  refuse(service, client,
+         "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck; reversed for the "
+         "last eight");
 }
 
 static bool disturb(struct host_port *port, enum direction direction, const char *kind, const char *value) {

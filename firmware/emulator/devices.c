@@ -41,13 +41,15 @@ uint8_t devices_exchange_spi(struct devices *devices) {
   return received;
 }
 
-enum fault *devices_fault(struct devices *devices, const char *name) {
+static enum fault *fault_of(struct devices *devices, const char *name, bool *turns) {
+  *turns = false;
   if (!strcmp(name, "imu")) {
     return &devices->imu.fault;
   }
   if (!strcmp(name, "pressure")) {
     return &devices->pressure.fault;
   }
+  *turns = true;
   for (unsigned i = 0; i < FIN_COUNT; i++) {
     char encoder[] = "encoder0", bridge[] = "bridge0";
     encoder[sizeof encoder - 2] = bridge[sizeof bridge - 2] = (char)('0' + i);
@@ -61,10 +63,15 @@ enum fault *devices_fault(struct devices *devices, const char *name) {
   return NULL;
 }
 
-bool devices_set_fault(enum fault *fault, const char *kind) {
-  static const char *const kinds[] = {
-      [FAULT_NONE] = "none", [FAULT_ABSENT] = "absent", [FAULT_STUCK] = "stuck"};
-  for (unsigned i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+bool devices_set_fault(struct devices *devices, const char *name, const char *kind) {
+  static const char *const kinds[] = {[FAULT_NONE] = "none",
+                                      [FAULT_ABSENT] = "absent",
+                                      [FAULT_STUCK] = "stuck",
+                                      [FAULT_REVERSED] = "reversed"};
+  bool turns;
+  enum fault *fault = fault_of(devices, name, &turns);
+  unsigned count = turns ? FAULT_REVERSED + 1 : FAULT_REVERSED;
+  for (unsigned i = 0; fault && i < count; i++) {
     if (!strcmp(kind, kinds[i])) {
       *fault = (enum fault)i;
       return true;

@@ -41,10 +41,8 @@ void devices_set_motor_power(struct devices *devices, bool on);
 // The byte on the data line of the encoders; 0xff, by the pull-up, if none is selected.
 uint8_t devices_exchange_spi(struct devices *devices);
 
-// The device of this name, or NULL: imu, pressure, encoder0 to 3, bridge0 to 3.
-enum fault *devices_fault(struct devices *devices, const char *name);
-
-// Sets the fault `none`, `absent` or `stuck`; false for any other name.
-bool devices_set_fault(enum fault *fault, const char *kind);
+// Sets the fault of imu, pressure, encoder0 to 3 or bridge0 to 3: `none`, `absent`, `stuck`, or, of an
+// encoder that counts backwards or a motor whose leads are swapped, `reversed`. False for other words.
+bool devices_set_fault(struct devices *devices, const char *name, const char *kind);
 
 #endif

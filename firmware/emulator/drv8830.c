@@ -10,7 +10,7 @@ int drv8830_drive(const struct drv8830 *bridge) {
   if (!*bridge->powered || bridge->fault == FAULT_ABSENT) {
     return 0;
   }
-  int steps = bridge->control >> VSET_SHIFT;
+  int steps = (bridge->control >> VSET_SHIFT) * (bridge->fault == FAULT_REVERSED ? -1 : 1);
   switch (bridge->control & (CONTROL_IN1 | CONTROL_IN2)) {
     case CONTROL_IN1:
       return steps;

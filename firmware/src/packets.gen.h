@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0x02624005UL;
+constexpr uint32_t kDefinitionsHash = 0xb1d1d8efUL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
@@ -26,13 +26,21 @@ enum class StatusFlag : uint8_t {
   kHil = 64,
 };
 
-enum class SensorFault : uint8_t {
+enum class DeviceFault : uint16_t {
   kImu = 1,
   kPressure = 2,
-  kFinFrontRight = 4,
-  kFinBackRight = 8,
-  kFinBackLeft = 16,
-  kFinFrontLeft = 32,
+  kEncoderFrontRight = 4,
+  kEncoderBackRight = 8,
+  kEncoderBackLeft = 16,
+  kEncoderFrontLeft = 32,
+  kBridgeFrontRight = 64,
+  kBridgeBackRight = 128,
+  kBridgeBackLeft = 256,
+  kBridgeFrontLeft = 512,
+  kTrackingFrontRight = 1024,
+  kTrackingBackRight = 2048,
+  kTrackingBackLeft = 4096,
+  kTrackingFrontLeft = 8192,
 };
 
 enum class ResetCause : uint8_t {
@@ -133,7 +141,7 @@ struct __attribute__((packed)) Status {
   uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
   uint16_t epoch;  // epoch of the board's boot
   uint8_t flags;  // see StatusFlag
-  uint8_t faults;  // see SensorFault
+  uint16_t faults;  // see DeviceFault
   uint8_t reset_cause;  // see ResetCause
   uint16_t battery;  // battery voltage; x 0.001 V
   uint16_t loop_worst;  // longest pass of the main loop since the last status; µs
@@ -143,7 +151,7 @@ struct __attribute__((packed)) Status {
   uint16_t debug_lost;  // debug lines lost to a full buffer since the start
   uint16_t stack_free;  // memory that the stack has never used; B
 };
-static_assert(sizeof(Status) == 23, "Status has another size");
+static_assert(sizeof(Status) == 24, "Status has another size");
 
 // Host to board, 10 Hz: the host is alive.
 struct __attribute__((packed)) Heartbeat {
@@ -215,7 +223,7 @@ inline int8_t payload_bytes(uint8_t type) {
     case Beacon::kType: return 6;
     case Motor::kType: return 24;
     case Hello::kType: return 8;
-    case Status::kType: return 23;
+    case Status::kType: return 24;
     case Heartbeat::kType: return 4;
     case Acknowledge::kType: return 1;
     case TestMsg::kType: return 2;

@@ -28,7 +28,7 @@ class Robot {
   Motion motion(uint32_t now_ms);
   void send_telemetry();
   void send_status();
-  uint8_t faults() const { return sensors_.faults() | fins_.faults(); }
+  uint16_t faults() const { return sensors_.faults() | fins_.faults(); }
   uint8_t flags() const;
   void report_boot();
   void report_disarmed(Disarming reason);
@@ -48,7 +48,7 @@ class Robot {
   uint8_t tick_of_second_ = 0;
   uint8_t slot_ = 0;
   uint8_t slot_tick_ = 0;
-  uint8_t reported_faults_ = 0;
+  uint16_t reported_faults_ = 0;
   bool reported_devices_ = false;
   bool reported_armed_ = false;
 };

@@ -21,22 +21,39 @@ FlashText describe(ResetCause cause) {
   return FLASH_TEXT("unknown reset");
 }
 
-FlashText describe(SensorFault device) {
-  switch (device) {
-    case SensorFault::kImu:
-      return FLASH_TEXT("IMU");
-    case SensorFault::kPressure:
-      return FLASH_TEXT("pressure sensor");
-    case SensorFault::kFinFrontRight:
-      return FLASH_TEXT("fin front right");
-    case SensorFault::kFinBackRight:
-      return FLASH_TEXT("fin back right");
-    case SensorFault::kFinBackLeft:
-      return FLASH_TEXT("fin back left");
-    case SensorFault::kFinFrontLeft:
-      return FLASH_TEXT("fin front left");
+constexpr uint8_t kFirstFin = 2;  // the number of the first bit of DeviceFault that belongs to a fin
+constexpr uint8_t kFaultCount = kFirstFin + 3 * kFinCount;
+static_assert(static_cast<uint16_t>(DeviceFault::kTrackingFrontLeft) == 1 << (kFaultCount - 1),
+              "the bits moved");
+
+FlashText describe_fin(uint8_t fin) {
+  switch (fin) {
+    case 0:
+      return FLASH_TEXT("front right");
+    case 1:
+      return FLASH_TEXT("back right");
+    case 2:
+      return FLASH_TEXT("back left");
+    default:
+      return FLASH_TEXT("front left");
   }
-  return FLASH_TEXT("");
+}
+
+// Adds the device of a bit's number, and what it does now.
+void describe(uint8_t number, bool failed, DebugLine* line) {
+  const uint8_t kind = (number - kFirstFin) / kFinCount;
+  const bool tracking = number >= kFirstFin && kind == 2;
+  if (number == 0) *line << FLASH_TEXT("IMU");
+  if (number == 1) *line << FLASH_TEXT("pressure sensor");
+  if (number >= kFirstFin) {
+    *line << (tracking ? FLASH_TEXT("fin ") : kind ? FLASH_TEXT("H-bridge ") : FLASH_TEXT("encoder "));
+    *line << describe_fin((number - kFirstFin) % kFinCount);
+  }
+  if (tracking) {
+    *line << (failed ? FLASH_TEXT(": against its drive or not at all, stopped") : FLASH_TEXT(": follows"));
+  } else {
+    *line << (failed ? FLASH_TEXT(": no sensible answer") : FLASH_TEXT(": found"));
+  }
 }
 
 }  // namespace
@@ -53,14 +70,17 @@ void Robot::report_disarmed(Disarming reason) {
   link_.queue_line(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("disarmed: ") << mucat::describe(reason));
 }
 
-// Reports every device the first time, later those whose fault has changed.
+// Reports sensors and encoders the first time, later those whose fault has changed.
 void Robot::report_changed_faults() {
-  const uint8_t now = faults();
-  for (uint8_t device = 1; device <= static_cast<uint8_t>(SensorFault::kFinFrontLeft); device <<= 1) {
-    if (reported_devices_ && !((now ^ reported_faults_) & device)) continue;
-    DebugLine line(now & device ? DebugLevel::kWarning : DebugLevel::kInfo);
-    line << describe(static_cast<SensorFault>(device));
-    link_.queue_line(line << (now & device ? FLASH_TEXT(": no sensible answer") : FLASH_TEXT(": found")));
+  const uint16_t now = faults();
+  const uint16_t always = static_cast<uint16_t>(DeviceFault::kBridgeFrontRight) - 1;
+  const uint16_t changed = (now ^ reported_faults_) | (reported_devices_ ? 0 : always);
+  for (uint8_t number = 0; number < kFaultCount; ++number) {
+    const uint16_t bit = 1 << number;
+    if (!(changed & bit)) continue;
+    DebugLine line(now & bit ? DebugLevel::kWarning : DebugLevel::kInfo);
+    describe(number, now & bit, &line);
+    link_.queue_line(line);
   }
   reported_faults_ = now;
   reported_devices_ = true;

@@ -10,8 +10,18 @@ from typing import Protocol
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Mode
-from robot_runtime.contract.packets import Depth, Hello, Imu, Packet, SensorFault, Status, StatusFlag
+from robot_runtime.contract.packets import (
+    FIN_COUNT,
+    Depth,
+    DeviceFault,
+    Hello,
+    Imu,
+    Packet,
+    Status,
+    StatusFlag,
+)
 from robot_runtime.control.faults import BY_NAME, CHECK_PERIOD
+from robot_runtime.control.fin_check import FINS
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.link.timing import frames_airtime, stale_after
@@ -154,7 +164,7 @@ class FaultDetector:
         if "board_silent" in wrong and not self._line.connected:
             wrong["board_silent"] = f"({self._line.text})"
         if "fin_failing" in wrong:
-            wrong["fin_failing"] = f"({', '.join(self._fins())})"
+            wrong["fin_failing"] = f"({', '.join(_failing(self._faults))})"
         return wrong
 
     def refusals(self) -> list[str]:
@@ -171,7 +181,7 @@ class FaultDetector:
 
     def depth_refusals(self) -> list[str]:
         """Returns the reasons why the depth cannot be controlled now; empty if it can."""
-        if self._faults & SensorFault.PRESSURE:
+        if self._faults & DeviceFault.PRESSURE:
             return ["The pressure sensor does not answer."]
         if self._age(self._depth_time) > self._depth_stale:
             return ["There is no fresh depth. Check the pressure sensor."]
@@ -182,8 +192,8 @@ class FaultDetector:
         return []
 
     def _other_refusals(self, status: Status) -> list[str]:
-        reasons = [f"The {name} fin does not answer." for name in self._fins()]
-        if self._faults & SensorFault.IMU:
+        reasons = [f"The {part} does not answer." for part in _failing(self._faults & ~_TRACKING)]
+        if self._faults & DeviceFault.IMU:
             reasons.append("The IMU does not answer.")
         elif self._imu_is_stale():
             reasons.append("There is no fresh attitude. Check the IMU.")
@@ -211,7 +221,7 @@ class FaultDetector:
             "vision_stale": mode == "automatic" and self._age(self._vision) > _limit("vision_stale"),
             "not_rising": self._does_not_rise(),
             "battery_low": low,
-            "fin_failing": bool(self._fins()),
+            "fin_failing": bool(_failing(self._faults)),
             "simulator_silent": self._hil is not None and self._hil.lost,
         }
 
@@ -224,9 +234,6 @@ class FaultDetector:
 
     def _capsized(self) -> bool:
         return not self._imu_is_stale() and self._age(self._upright) > _limit("capsized")
-
-    def _fins(self) -> list[str]:
-        return [name for fault, name in _FINS.items() if self._faults & fault]
 
     def _does_not_rise(self) -> bool:
         if self._ascent is None or self._depth <= AT_SURFACE:
@@ -245,17 +252,27 @@ class FaultDetector:
         return self._clock.now() - time
 
 
+def _failing(faults: int) -> list[str]:
+    """Returns the fins' parts that have one of these faults."""
+    return [part for fault, part in _FIN_PARTS.items() if faults & fault]
+
+
 def _limit(name: str) -> float:
     """Returns the s after which a check must detect the fault, to stay within its limit."""
     return BY_NAME[name].limit - CHECK_PERIOD
 
 
-_FINS = {
-    SensorFault.FIN_FRONT_RIGHT: "front right",
-    SensorFault.FIN_BACK_RIGHT: "back right",
-    SensorFault.FIN_BACK_LEFT: "back left",
-    SensorFault.FIN_FRONT_LEFT: "front left",
+_FIN_PARTS = {
+    DeviceFault(first << fin): f"{part} of the {name} fin"
+    for first, part in (
+        (DeviceFault.ENCODER_FRONT_RIGHT, "encoder"),
+        (DeviceFault.BRIDGE_FRONT_RIGHT, "H-bridge"),
+        (DeviceFault.TRACKING_FRONT_RIGHT, "motor"),
+    )
+    for fin, name in enumerate(FINS)
 }
+_TRACKING = sum(DeviceFault.TRACKING_FRONT_RIGHT << fin for fin in range(FIN_COUNT))
+"""Only the next arming clears these, so they do not forbid it."""
 _WRONG_FIRMWARE = (
     "The board runs the firmware for hardware in the loop, which drives no motors. Upload the "
     "robot's own, or set robot.mode to hil."

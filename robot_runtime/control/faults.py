@@ -158,7 +158,7 @@ FAULTS = (
         limit=0.5,
         action="alarm only",
         what="A fin does not follow; it is not driven.",
-        cause="Its encoder or its H-bridge is loose, or the fin is blocked.",
+        cause="Its encoder or its H-bridge is loose, its motor's leads are swapped, or the fin is blocked.",
         remedy="STOP and inspect that fin, then run the fin check.",
     ),
     FaultRule(

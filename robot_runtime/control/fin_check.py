@@ -1,5 +1,8 @@
 """The fin check: moves each axis briefly and compares each fin's angle with its set point."""
 
+from math import pi, sqrt
+from statistics import fmean, linear_regression, pstdev
+
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import FIN_COUNT, Motor, Navigation
 from robot_runtime.control.pilot import AXES, NEUTRAL
@@ -8,10 +11,37 @@ FINS = ("front right", "back right", "back left", "front left")
 _STEP = 1.3
 """s for each axis: one and a half strokes."""
 _SHARE = 0.5
-_FOLLOWED = 0.5
-"""Share of the commanded swing that a sound fin reaches at least."""
+_ERROR_MAX = 0.8
+"""Largest error of a sound fin as a share of its set point's motion, both as standard deviations: a lag of
+47° of its stroke makes so much."""
 _SWING_MIN = 0.2
 """rad; with less commanded swing, the fin counts as not commanded."""
+
+
+class FinTracking:
+    """How a fin follows its set point, from samples of both (rad, -π to π)."""
+
+    def __init__(self) -> None:
+        self._unwrapped = 0.0
+        self._wanted: list[float] = []
+        self._errors: list[float] = []
+
+    def see(self, wanted: float, angle: float) -> None:
+        """Takes a sample."""
+        self._unwrapped += _wrap(wanted - self._unwrapped)
+        self._wanted.append(self._unwrapped)
+        self._errors.append(_wrap(angle - wanted))
+
+    def judge(self) -> str:
+        """Returns what is wrong with the fin; empty if it follows."""
+        if not self._wanted or max(self._wanted) - min(self._wanted) < _SWING_MIN:
+            return "was not moved"
+        error = sqrt(fmean(one * one for one in self._errors))
+        if error <= _ERROR_MAX * pstdev(self._wanted):
+            return ""
+        # The slope of the angle over the set point is 1 + this; it is -1 where the fin is mirrored.
+        slope = linear_regression(self._wanted, self._errors).slope
+        return "turned against its set point" if slope < -1.2 else f"was off its set point by {error:.2f} rad"
 
 
 class FinCheck:
@@ -24,8 +54,7 @@ class FinCheck:
     def begin(self) -> None:
         """Starts a new check."""
         self._began = self._clock.now()
-        self._least = [[float("inf")] * FIN_COUNT for _ in range(2)]
-        self._most = [[float("-inf")] * FIN_COUNT for _ in range(2)]
+        self._fins = [FinTracking() for _ in range(FIN_COUNT)]
 
     def step(self) -> Navigation | None:
         """Returns the present command; None when the check is over. It swims up, so as not to dive."""
@@ -38,15 +67,13 @@ class FinCheck:
 
     def see(self, motor: Motor) -> None:
         """Takes the fins' angles and their set points."""
-        for row, angles in enumerate((motor.wanted, motor.angle)):
-            self._least[row] = [min(pair) for pair in zip(self._least[row], angles, strict=True)]
-            self._most[row] = [max(pair) for pair in zip(self._most[row], angles, strict=True)]
+        for fin, wanted, angle in zip(self._fins, motor.wanted, motor.angle, strict=True):
+            fin.see(wanted, angle)
 
     def failed(self) -> dict[str, str]:
-        """Returns the fins that did not follow, by name, with how far they moved."""
-        found = {}
-        for fin, name in enumerate(FINS):
-            commanded, angle = (max(self._most[row][fin] - self._least[row][fin], 0.0) for row in range(2))
-            if commanded < _SWING_MIN or angle < _FOLLOWED * commanded:
-                found[name] = f"moved {angle:.2f} of {commanded:.2f} rad"
-        return found
+        """Returns the fins that did not follow, by name, with what they did."""
+        return {name: words for fin, name in zip(self._fins, FINS, strict=True) if (words := fin.judge())}
+
+
+def _wrap(angle: float) -> float:
+    return (angle + pi) % (2 * pi) - pi

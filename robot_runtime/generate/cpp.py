@@ -78,7 +78,8 @@ def header() -> str:
 
 def _enum(enum: type[IntEnum] | type[IntFlag]) -> str:
     members = "".join(f"  k{_camel(member.name or '')} = {member.value},\n" for member in enum)
-    return f"enum class {enum.__name__} : uint8_t {{\n{members}}};\n"
+    size = 8 if max(enum) < 256 else 16
+    return f"enum class {enum.__name__} : uint{size}_t {{\n{members}}};\n"
 
 
 def _struct(cls: type[Packet]) -> str:

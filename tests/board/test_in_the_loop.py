@@ -9,11 +9,11 @@ import pytest
 from robot_runtime.contract.packets import (
     Beacon,
     Depth,
+    DeviceFault,
     Imu,
     Motor,
     Navigation,
     Sense,
-    SensorFault,
     StatusFlag,
 )
 from tests.board.host import TICK, Robot, all_of, last, start
@@ -90,7 +90,7 @@ def test_a_silent_simulator_is_a_fault_of_its_sensors(robot: Robot) -> None:
     feel(robot, 0.0, 0.5)
     assert robot.status().faults == 0
     robot.converse(0.3)
-    assert robot.status().faults == SensorFault.IMU | SensorFault.PRESSURE
+    assert robot.status().faults == DeviceFault.IMU | DeviceFault.PRESSURE
     feel(robot, 0.0, 0.1)
     robot.send(word(0.0))
     assert robot.status().faults == 0

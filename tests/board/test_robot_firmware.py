@@ -13,13 +13,13 @@ from robot_runtime.contract.packets import (
     Beacon,
     Debug,
     Depth,
+    DeviceFault,
     Hello,
     Imu,
     Motor,
     Navigation,
     Parameter,
     ResetCause,
-    SensorFault,
     Start,
     Status,
     StatusFlag,
@@ -31,6 +31,11 @@ from tests.board.host import Robot, all_of, last, start
 from tests.board.rig import ROOT, build
 
 DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
+COMMANDS = [
+    Navigation(**dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), 0.0) | {axis: sign})
+    for axis in ("z", "x", "yaw", "roll", "y", "pitch")
+    for sign in (1.0, -1.0)
+]
 FLAPPING = 1.3
 """Hz."""
 BOOT_SECONDS = 2.0
@@ -265,25 +270,50 @@ def test_the_watchdog_brings_a_hung_board_back_disarmed(programs: Programs) -> N
 @pytest.mark.parametrize(
     ("device", "fault"),
     [
-        ("imu", SensorFault.IMU),
-        ("pressure", SensorFault.PRESSURE),
-        ("encoder0", SensorFault.FIN_FRONT_RIGHT),
-        ("encoder1", SensorFault.FIN_BACK_RIGHT),
-        ("encoder2", SensorFault.FIN_BACK_LEFT),
-        ("encoder3", SensorFault.FIN_FRONT_LEFT),
+        ("imu", DeviceFault.IMU),
+        ("pressure", DeviceFault.PRESSURE),
+        ("encoder0", DeviceFault.ENCODER_FRONT_RIGHT),
+        ("encoder1", DeviceFault.ENCODER_BACK_RIGHT),
+        ("encoder2", DeviceFault.ENCODER_BACK_LEFT),
+        ("encoder3", DeviceFault.ENCODER_FRONT_LEFT),
     ],
 )
-def test_an_absent_device_shows_and_heals(robot: Robot, device: str, fault: SensorFault) -> None:
+def test_an_absent_device_shows_and_heals(robot: Robot, device: str, fault: DeviceFault) -> None:
     robot.board.fault(device, "absent")
     assert last(robot.listen(0.4), Status).faults == fault
     robot.board.fault(device, "none")
     assert last(robot.listen(0.6), Status).faults == 0
 
 
+@pytest.mark.parametrize("device", [f"{part}{fin}" for part in ("bridge", "encoder") for fin in range(4)])
+def test_a_fin_with_swapped_leads_or_encoder_is_stopped_within_300_ms(robot: Robot, device: str) -> None:
+    fin = int(device[-1])
+    robot.board.fault(device, "reversed")
+    robot.arm()
+    motors = all_of(robot.converse(1.5, DOWN), Motor)
+    driven = [one.time for one in motors if one.drive[fin]]
+    assert driven[-1] - driven[0] < 300_000  # µs
+    assert robot.status().faults == DeviceFault.TRACKING_FRONT_RIGHT << fin
+    assert robot.board.fins().speeds[fin] == pytest.approx(0, abs=0.02)
+    assert all(max(abs(one.drive[other]) for one in motors[-20:]) > 10 for other in {0, 1, 2, 3} - {fin})
+
+
+@pytest.mark.parametrize("gain", [0.3, 1.2])
+@pytest.mark.parametrize("frequency", [0.3, 2.0])
+def test_no_sound_fin_is_stopped_by_any_command(robot: Robot, gain: float, frequency: float) -> None:
+    numbers = {one.name: number for number, one in enumerate(CHIP_PARAMETERS)}
+    robot.arm()
+    for name, value in (("fins.gain", gain), ("fins.frequency", frequency)):
+        robot.send(Parameter(number=numbers[name], value=value))
+    for command in (*COMMANDS, *COMMANDS[::5]):
+        robot.converse(0.7, command)
+        assert robot.status().faults == 0
+
+
 def test_an_absent_bridge_shows_while_it_has_power(robot: Robot) -> None:
     robot.arm()
     robot.board.fault("bridge2", "absent")
-    assert robot.status().faults == SensorFault.FIN_BACK_LEFT
+    assert robot.status().faults == DeviceFault.BRIDGE_BACK_LEFT
     robot.board.fault("bridge2", "none")
     robot.converse(0.4)
     assert robot.status().faults == 0

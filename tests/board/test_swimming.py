@@ -10,7 +10,7 @@ from statistics import fmean
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.packets import Beacon, Depth, Imu, Motor, Navigation, SensorFault
+from robot_runtime.contract.packets import Beacon, Depth, DeviceFault, Imu, Motor, Navigation
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER, BoardError, EmulatorClient
 from robot_runtime.simulation.water.faults import SimulatedFault
 from robot_runtime.simulation.water.parameters import SimulationParameters
@@ -116,8 +116,8 @@ def test_a_requested_bus_error_reaches_the_firmware(
             robot.listen(1.0)
             assert robot.status().faults == 0
             for sensor, fault in (
-                ("accelerometer", SensorFault.IMU),
-                ("encoder2", SensorFault.FIN_BACK_LEFT),
+                ("accelerometer", DeviceFault.IMU),
+                ("encoder2", DeviceFault.ENCODER_BACK_LEFT),
             ):
                 messages.query("simulator/fault", {"sensor": sensor, "kind": "bus"})
                 assert robot.status().faults == fault

@@ -127,22 +127,28 @@ def encoder_word(
 
 @dataclass
 class Motor:
-    """A gear motor that turns its shaft by its H-bridge's drive, at once, and friction-free."""
+    """A gear motor that turns its shaft by its H-bridge's drive, at once, and friction-free.
+
+    `leads` is -1 where they are swapped, 0 where the motor is jammed; `counting` is -1 where its encoder
+    counts backwards.
+    """
 
     zero: int
     rotation_sign: int
     shaft: float = 0.0
+    leads: int = 1
+    counting: int = 1
 
     SPEED = 0.3
     """rad/s a step of drive."""
 
     def turn(self, drive: int, seconds: float) -> None:
-        self.shaft += self.SPEED * drive * seconds
+        self.shaft += self.leads * self.SPEED * drive * seconds
 
     @property
     def counts(self) -> int:
         """Reading of its encoder."""
-        return round(self.zero - self.shaft * 1024 / math.tau)
+        return round(self.zero - self.counting * self.shaft * 1024 / math.tau)
 
     @property
     def fin(self) -> float:

@@ -10,12 +10,12 @@ from robot_runtime.contract.packets import (
     Debug,
     DebugLevel,
     Depth,
+    DeviceFault,
     Heartbeat,
     Imu,
     Motor,
     Packet,
     ResetCause,
-    SensorFault,
     Start,
     Status,
     StatusFlag,
@@ -67,7 +67,7 @@ def test_devices_are_announced_to_the_first_host(robot: Robot) -> None:
     assert robot.texts == []
     robot.greet()
     robot.run(300)
-    fins = [f"fin {fin}" for fin in ("front right", "back right", "back left", "front left")]
+    fins = [f"encoder {fin}" for fin in ("front right", "back right", "back left", "front left")]
     assert robot.texts == [
         "boot 1, power on",
         *(f"{name}: found" for name in ["IMU", "pressure sensor", *fins]),
@@ -125,10 +125,10 @@ def test_surface_is_taken_anew_at_power_on(robot: Robot) -> None:
 
 @pytest.mark.parametrize(
     ("address", "fault", "name"),
-    [(IMU, SensorFault.IMU, "IMU"), (PRESSURE, SensorFault.PRESSURE, "pressure sensor")],
+    [(IMU, DeviceFault.IMU, "IMU"), (PRESSURE, DeviceFault.PRESSURE, "pressure sensor")],
 )
 def test_lost_sensor_is_reported_and_found_again(
-    robot: Robot, address: int, fault: SensorFault, name: str
+    robot: Robot, address: int, fault: DeviceFault, name: str
 ) -> None:
     robot.greet()
     robot.run(500)
@@ -150,7 +150,7 @@ def test_other_chip_at_the_imus_address_is_refused(robot: Robot) -> None:
     robot.imu.identity = 0x70
     robot.reset(ResetCause.EXTERNAL)
     robot.run(300)
-    assert robot.status().faults == SensorFault.IMU
+    assert robot.status().faults == DeviceFault.IMU
 
 
 def test_pressure_sensor_with_a_damaged_prom_is_refused(robot: Robot) -> None:
@@ -158,7 +158,7 @@ def test_pressure_sensor_with_a_damaged_prom_is_refused(robot: Robot) -> None:
     robot.reset(ResetCause.EXTERNAL)
     robot.received.clear()
     robot.run(1000)
-    assert robot.status().faults == SensorFault.PRESSURE
+    assert robot.status().faults == DeviceFault.PRESSURE
     assert counts(robot.received)["Depth"] == 0
 
 
@@ -167,12 +167,41 @@ def test_fin_whose_encoder_is_silent_is_not_driven(robot: Robot) -> None:
     robot.swim(500, navigation(x=1))
     robot.blind.add(3)
     robot.swim(500, navigation(x=1))
-    assert robot.status().faults == SensorFault.FIN_FRONT_LEFT
+    assert robot.status().faults == DeviceFault.ENCODER_FRONT_LEFT
     robot.received.clear()
     robot.swim(1000, navigation(x=1))
     drives = [packet.drive for packet in robot.received if isinstance(packet, Motor)]
     assert {drive[3] for drive in drives} == {0}
     assert max(abs(drive[0]) for drive in drives) > 10
+
+
+MISTAKES = [
+    pytest.param({"leads": -1}, 0.3, id="leads swapped"),
+    pytest.param({"counting": -1}, 0.3, id="encoder backwards"),
+    pytest.param({"leads": 0}, 0.5, id="jammed"),
+]
+
+
+@pytest.mark.parametrize(("mistake", "limit"), MISTAKES)
+@pytest.mark.parametrize("fin", range(4))
+def test_a_fin_that_does_not_follow_its_drive_is_stopped(
+    robot: Robot, fin: int, mistake: dict[str, int], limit: float
+) -> None:
+    for name, value in mistake.items():
+        setattr(robot.motors[fin], name, value)
+    robot.arm()
+    robot.swim(1000, navigation(z=1))
+    motors = [packet for packet in robot.received if isinstance(packet, Motor)]
+    driven = [one.time for one in motors if one.drive[fin]]
+    assert (driven[-1] - driven[0]) / 1e6 < limit
+    assert robot.status().faults == DeviceFault.TRACKING_FRONT_RIGHT << fin
+    assert all(max(abs(one.drive[other]) for one in motors[-20:]) > 10 for other in {0, 1, 2, 3} - {fin})
+    robot.say(Stop())
+    robot.motors[fin].leads = robot.motors[fin].counting = 1
+    robot.run(100)
+    robot.arm()
+    robot.swim(1000, navigation(z=1))
+    assert robot.status().faults == 0
 
 
 def test_silent_bridge_is_reported_while_powered(robot: Robot) -> None:
@@ -181,7 +210,7 @@ def test_silent_bridge_is_reported_while_powered(robot: Robot) -> None:
     assert robot.status().faults == 0
     robot.arm()
     robot.beat(300)
-    assert robot.status().faults == SensorFault.FIN_BACK_RIGHT
+    assert robot.status().faults == DeviceFault.BRIDGE_BACK_RIGHT
     robot.say(Stop())
     robot.run(100)
     assert robot.status().faults == 0
@@ -192,9 +221,9 @@ def test_a_fault_of_a_bridge_is_reported_and_cleared(robot: Robot) -> None:
     robot.bridges[2].fault = 0b11
     robot.beat(500)
     assert robot.bridges[2].clears == 1
-    assert "fin back left: no sensible answer" in robot.texts
+    assert "H-bridge back left: no sensible answer" in robot.texts
     robot.beat(500)
-    assert robot.texts[-1] == "fin back left: found"
+    assert robot.texts[-1] == "H-bridge back left: found"
     assert robot.status().faults == 0
 
 

@@ -60,8 +60,7 @@ bool board_sense(Board* board, const double* numbers) {
 }
 
 bool board_fault(Board* board, const char* device, const char* kind) {
-  fault* const found = devices_fault(&board->parts, device);
-  return found && devices_set_fault(found, kind);
+  return devices_set_fault(&board->parts, device, kind);
 }
 
 void board_seed(Board* board, uint64_t seed) {

@@ -46,12 +46,21 @@ void Fins::step(Motion motion, const Parameters& parameters) {
   const int16_t gain = gain_from_thousandths(parameters[kFinsGain]);
   for (uint8_t i = 0; i < kFinCount; ++i) {
     set_points_[i] = laws_[i].step(demand(i), phase_ + kFinPhase[i], turn);
-    const FinCalibration& fin = kFinCalibration[i];
-    const bool encoder_failed = encoder_faults_ & 1 << i;
-    const int16_t set_point = counts_from_angle(fin, set_points_[i]);
-    drive(i, encoder_failed ? 0 : loops_[i].step(fin, set_point, counts_[i], gain));
+    drive(i, find_drive(i, gain));
   }
   read_bridge_faults();
+}
+
+int8_t Fins::find_drive(uint8_t fin, int16_t gain) {
+  const FinCalibration& calibration = kFinCalibration[fin];
+  DriveWatch& watch = watches_[fin];
+  const uint8_t bit = 1 << fin;
+  // While its encoder or its H-bridge fails, what a fin does says nothing about its motor.
+  if (!((encoder_faults_ | silent_bridges_) & bit)) {
+    watch.step(drives_[fin], calibration.encoder_sign * wrap_counts(counts_[fin] - counts_before_[fin]));
+  }
+  if (encoder_faults_ & bit || watch.failed()) return 0;
+  return loops_[fin].step(calibration, counts_from_angle(calibration, set_points_[fin]), counts_[fin], gain);
 }
 
 FinDemand Fins::demand(uint8_t fin) const {
@@ -64,6 +73,7 @@ FinDemand Fins::demand(uint8_t fin) const {
 void Fins::read_encoders() {
   measured_us_ = board::microseconds();
   for (uint8_t i = 0; i < kFinCount; ++i) {
+    counts_before_[i] = counts_[i];
     const bool valid = read_encoder_counts(i, &counts_[i]);
     assign(&encoder_faults_, i, !valid);
     if (valid) angles_[i] = angle_from_counts(kFinCalibration[i], counts_[i]);
@@ -81,6 +91,7 @@ void Fins::power(bool on) {
     // At rest where they point, so that power alone moves nothing.
     laws_[i].start(angles_[i]);
     loops_[i].restart();
+    if (on) watches_[i].restart();
     demands_[i] = {angles_[i], 0};
     set_points_[i] = angles_[i];
   }
@@ -108,9 +119,14 @@ bool Fins::neutral() const {
   return motion_ != Motion::kSwim;
 }
 
-uint8_t Fins::faults() const {
-  static_assert(static_cast<uint8_t>(SensorFault::kFinFrontRight) == 1 << 2, "the fins' bits moved");
-  return (encoder_faults_ | silent_bridges_ | reported_faults_) << 2;
+uint16_t Fins::faults() const {
+  uint16_t bits =
+      encoder_faults_ * static_cast<uint16_t>(DeviceFault::kEncoderFrontRight) |
+      (silent_bridges_ | reported_faults_) * static_cast<uint16_t>(DeviceFault::kBridgeFrontRight);
+  for (uint8_t i = 0; i < kFinCount; ++i) {
+    if (watches_[i].failed()) bits |= static_cast<uint16_t>(DeviceFault::kTrackingFrontRight) << i;
+  }
+  return bits;
 }
 
 void Fins::report(Motor* packet) const {

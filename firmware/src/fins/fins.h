@@ -2,6 +2,7 @@
 #pragma once
 #include <stdint.h>
 
+#include "fins/drive_watch.h"
 #include "fins/fin_law.h"
 #include "fins/position_loop.h"
 #include "packets.gen.h"
@@ -31,8 +32,9 @@ class Fins {
   // No fin flaps, and none is commanded to flap.
   bool neutral() const;
   bool powered() const { return motion_ != Motion::kOff; }
-  // Bits of SensorFault: encoders with invalid readings, H-bridges that failed while powered.
-  uint8_t faults() const;
+  // Bits of DeviceFault: encoders with invalid readings, H-bridges that failed while powered, and fins that
+  // did not follow their drives since the power came.
+  uint16_t faults() const;
   // Writes set points, measured angles and drives into the packet; its time is that of the measurement.
   void report(Motor* packet) const;
 
@@ -40,6 +42,7 @@ class Fins {
   void read_encoders();
   void power(bool on);
   void read_bridge_faults();
+  int8_t find_drive(uint8_t fin, int16_t gain);
   void drive(uint8_t fin, int8_t drive);
   FinDemand demand(uint8_t fin) const;
 
@@ -48,9 +51,11 @@ class Fins {
   FinDemand demands_[kFinCount] = {};
   FinLaw laws_[kFinCount];
   PositionLoop loops_[kFinCount];
+  DriveWatch watches_[kFinCount];
   float set_points_[kFinCount] = {};
   float angles_[kFinCount] = {};
   int16_t counts_[kFinCount] = {};
+  int16_t counts_before_[kFinCount] = {};
   uint32_t measured_us_ = 0;
   int8_t drives_[kFinCount] = {};
   uint8_t encoder_faults_ = 0;

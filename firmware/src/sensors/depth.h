@@ -4,8 +4,8 @@
 
 namespace mucat {
 
-// The pressure at the surface: the mean of the first readings after power-on. It outlives every reset that its
-// memory outlives, so that a restart under water does not move the surface.
+// The pressure at the surface: the mean of the first readings after power-on. It outlives every reset that
+// its memory outlives, so that a restart under water does not move the surface.
 class Surface {
  public:
   // Restores the pressure from before the reset, if memory holds a plausible one.

@@ -77,8 +77,8 @@ void Sensors::read(Beacon* packet) const {
 }
 
 uint8_t Sensors::faults() const {
-  return (imu_.faulty() ? static_cast<uint8_t>(SensorFault::kImu) : 0) |
-         (pressure_.faulty() ? static_cast<uint8_t>(SensorFault::kPressure) : 0);
+  return (imu_.faulty() ? static_cast<uint8_t>(DeviceFault::kImu) : 0) |
+         (pressure_.faulty() ? static_cast<uint8_t>(DeviceFault::kPressure) : 0);
 }
 
 }  // namespace mucat

@@ -24,7 +24,7 @@ class Sensors {
   void read(Beacon* packet) const;
 
   uint16_t battery_millivolts() const { return battery_millivolts_; }
-  // Bits of SensorFault.
+  // Bits of DeviceFault.
   uint8_t faults() const;
 
  private:

@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = '02624005';
+export const DEFINITIONS_HASH = 'b1d1d8ef';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -41,13 +41,21 @@ export const StatusFlag = {
   HIL: 64,
 } as const;
 
-export const SensorFault = {
+export const DeviceFault = {
   IMU: 1,
   PRESSURE: 2,
-  FIN_FRONT_RIGHT: 4,
-  FIN_BACK_RIGHT: 8,
-  FIN_BACK_LEFT: 16,
-  FIN_FRONT_LEFT: 32,
+  ENCODER_FRONT_RIGHT: 4,
+  ENCODER_BACK_RIGHT: 8,
+  ENCODER_BACK_LEFT: 16,
+  ENCODER_FRONT_LEFT: 32,
+  BRIDGE_FRONT_RIGHT: 64,
+  BRIDGE_BACK_RIGHT: 128,
+  BRIDGE_BACK_LEFT: 256,
+  BRIDGE_FRONT_LEFT: 512,
+  TRACKING_FRONT_RIGHT: 1024,
+  TRACKING_BACK_RIGHT: 2048,
+  TRACKING_BACK_LEFT: 4096,
+  TRACKING_FRONT_LEFT: 8192,
 } as const;
 
 export const ResetCause = {
@@ -109,21 +117,21 @@ export const ROW_TOPICS = {
   status: {
     id: 5,
     name: 'status',
-    rowBytes: 31,
+    rowBytes: 32,
     meaning: 'the board\'s state and health',
     fields: [
       { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
       { name: 'epoch', code: 'H', offset: 12, count: 1, scale: 1, unit: '', meaning: 'epoch of the board\'s boot' },
       { name: 'flags', code: 'B', offset: 14, count: 1, scale: 1, unit: '', meaning: 'see StatusFlag' },
-      { name: 'faults', code: 'B', offset: 15, count: 1, scale: 1, unit: '', meaning: 'see SensorFault' },
-      { name: 'reset_cause', code: 'B', offset: 16, count: 1, scale: 1, unit: '', meaning: 'see ResetCause' },
-      { name: 'battery', code: 'H', offset: 17, count: 1, scale: 0.001, unit: 'V', meaning: 'battery voltage' },
-      { name: 'loop_worst', code: 'H', offset: 19, count: 1, scale: 1, unit: 'µs', meaning: 'longest pass of the main loop since the last status' },
-      { name: 'missed_ticks', code: 'H', offset: 21, count: 1, scale: 1, unit: '', meaning: 'passes of the main loop missed since the start' },
-      { name: 'frames_invalid', code: 'H', offset: 23, count: 1, scale: 1, unit: '', meaning: 'invalid frames dropped since the start' },
-      { name: 'bytes_lost', code: 'H', offset: 25, count: 1, scale: 1, unit: '', meaning: 'received bytes lost to a full buffer since the start' },
-      { name: 'debug_lost', code: 'H', offset: 27, count: 1, scale: 1, unit: '', meaning: 'debug lines lost to a full buffer since the start' },
-      { name: 'stack_free', code: 'H', offset: 29, count: 1, scale: 1, unit: 'B', meaning: 'memory that the stack has never used' },
+      { name: 'faults', code: 'H', offset: 15, count: 1, scale: 1, unit: '', meaning: 'see DeviceFault' },
+      { name: 'reset_cause', code: 'B', offset: 17, count: 1, scale: 1, unit: '', meaning: 'see ResetCause' },
+      { name: 'battery', code: 'H', offset: 18, count: 1, scale: 0.001, unit: 'V', meaning: 'battery voltage' },
+      { name: 'loop_worst', code: 'H', offset: 20, count: 1, scale: 1, unit: 'µs', meaning: 'longest pass of the main loop since the last status' },
+      { name: 'missed_ticks', code: 'H', offset: 22, count: 1, scale: 1, unit: '', meaning: 'passes of the main loop missed since the start' },
+      { name: 'frames_invalid', code: 'H', offset: 24, count: 1, scale: 1, unit: '', meaning: 'invalid frames dropped since the start' },
+      { name: 'bytes_lost', code: 'H', offset: 26, count: 1, scale: 1, unit: '', meaning: 'received bytes lost to a full buffer since the start' },
+      { name: 'debug_lost', code: 'H', offset: 28, count: 1, scale: 1, unit: '', meaning: 'debug lines lost to a full buffer since the start' },
+      { name: 'stack_free', code: 'H', offset: 30, count: 1, scale: 1, unit: 'B', meaning: 'memory that the stack has never used' },
     ],
   },
   navigation: {
@@ -263,7 +271,7 @@ export interface StatusRow {
   epoch: number;
   /** see StatusFlag */
   flags: number;
-  /** see SensorFault */
+  /** see DeviceFault */
   faults: number;
   /** see ResetCause */
   reset_cause: number;

@@ -47,11 +47,11 @@ export const system = {
     sensors: {
       imu: 'inertial sensor',
       pressure: 'pressure sensor',
-      finFrontRight: 'front right fin',
-      finBackRight: 'back right fin',
-      finBackLeft: 'back left fin',
-      finFrontLeft: 'front left fin',
+      encoder: (fin: string) => `encoder ${fin}`,
+      bridge: (fin: string) => `H-bridge ${fin}`,
+      tracking: (fin: string) => `motor ${fin}`,
     },
+    fins: { frontRight: 'front right', backRight: 'back right', backLeft: 'back left', frontLeft: 'front left' },
     flags: {
       armed: 'armed',
       hostAlive: 'connected to the runtime',

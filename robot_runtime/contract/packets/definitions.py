@@ -47,15 +47,28 @@ class StatusFlag(IntFlag):
     HIL = 64
 
 
-class SensorFault(IntFlag):
-    """Devices whose last reading failed or was invalid; one bit each."""
+class DeviceFault(IntFlag):
+    """Faults of the board's devices; one bit each.
+
+    The last reading of an IMU, a pressure sensor or an encoder failed or was invalid; a powered H-bridge does
+    not answer or reports a fault; a fin turned against its drive or not at all, and is not driven until the
+    next arming.
+    """
 
     IMU = 1
     PRESSURE = 2
-    FIN_FRONT_RIGHT = 4
-    FIN_BACK_RIGHT = 8
-    FIN_BACK_LEFT = 16
-    FIN_FRONT_LEFT = 32
+    ENCODER_FRONT_RIGHT = 4
+    ENCODER_BACK_RIGHT = 8
+    ENCODER_BACK_LEFT = 16
+    ENCODER_FRONT_LEFT = 32
+    BRIDGE_FRONT_RIGHT = 64
+    BRIDGE_BACK_RIGHT = 128
+    BRIDGE_BACK_LEFT = 256
+    BRIDGE_FRONT_LEFT = 512
+    TRACKING_FRONT_RIGHT = 1024
+    TRACKING_BACK_RIGHT = 2048
+    TRACKING_BACK_LEFT = 4096
+    TRACKING_FRONT_LEFT = 8192
 
 
 class ResetCause(IntEnum):
@@ -68,7 +81,7 @@ class ResetCause(IntEnum):
     WATCHDOG = 4
 
 
-ENUMERATIONS: tuple[type[IntEnum] | type[IntFlag], ...] = (DebugLevel, StatusFlag, SensorFault, ResetCause)
+ENUMERATIONS: tuple[type[IntEnum] | type[IntFlag], ...] = (DebugLevel, StatusFlag, DeviceFault, ResetCause)
 
 
 class TelemetryRate(NamedTuple):
@@ -206,7 +219,7 @@ class Status(Packet):
     time: Micros
     epoch: Annotated[int, Wire("H", meaning="epoch of the board's boot")]
     flags: Annotated[int, Wire("B", meaning="see StatusFlag")]
-    faults: Annotated[int, Wire("B", meaning="see SensorFault")]
+    faults: Annotated[int, Wire("H", meaning="see DeviceFault")]
     reset_cause: Annotated[int, Wire("B", meaning="see ResetCause")]
     battery: Annotated[float, Wire("H", scale=0.001, unit="V", meaning="battery voltage")]
     loop_worst: Annotated[

@@ -6,7 +6,7 @@ from math import radians
 import pytest
 
 from robot_runtime.contract.documents import Mode
-from robot_runtime.contract.packets import SensorFault, StatusFlag
+from robot_runtime.contract.packets import DeviceFault, StatusFlag
 from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
 from robot_runtime.control.fault_detector import REPEATS
 from robot_runtime.control.faults import BY_NAME, FAULTS
@@ -126,10 +126,13 @@ def test_a_camera_is_watched_from_its_first_picture_on(rig: Rig) -> None:
 
 def test_faults_that_the_board_reports_are_faults(rig: Rig) -> None:
     rig.board.flags = StatusFlag.BATTERY_LOW
-    rig.board.faults = SensorFault.FIN_FRONT_LEFT | SensorFault.FIN_BACK_RIGHT
+    rig.board.faults = DeviceFault.ENCODER_FRONT_LEFT | DeviceFault.ENCODER_BACK_RIGHT
     rig.report()
     found = rig.supervisor.detector.active_faults("automatic", [])
-    assert found == {"battery_low": "", "fin_failing": "(back right, front left)"}
+    assert found == {
+        "battery_low": "",
+        "fin_failing": "(encoder of the back right fin, encoder of the front left fin)",
+    }
     assert rig.supervisor.detector.active_faults("disarmed", []) == {"battery_low": ""}
     assert set(rig.supervisor.detector.active_faults("disarmed", ["fin_failing"])) == {
         "battery_low",

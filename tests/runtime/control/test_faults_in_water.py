@@ -112,7 +112,7 @@ def test_a_fin_that_fails_is_an_alarm_and_forbids_the_next_arming(flight: Flight
     flight.run(2.0)
     flight.break_("encoder2", "bus")
     flight.until(lambda: flight.alarm("fin_failing"), BY_NAME["fin_failing"].limit + LATE)
-    assert "(back left)" in flight.supervisor.alarms[0].what
+    assert "(encoder of the back left fin)" in flight.supervisor.alarms[0].what
     flight.run(2.0)
     assert flight.supervisor.mode == "automatic"
     flight.break_("encoder2", "none")

@@ -3,7 +3,7 @@
 import pytest
 
 from robot_runtime.contract.packets import (
-    SensorFault,
+    DeviceFault,
     Start,
     StatusFlag,
     Stop,
@@ -29,7 +29,7 @@ def test_arms_when_everything_is_well(rig: Rig) -> None:
 
 
 def test_every_reason_against_arming_is_reported(rig: Rig) -> None:
-    rig.board.faults = SensorFault.IMU | SensorFault.FIN_BACK_LEFT
+    rig.board.faults = DeviceFault.IMU | DeviceFault.ENCODER_BACK_LEFT
     rig.board.flags = StatusFlag.BATTERY_LOW
     rig.report()
     rig.clock.forward(0.41)
@@ -72,7 +72,7 @@ def test_a_stop_while_the_board_arms_prevails(rig: Rig) -> None:
     assert rig.board.sent == [Start(epoch=7), Stop()]
 
 
-@pytest.mark.parametrize(("baud", "limit"), [(250_000, 0.4), (1200, 1.5)])
+@pytest.mark.parametrize(("baud", "limit"), [(250_000, 0.4), (1200, 1.53)])
 def test_the_age_limit_of_the_depth_follows_the_baud(baud: int, limit: float) -> None:
     rig = Rig(baud)
     rig.ready()

@@ -19,8 +19,8 @@ __attribute__((section(".noinit"))) uint16_t mark_complement;
 
 // At power-on the memory is random, and holds the mark and its complement once in 2^32 times.
 constexpr uint16_t kMark = 0x5EA7;
-// Ticks without feeding after which nothing but the watchdog resets a chip whose main loop runs: 25 pass before it
-// bites, and its clock may be 10 % fast.
+// Ticks without feeding after which nothing but the watchdog resets a chip whose main loop runs: 25 pass
+// before it bites, and its clock may be 10 % fast.
 constexpr uint8_t kHungTicks = 20;
 constexpr uint8_t kUnusedStack = 0xC5;
 

@@ -1,4 +1,4 @@
-import { ResetCause, SensorFault, StatusFlag } from '../../generated/topics';
+import { DeviceFault, ResetCause, StatusFlag } from '../../generated/topics';
 import { system } from '../../texts/system';
 
 const texts = system.firmware;
@@ -12,12 +12,20 @@ const CAUSES: Record<number, string> = {
 };
 
 const FAULTS: readonly (readonly [number, string])[] = [
-  [SensorFault.IMU, texts.sensors.imu],
-  [SensorFault.PRESSURE, texts.sensors.pressure],
-  [SensorFault.FIN_FRONT_RIGHT, texts.sensors.finFrontRight],
-  [SensorFault.FIN_BACK_RIGHT, texts.sensors.finBackRight],
-  [SensorFault.FIN_BACK_LEFT, texts.sensors.finBackLeft],
-  [SensorFault.FIN_FRONT_LEFT, texts.sensors.finFrontLeft],
+  [DeviceFault.IMU, texts.sensors.imu],
+  [DeviceFault.PRESSURE, texts.sensors.pressure],
+  [DeviceFault.ENCODER_FRONT_RIGHT, texts.sensors.encoder(texts.fins.frontRight)],
+  [DeviceFault.ENCODER_BACK_RIGHT, texts.sensors.encoder(texts.fins.backRight)],
+  [DeviceFault.ENCODER_BACK_LEFT, texts.sensors.encoder(texts.fins.backLeft)],
+  [DeviceFault.ENCODER_FRONT_LEFT, texts.sensors.encoder(texts.fins.frontLeft)],
+  [DeviceFault.BRIDGE_FRONT_RIGHT, texts.sensors.bridge(texts.fins.frontRight)],
+  [DeviceFault.BRIDGE_BACK_RIGHT, texts.sensors.bridge(texts.fins.backRight)],
+  [DeviceFault.BRIDGE_BACK_LEFT, texts.sensors.bridge(texts.fins.backLeft)],
+  [DeviceFault.BRIDGE_FRONT_LEFT, texts.sensors.bridge(texts.fins.frontLeft)],
+  [DeviceFault.TRACKING_FRONT_RIGHT, texts.sensors.tracking(texts.fins.frontRight)],
+  [DeviceFault.TRACKING_BACK_RIGHT, texts.sensors.tracking(texts.fins.backRight)],
+  [DeviceFault.TRACKING_BACK_LEFT, texts.sensors.tracking(texts.fins.backLeft)],
+  [DeviceFault.TRACKING_FRONT_LEFT, texts.sensors.tracking(texts.fins.frontLeft)],
 ];
 
 const FLAGS: readonly (readonly [number, string])[] = [

@@ -8,11 +8,11 @@ import pytest
 
 from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
+    DeviceFault,
     Hello,
     Imu,
     Motor,
     ResetCause,
-    SensorFault,
     Status,
 )
 from robot_runtime.experiments.scenario.boards import BUILD
@@ -71,13 +71,13 @@ def test_the_board_sends_hello_and_its_sensor_readings(rig: Rig) -> None:
 @pytest.mark.parametrize(
     ("device", "fault"),
     [
-        ("imu", SensorFault.IMU),
-        ("pressure", SensorFault.PRESSURE),
-        ("encoder2", SensorFault.FIN_BACK_LEFT),
+        ("imu", DeviceFault.IMU),
+        ("pressure", DeviceFault.PRESSURE),
+        ("encoder2", DeviceFault.ENCODER_BACK_LEFT),
     ],
 )
 def test_a_device_that_does_not_answer_is_reported_until_it_does(
-    rig: Rig, device: str, fault: SensorFault
+    rig: Rig, device: str, fault: DeviceFault
 ) -> None:
     rig.board.fault(device, "absent")
     assert Status.from_bytes(rig.run(1.0)[Status.type][-1]).faults == fault
@@ -135,7 +135,7 @@ def test_two_boards_are_independent(rig: Rig) -> None:
         for _ in range(20):
             mine, its = rig.run(0.1), other.run(0.1)
         assert Status.from_bytes(mine[Status.type][-1]).faults == 0
-        assert Status.from_bytes(its[Status.type][-1]).faults == SensorFault.IMU
+        assert Status.from_bytes(its[Status.type][-1]).faults == DeviceFault.IMU
 
 
 def test_a_missing_library_is_reported(tmp_path: Path) -> None:

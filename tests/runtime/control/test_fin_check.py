@@ -1,0 +1,64 @@
+"""The judgement of the fin check, from set points and angles of four fins."""
+
+import re
+from collections.abc import Callable
+from math import pi, sin
+
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.packets import Motor
+from robot_runtime.control.fin_check import FINS, FinCheck
+
+Fin = Callable[[float], float]
+STROKE = 2 * pi * 1.3
+
+
+def wrap(angle: float) -> float:
+    return (angle + pi) % (2 * pi) - pi
+
+
+def flap(direction: float, lag: float = 0.0, size: float = 0.4) -> Fin:
+    return lambda time: wrap(direction + size * sin(STROKE * (time - lag)))
+
+
+def judge(wanted: Fin, angle: Fin) -> dict[str, str]:
+    """The check of a fin; the other three follow."""
+    check = FinCheck(SimulatedClock())
+    sound = flap(0.0)
+    for step in range(400):
+        time = step * 0.02
+        points = (sound(time), wanted(time), sound(time), sound(time))
+        angles = (sound(time), angle(time), sound(time), sound(time))
+        check.see(Motor(time=step, wanted=points, angle=angles, drive=(0, 0, 0, 0)))
+    return check.failed()
+
+
+@pytest.mark.parametrize("direction", [0.0, 1.5, pi, -3.0])
+@pytest.mark.parametrize("lag", [0.0, 0.03, 0.1])
+def test_a_fin_that_lags_follows_in_every_direction(direction: float, lag: float) -> None:
+    assert judge(flap(direction), flap(direction, lag)) == {}
+
+
+@pytest.mark.parametrize("direction", [0.0, pi])
+def test_a_fin_that_turns_the_other_way_is_named(direction: float) -> None:
+    found = judge(flap(direction), flap(direction, size=-0.4))
+    assert found == {FINS[1]: "turned against its set point"}
+
+
+@pytest.mark.parametrize(
+    "angle",
+    [
+        pytest.param(flap(0.3, size=0.0), id="still"),
+        pytest.param(flap(0.0, lag=0.25 / 1.3), id="a quarter late"),
+        pytest.param(lambda time: wrap(12.6 * time), id="spinning"),
+    ],
+)
+def test_a_fin_that_stands_still_or_turns_as_it_likes_is_named(angle: Fin) -> None:
+    ((name, words),) = judge(flap(0.0), angle).items()
+    assert name == FINS[1]
+    assert re.fullmatch(r"was off its set point by \d\.\d\d rad", words)
+
+
+def test_a_fin_that_was_not_commanded_is_named() -> None:
+    assert judge(flap(0.0, size=0.05), flap(0.0, size=0.05)) == {FINS[1]: "was not moved"}
