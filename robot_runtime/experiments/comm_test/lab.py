@@ -10,6 +10,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, Protocol, TextIO
 
+from robot_runtime.experiments.comm_test.boot_loader import refuse_endless_resets
 from robot_runtime.experiments.comm_test.builder import Builder, SketchBuildError, hash_file
 from robot_runtime.experiments.comm_test.document import CommTest
 from robot_runtime.experiments.comm_test.faults import Faults
@@ -128,6 +129,7 @@ def upload_to(port: str, pull: Pull, program: Path, stop: Cancellation) -> None:
     """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TEST_ERRORS."""
     # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
     for left in reversed(range(ATTEMPTS)):
+        refuse_endless_resets(port, pull)
         pull()
         try:
             upload(program, port, BOOT_BAUD, stop)

@@ -7,9 +7,13 @@ from time import monotonic
 
 import pytest
 
+from robot_runtime.experiments.comm_test.boot_loader import BootLoader, identify
 from robot_runtime.experiments.comm_test.faults import Faults
+from robot_runtime.experiments.comm_test.lab import upload_to
+from robot_runtime.experiments.comm_test.line import Cancellation
 from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
 from robot_runtime.experiments.comm_test.runner import BOOTLOADER
+from robot_runtime.experiments.comm_test.upload import UploadError
 from robot_runtime.link.port import Port
 from robot_runtime.link.session import LinkSession, SessionStage
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
@@ -20,6 +24,7 @@ from tests.runtime.experiments.comm_test.lab_process import cancel, lab, read_un
 
 SHORT = make_test(framing="plain", to_val=21, expected=20)
 ROBOT = ROOT / "build/firmware/robot.hex"
+ATMEGABOOT = Path("/usr/share/arduino/hardware/arduino/avr/bootloaders/atmega/ATmegaBOOT_168_atmega328.hex")
 
 
 @pytest.fixture
@@ -38,7 +43,7 @@ def bare_arduino(program: Path, tmp_path: Path) -> Iterator[EmulatorProcess]:
 
 def start_board(program: Path, folder: Path, *options: str) -> EmulatorProcess:
     build(ROOT / "firmware", "robot")
-    bootloader = ("--bootloader", str(program.parent / BOOTLOADER))
+    bootloader = () if "--bootloader" in options else ("--bootloader", str(program.parent / BOOTLOADER))
     return EmulatorProcess(
         program, ROBOT.with_suffix(".elf"), folder / "tty", folder / "socket", *bootloader, *options
     )
@@ -104,3 +109,23 @@ def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino:
 def test_an_invalid_reset_is_refused(spec: str) -> None:
     with pytest.raises(ResetError, match="it must be gpio:CHIP:LINE, board:SOCKET or dtr"):
         find_reset(spec)
+
+
+def test_the_boot_loader_of_a_pro_mini_is_refused_before_anything_is_written(
+    program: Path, tmp_path: Path
+) -> None:
+    with start_board(program, tmp_path, "--bootloader", str(ATMEGABOOT)) as arduino:
+        pull = find_reset(f"board:{arduino.socket}")
+        with pytest.raises(UploadError, match=r"ATmegaBOOT 1\.16 \(57600 bit/s\).*Nothing was written"):
+            upload_to(str(arduino.tty), pull, ROBOT, Cancellation())
+
+
+def test_the_boot_loader_is_identified(bare_arduino: EmulatorProcess) -> None:
+    pull = find_reset(f"board:{bare_arduino.socket}")
+    assert identify(str(bare_arduino.tty), pull) == BootLoader(4, 4, 115200)
+
+
+def test_a_board_without_a_boot_loader_is_not_refused_for_it(program: Path, tmp_path: Path) -> None:
+    robot = ROBOT.with_suffix(".elf")
+    with EmulatorProcess(program, robot, tmp_path / "tty", tmp_path / "socket") as arduino:
+        assert identify(str(arduino.tty), find_reset(f"board:{arduino.socket}")) is None
