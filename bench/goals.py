@@ -94,6 +94,7 @@ GOALS = {
     **_fault("depth_frozen", 0.5, 0.5),
     **_fault("depth_range", 0.5, 0.5),
     **_fault("imu_stale", 0.2, 0.2),
+    **_fault("imu_frozen", 0.5, 0.5),
     **_fault("capsized", 2, 2),
     **_fault("vision_stale", 1),
     **_fault("not_rising", 20),

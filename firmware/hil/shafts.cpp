@@ -35,7 +35,7 @@ bool drive_bridge(uint8_t fin, int8_t drive) {
 bool bridge_failed(uint8_t) { return false; }
 
 // Called once a tick for each encoder: moves its shaft by one tick.
-bool read_encoder_counts(uint8_t fin, int16_t* counts) {
+MagneticField read_encoder_counts(uint8_t fin, int16_t* counts) {
   Shaft& shaft = shafts[fin];
   const float driven = kSpeedPerStep * shaft.drive;
   const float behind = shaft.speed - driven;
@@ -45,7 +45,7 @@ bool read_encoder_counts(uint8_t fin, int16_t* counts) {
   const FinCalibration& fin_at = kFinCalibration[fin];
   const int16_t turned = lroundf(shaft.angle * kCountsPerRadian);
   *counts = (fin_at.zero + fin_at.encoder_sign * turned) & (kCountsPerTurn - 1);
-  return true;
+  return MagneticField::kGreen;
 }
 
 }  // namespace mucat

@@ -138,7 +138,7 @@ int8_t loop_step(PositionLoop* loop, uint8_t fin, int16_t set_point, int16_t mea
 int firmware_encoder_counts(uint16_t word) {
   host::the_board.encoders[0] = word;
   int16_t counts;
-  return read_encoder_counts(0, &counts) ? counts : -1;
+  return read_encoder_counts(0, &counts) == MagneticField::kUnusable ? -1 : counts;
 }
 
 bool firmware_prom_valid(const uint16_t* prom) {

@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0xb1d1d8efUL;
+constexpr uint32_t kDefinitionsHash = 0xcbf539b7UL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
@@ -41,6 +41,7 @@ enum class DeviceFault : uint16_t {
   kTrackingBackRight = 2048,
   kTrackingBackLeft = 4096,
   kTrackingFrontLeft = 8192,
+  kMagnet = 16384,
 };
 
 enum class ResetCause : uint8_t {

@@ -22,9 +22,9 @@ FlashText describe(ResetCause cause) {
 }
 
 constexpr uint8_t kFirstFin = 2;  // the number of the first bit of DeviceFault that belongs to a fin
-constexpr uint8_t kFaultCount = kFirstFin + 3 * kFinCount;
-static_assert(static_cast<uint16_t>(DeviceFault::kTrackingFrontLeft) == 1 << (kFaultCount - 1),
-              "the bits moved");
+constexpr uint8_t kMagnet = kFirstFin + 3 * kFinCount;
+constexpr uint8_t kFaultCount = kMagnet + 1;
+static_assert(static_cast<uint16_t>(DeviceFault::kMagnet) == 1 << kMagnet, "the bits moved");
 
 FlashText describe_fin(uint8_t fin) {
   switch (fin) {
@@ -41,6 +41,11 @@ FlashText describe_fin(uint8_t fin) {
 
 // Adds the device of a bit's number, and what it does now.
 void describe(uint8_t number, bool failed, DebugLine* line) {
+  if (number == kMagnet) {
+    *line << (failed ? FLASH_TEXT("encoders: a magnet out of place")
+                     : FLASH_TEXT("encoders: magnets in place"));
+    return;
+  }
   const uint8_t kind = (number - kFirstFin) / kFinCount;
   const bool tracking = number >= kFirstFin && kind == 2;
   if (number == 0) *line << FLASH_TEXT("IMU");
@@ -52,7 +57,7 @@ void describe(uint8_t number, bool failed, DebugLine* line) {
   if (tracking) {
     *line << (failed ? FLASH_TEXT(": against its drive or not at all, stopped") : FLASH_TEXT(": follows"));
   } else {
-    *line << (failed ? FLASH_TEXT(": no sensible answer") : FLASH_TEXT(": found"));
+    *line << (failed ? FLASH_TEXT(": no sensible answer") : FLASH_TEXT(": ok"));
   }
 }
 
@@ -80,6 +85,11 @@ void Robot::report_changed_faults() {
     if (!(changed & bit)) continue;
     DebugLine line(now & bit ? DebugLevel::kWarning : DebugLevel::kInfo);
     describe(number, now & bit, &line);
+    // Another chip, with registers that agree or not.
+    const uint8_t identity = sensors_.imu_identity();
+    if (bit == static_cast<uint16_t>(DeviceFault::kImu) && identity && identity != kMpu6050) {
+      (line << FLASH_TEXT(", WHO_AM_I 0x")).hex(identity);
+    }
     link_.queue_line(line);
   }
   reported_faults_ = now;

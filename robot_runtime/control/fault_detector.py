@@ -31,7 +31,7 @@ ARRIVAL = 0.05
 DEPTH_MIN, DEPTH_MAX = -1.0, 20.0
 """m: air pressure and sensor drift stay above the minimum, and the set point ends at 10 m."""
 REPEATS = 10
-"""Equal pressure readings in a row that no working sensor gives; see docs/reference/safety.md."""
+"""Equal readings in a row that no working sensor gives; see docs/reference/safety.md."""
 TILT_MAX = 75 * pi / 180
 """rad between the robot's down and the world's; normal steering stays far below."""
 AT_SURFACE = 0.2
@@ -65,6 +65,25 @@ class BoardLink(Protocol):
         ...
 
 
+class Repetition:
+    """Counts how often a sensor repeats its reading."""
+
+    def __init__(self) -> None:
+        self._value: object = None
+        self._since, self._count = _NEVER, 0
+
+    def see(self, value: object, now: float) -> None:
+        """Takes a reading at `now` (s)."""
+        if value == self._value:
+            self._count += 1
+        else:
+            self._value, self._since, self._count = value, now, 0
+
+    def last(self, limit: float, now: float) -> bool:
+        """Returns True if the reading has repeated for longer than `limit` (s), and REPEATS times."""
+        return self._count >= REPEATS and now - self._since > limit
+
+
 class FaultDetector:
     """Detects faults: `see_...` take the inputs, `active_faults` and `refusals` return the results.
 
@@ -95,8 +114,7 @@ class FaultDetector:
         self._heard = self._imu = self._upright = _NEVER
         self._status_time = self._depth_time = self._depth_sane = _NEVER
         self._depth = 0.0
-        self._pressure: int | None = None
-        self._moved, self._repeats = _NEVER, 0
+        self._pressures, self._rates, self._forces = Repetition(), Repetition(), Repetition()
         self._server = self._checked = clock.now()
         self._vision = float("inf")
         self._ascent: tuple[float, float] | None = None
@@ -112,14 +130,13 @@ class FaultDetector:
         self._depth_time, self._depth = now, depth.depth
         if DEPTH_MIN <= depth.depth <= DEPTH_MAX:
             self._depth_sane = now
-        if depth.pressure == self._pressure:
-            self._repeats += 1
-        else:
-            self._pressure, self._moved, self._repeats = depth.pressure, now, 0
+        self._pressures.see(depth.pressure, now)
 
     def see_imu(self, imu: Imu) -> None:
         """Takes an attitude."""
         self._imu = self._clock.now()
+        self._rates.see(imu.rate, self._imu)
+        self._forces.see(imu.force, self._imu)
         w, x, y, z = imu.attitude
         if w * w - x * x - y * y + z * z >= cos(TILT_MAX):
             self._upright = self._imu
@@ -185,7 +202,7 @@ class FaultDetector:
             return ["The pressure sensor does not answer."]
         if self._age(self._depth_time) > self._depth_stale:
             return ["There is no fresh depth. Check the pressure sensor."]
-        if self._frozen():
+        if self._depth_is_frozen():
             return ["The pressure reading is frozen. Check the sensor, or the simulator."]
         if self._age(self._depth_sane) > self._depth_stale:
             return [f"The depth of {self._depth:.1f} m is out of range. Restart the board at the surface."]
@@ -197,6 +214,8 @@ class FaultDetector:
             reasons.append("The IMU does not answer.")
         elif self._imu_is_stale():
             reasons.append("There is no fresh attitude. Check the IMU.")
+        elif self._imu_is_frozen():
+            reasons.append("The IMU's reading is frozen. Check the IMU, or the simulator.")
         elif self._capsized():
             reasons.append("The robot lies on its side or on its back. Turn it upright.")
         if status.flags & StatusFlag.BATTERY_LOW:
@@ -214,9 +233,10 @@ class FaultDetector:
             "server_silent": patience is not None and self._age(self._server) > patience,
             "board_silent": not self._line.connected or self._age(self._heard) > self._silent,
             "depth_stale": depth_age > self._depth_stale,
-            "depth_frozen": depth_age <= self._depth_stale and self._frozen(),
+            "depth_frozen": depth_age <= self._depth_stale and self._depth_is_frozen(),
             "depth_range": depth_age <= self._depth_stale < self._age(self._depth_sane),
             "imu_stale": self._imu_is_stale(),
+            "imu_frozen": not self._imu_is_stale() and self._imu_is_frozen(),
             "capsized": self._capsized(),
             "vision_stale": mode == "automatic" and self._age(self._vision) > _limit("vision_stale"),
             "not_rising": self._does_not_rise(),
@@ -225,8 +245,12 @@ class FaultDetector:
             "simulator_silent": self._hil is not None and self._hil.lost,
         }
 
-    def _frozen(self) -> bool:
-        return self._repeats >= REPEATS and self._age(self._moved) > _limit("depth_frozen")
+    def _depth_is_frozen(self) -> bool:
+        return self._pressures.last(_limit("depth_frozen"), self._clock.now())
+
+    def _imu_is_frozen(self) -> bool:
+        limit, now = _limit("imu_frozen"), self._clock.now()
+        return self._rates.last(limit, now) or self._forces.last(limit, now)
 
     def _imu_is_stale(self) -> bool:
         """Compares with other messages, because a board that sends nothing at all is another fault."""

@@ -120,6 +120,13 @@ FAULTS = (
         remedy="Check its cable and reset the board.",
     ),
     FaultRule(
+        name="imu_frozen",
+        limit=0.5,
+        what="The IMU repeats its reading; a capsize would go unnoticed.",
+        cause="The IMU hangs; in simulated water, the simulator has ended.",
+        remedy="Check its cable and reset the board.",
+    ),
+    FaultRule(
         name="capsized",
         limit=2.0,
         what="The robot lies on its side or on its back.",

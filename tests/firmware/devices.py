@@ -118,10 +118,16 @@ class Bridge:
 
 
 def encoder_word(
-    counts: int, *, ready: int = 1, overflow: int = 0, increase: int = 0, decrease: int = 0
+    counts: int,
+    *,
+    ready: int = 1,
+    overflow: int = 0,
+    nonlinear: int = 0,
+    increase: int = 0,
+    decrease: int = 0,
 ) -> int:
     """The AS5040's sixteen bits with even parity."""
-    word = (counts % 1024) << 6 | ready << 5 | overflow << 4 | increase << 2 | decrease << 1
+    word = (counts % 1024) << 6 | ready << 5 | overflow << 4 | nonlinear << 3 | increase << 2 | decrease << 1
     return word | word.bit_count() % 2
 
 

@@ -54,6 +54,7 @@ class Robot:
         self.motors = [Motor(zero, sign) for zero, sign in zip(zeros, signs, strict=True)]
         self.absent: set[int] = set()
         self.blind: set[int] = set()
+        self.yellow: set[int] = set()
         self.frames = 0
         self.received: list[Packet] = []
         self.lines: list[Debug] = []
@@ -97,7 +98,9 @@ class Robot:
 
     def _show_encoders(self) -> None:
         for fin, motor in enumerate(self.motors):
-            word = 0xFFFF if fin in self.blind else encoder_word(motor.counts)
+            yellow = int(fin in self.yellow)
+            word = encoder_word(motor.counts, increase=yellow, decrease=yellow)
+            word = 0xFFFF if fin in self.blind else word
             self.firmware.board_set_encoder(fin, word)
 
     @property

@@ -70,7 +70,7 @@ def test_devices_are_announced_to_the_first_host(robot: Robot) -> None:
     fins = [f"encoder {fin}" for fin in ("front right", "back right", "back left", "front left")]
     assert robot.texts == [
         "boot 1, power on",
-        *(f"{name}: found" for name in ["IMU", "pressure sensor", *fins]),
+        *(f"{name}: ok" for name in ["IMU", "pressure sensor", *fins]),
     ]
     assert robot.status().faults == 0
 
@@ -142,15 +142,68 @@ def test_lost_sensor_is_reported_and_found_again(
     robot.absent.clear()
     robot.run(600)
     assert robot.status().faults == 0
-    assert robot.texts[-1] == f"{name}: found"
+    assert robot.texts[-1] == f"{name}: ok"
     assert counts(robot.run(1000))["Imu" if address == IMU else "Depth"] in (50, 100)
 
 
-def test_other_chip_at_the_imus_address_is_refused(robot: Robot) -> None:
-    robot.imu.identity = 0x70
+@pytest.mark.parametrize("identity", [0x70, 0x71, 0x72, 0x98])
+def test_a_chip_with_the_imus_registers_is_accepted_and_named(robot: Robot, identity: int) -> None:
+    robot.imu.identity = identity
     robot.reset(ResetCause.EXTERNAL)
+    robot.greet()
+    robot.run(300)
+    assert robot.status().faults == 0
+    assert f"IMU: ok, WHO_AM_I 0x{identity:02X}" in robot.texts
+    # The filter of the accelerometer, by a register of its own in these.
+    assert robot.imu.registers[0x1D] == 0x03
+    assert counts(robot.run(1000))["Imu"] == 100
+
+
+def test_another_chip_at_the_imus_address_is_refused_and_named(robot: Robot) -> None:
+    robot.imu.identity = 0xAF
+    robot.reset(ResetCause.EXTERNAL)
+    robot.greet()
     robot.run(300)
     assert robot.status().faults == DeviceFault.IMU
+    assert "IMU: no sensible answer, WHO_AM_I 0xAF" in robot.texts
+
+
+def test_an_imu_that_fell_asleep_is_woken(robot: Robot) -> None:
+    robot.greet()
+    robot.run(500)
+    awake = robot.imu.force, robot.imu.rate
+    robot.imu.force = robot.imu.rate = (0, 0, 0)
+    robot.imu.registers.clear()
+    heard = robot.run(100)
+    assert counts(heard)["Imu"] <= 1
+    assert robot.imu.registers[0x6B] == 1
+    robot.imu.force, robot.imu.rate = awake
+    robot.run(300)
+    assert robot.status().faults == 0
+    assert counts(robot.run(1000))["Imu"] == 100
+
+
+def test_a_single_exchange_of_the_pressure_sensor_that_fails_costs_no_depth(robot: Robot) -> None:
+    robot.greet()
+    robot.run(500)
+    robot.received.clear()
+    for _ in range(20):
+        robot.absent.add(PRESSURE)
+        robot.run(10)
+        robot.absent.clear()
+        robot.run(90)
+    # Of 100 in 2 s; each failed exchange delays the next reading by a tick.
+    assert counts(robot.received)["Depth"] >= 80
+    assert {packet.faults for packet in robot.received if isinstance(packet, Status)} == {0}
+
+
+def test_a_weak_magnet_is_reported_and_its_fin_driven(robot: Robot) -> None:
+    robot.yellow.add(2)
+    robot.arm()
+    robot.swim(500, navigation(z=1))
+    assert robot.status().faults == DeviceFault.MAGNET
+    assert "encoders: a magnet out of place" in robot.texts
+    assert abs(robot.last(Motor).drive[2]) > 5
 
 
 def test_pressure_sensor_with_a_damaged_prom_is_refused(robot: Robot) -> None:
@@ -223,7 +276,7 @@ def test_a_fault_of_a_bridge_is_reported_and_cleared(robot: Robot) -> None:
     assert robot.bridges[2].clears == 1
     assert "H-bridge back left: no sensible answer" in robot.texts
     robot.beat(500)
-    assert robot.texts[-1] == "H-bridge back left: found"
+    assert robot.texts[-1] == "H-bridge back left: ok"
     assert robot.status().faults == 0
 
 

@@ -30,14 +30,15 @@ def test_encoder_word_with_a_flipped_bit_is_refused(firmware: ctypes.CDLL, count
         0x0000,
         encoder_word(500, ready=0),
         encoder_word(500, overflow=1),
-        encoder_word(500, increase=1, decrease=1),
+        encoder_word(500, nonlinear=1, increase=1, decrease=1),
     ],
 )
 def test_readings_of_a_missing_or_faulty_encoder_are_refused(firmware: ctypes.CDLL, word: int) -> None:
     assert firmware.firmware_encoder_counts(word) == -1
 
 
-def test_an_encoder_may_report_a_moving_magnet(firmware: ctypes.CDLL) -> None:
+def test_an_encoder_may_report_a_moving_or_weak_magnet(firmware: ctypes.CDLL) -> None:
+    assert firmware.firmware_encoder_counts(encoder_word(500, increase=1, decrease=1)) == 500
     assert firmware.firmware_encoder_counts(encoder_word(500, increase=1)) == 500
     assert firmware.firmware_encoder_counts(encoder_word(500, decrease=1)) == 500
 

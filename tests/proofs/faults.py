@@ -230,6 +230,7 @@ ROWS = (
     _all_stop("depth_frozen", _broken("pressure", "stuck")),
     _all_stop("depth_range", _broken("pressure", "spike", share=1.0, size=300_000.0)),
     _all_stop("imu_stale", _broken("gyroscope", "bus")),
+    _all_stop("imu_frozen", _broken("gyroscope", "stuck")),
     _all_stop("capsized", _capsize),
     Row(
         name="vision_stale",

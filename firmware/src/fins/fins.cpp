@@ -74,8 +74,10 @@ void Fins::read_encoders() {
   measured_us_ = board::microseconds();
   for (uint8_t i = 0; i < kFinCount; ++i) {
     counts_before_[i] = counts_[i];
-    const bool valid = read_encoder_counts(i, &counts_[i]);
+    const MagneticField field = read_encoder_counts(i, &counts_[i]);
+    const bool valid = field != MagneticField::kUnusable;
     assign(&encoder_faults_, i, !valid);
+    assign(&yellow_fields_, i, field == MagneticField::kYellow);
     if (valid) angles_[i] = angle_from_counts(kFinCalibration[i], counts_[i]);
   }
 }
@@ -126,6 +128,7 @@ uint16_t Fins::faults() const {
   for (uint8_t i = 0; i < kFinCount; ++i) {
     if (watches_[i].failed()) bits |= static_cast<uint16_t>(DeviceFault::kTrackingFrontRight) << i;
   }
+  if (yellow_fields_) bits |= static_cast<uint16_t>(DeviceFault::kMagnet);
   return bits;
 }
 

@@ -59,6 +59,7 @@ class Fins {
   uint32_t measured_us_ = 0;
   int8_t drives_[kFinCount] = {};
   uint8_t encoder_faults_ = 0;
+  uint8_t yellow_fields_ = 0;
   uint8_t silent_bridges_ = 0;
   uint8_t reported_faults_ = 0;
   Motion motion_ = Motion::kOff;

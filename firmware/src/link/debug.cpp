@@ -27,6 +27,15 @@ DebugLine& DebugLine::operator<<(uint16_t number) {
   return digits(number, count);
 }
 
+DebugLine& DebugLine::hex(uint8_t number) {
+  for (uint8_t shift = 8; shift;) {
+    shift -= 4;
+    const uint8_t digit = number >> shift & 15;
+    put(digit < 10 ? '0' + digit : 'A' - 10 + digit);
+  }
+  return *this;
+}
+
 DebugLine& DebugLine::digits(uint16_t number, uint8_t digits) {
   uint16_t divisor = 1;
   for (uint8_t i = 1; i < digits; ++i) divisor *= 10;

@@ -13,6 +13,7 @@ class DebugLine {
   explicit DebugLine(DebugLevel level);
   DebugLine& operator<<(FlashText text);
   DebugLine& operator<<(uint16_t number);
+  DebugLine& hex(uint8_t number);
   // `digits` decimal digits, with leading zeros.
   DebugLine& digits(uint16_t number, uint8_t digits);
   Debug& packet() { return packet_; }

@@ -8,7 +8,8 @@ namespace {
 // The word after the leading 1: D9 to D0, then these bits, then even parity over all sixteen.
 constexpr uint16_t kOffsetDone = 1 << 5;
 constexpr uint16_t kCordicOverflow = 1 << 4;
-constexpr uint16_t kFieldOutOfRange = 3 << 1;
+constexpr uint16_t kLinearityAlarm = 1 << 3;
+constexpr uint16_t kBothMagBits = 3 << 1;
 
 bool odd(uint16_t word) {
   word ^= word >> 8;
@@ -20,15 +21,17 @@ bool odd(uint16_t word) {
 
 }  // namespace
 
-bool read_encoder_counts(uint8_t fin, int16_t* counts) {
+MagneticField read_encoder_counts(uint8_t fin, int16_t* counts) {
   uint8_t bytes[board::kEncoderBytes];
   board::read_encoder(fin, bytes);
   const uint16_t word =
       static_cast<uint16_t>(bytes[0]) << 9 | static_cast<uint16_t>(bytes[1]) << 1 | bytes[2] >> 7;
-  if (odd(word) || !(word & kOffsetDone) || word & kCordicOverflow) return false;
-  if ((word & kFieldOutOfRange) == kFieldOutOfRange) return false;
+  if (odd(word) || !(word & kOffsetDone) || word & kCordicOverflow) return MagneticField::kUnusable;
+  const bool far_off = (word & kBothMagBits) == kBothMagBits;
+  // With the alarm the data sheet calls the field red, without it yellow: usable, less exact.
+  if (far_off && word & kLinearityAlarm) return MagneticField::kUnusable;
   *counts = word >> 6;
-  return true;
+  return far_off ? MagneticField::kYellow : MagneticField::kGreen;
 }
 
 }  // namespace mucat

@@ -4,8 +4,14 @@
 
 namespace mucat {
 
-// Reads the fin's position, 0 to 1023. False, with `counts` unchanged, if the chip did not answer or reports
-// that its magnet is out of place.
-bool read_encoder_counts(uint8_t fin, int16_t* counts);
+// The field of the encoder's magnet, in the data sheet's colours.
+enum class MagneticField : uint8_t {
+  kUnusable,  // red, or the chip did not answer
+  kYellow,    // too weak or too strong: the angle is less exact
+  kGreen,
+};
+
+// Reads the fin's position, 0 to 1023; `counts` is unchanged if it is unusable.
+MagneticField read_encoder_counts(uint8_t fin, int16_t* counts);
 
 }  // namespace mucat

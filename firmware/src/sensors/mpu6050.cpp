@@ -8,7 +8,10 @@ namespace {
 constexpr uint8_t kAddress = 0x69;
 constexpr uint8_t kFirstReading = 0x3B;
 constexpr uint8_t kIdentityRegister = 0x75;
-constexpr uint8_t kIdentity = 0x68;
+
+// WHO_AM_I of chips whose registers agree where they are used here: MPU-6050, MPU-6500, MPU-9250, and copies
+// of the first that are sold under its name.
+constexpr uint8_t kIdentities[] = {kMpu6050, 0x70, 0x71, 0x72, 0x98};
 
 struct Setting {
   uint8_t address;
@@ -21,24 +24,37 @@ constexpr Setting kSettings[] = {
     {0x1B, 0x08},  // GYRO_CONFIG: ±500 °/s
     {0x1C, 0x08},  // ACCEL_CONFIG: ±4 g
 };
+// The MPU-6500's family filters its accelerometer by a register of its own, which is another's threshold
+// here.
+constexpr Setting kForceFilter = {0x1D, 0x03};
 
 // Ticks: the gyroscope needs 30 ms to start after waking; a missing chip is tried again ten times a second.
 constexpr uint8_t kSettle = 5;
 constexpr uint8_t kRetry = 10;
+
+bool known(uint8_t identity) {
+  for (uint8_t one : kIdentities) {
+    if (one == identity) return true;
+  }
+  return false;
+}
+
+bool write(const Setting& setting) {
+  const uint8_t message[] = {setting.address, setting.value};
+  return board::exchange_i2c(kAddress, message, sizeof message, nullptr, 0);
+}
 
 int16_t big_endian(const uint8_t* at) { return static_cast<int16_t>(at[0] << 8 | at[1]); }
 
 }  // namespace
 
 bool Mpu6050::set_up() {
-  uint8_t identity = 0;
-  if (!board::exchange_i2c(kAddress, &kIdentityRegister, 1, &identity, 1) || identity != kIdentity)
-    return false;
+  identity_ = 0;
+  if (!board::exchange_i2c(kAddress, &kIdentityRegister, 1, &identity_, 1) || !known(identity_)) return false;
   for (const Setting& setting : kSettings) {
-    const uint8_t message[] = {setting.address, setting.value};
-    if (!board::exchange_i2c(kAddress, message, sizeof message, nullptr, 0)) return false;
+    if (!write(setting)) return false;
   }
-  return true;
+  return identity_ == kMpu6050 || write(kForceFilter);
 }
 
 bool Mpu6050::step(ImuReading* reading) {
@@ -54,6 +70,14 @@ bool Mpu6050::step(ImuReading* reading) {
   }
   uint8_t bytes[14];
   if (!board::exchange_i2c(kAddress, &kFirstReading, 1, bytes, sizeof bytes)) {
+    ready_ = false;
+    faulty_ = true;
+    return false;
+  }
+  uint8_t any = 0;
+  for (uint8_t byte : bytes) any |= byte;
+  // After a dip of its supply it sleeps, and answers zeros.
+  if (!any) {
     ready_ = false;
     faulty_ = true;
     return false;

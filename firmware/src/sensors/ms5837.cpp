@@ -69,7 +69,12 @@ bool Ms5837::step(PressureReading* reading) {
     return false;
   }
   bool fresh = false;
-  if (!advance(reading, &fresh)) {
+  if (advance(reading, &fresh)) {
+    retried_ = false;
+  } else if (!retried_) {
+    retried_ = true;  // once more in the next tick, since starting over takes 140 ms
+  } else {
+    retried_ = taken_ = false;
     faulty_ = true;
     stage_ = Stage::kReset;
     wait_ = kRetry;
@@ -77,25 +82,34 @@ bool Ms5837::step(PressureReading* reading) {
   return fresh;
 }
 
+// Where a conversion was taken and the next one could not be started, only that is tried again.
 bool Ms5837::advance(PressureReading* reading, bool* fresh) {
-  uint32_t counts;
   switch (stage_) {
     case Stage::kReset:
+      if (!command(kReset)) return false;
       stage_ = Stage::kProm;
-      return command(kReset);
+      return true;
     case Stage::kProm:
+      if (!read_prom() || !command(kConvertTemperature)) return false;
       stage_ = Stage::kTemperature;
-      return read_prom() && command(kConvertTemperature);
+      return true;
     case Stage::kTemperature:
+      if (!taken_) taken_ = take_conversion(&temperature_counts_);
+      if (!taken_ || !command(kConvertPressure)) return false;
       stage_ = Stage::kPressure;
-      return take_conversion(&temperature_counts_) && command(kConvertPressure);
+      taken_ = false;
+      return true;
     case Stage::kPressure:
+      uint32_t counts;
+      if (!taken_ && take_conversion(&counts)) {
+        *reading = compensate(prom_, counts, temperature_counts_);
+        *fresh = taken_ = true;
+        faulty_ = false;
+      }
+      if (!taken_ || !command(kConvertTemperature)) return false;
       stage_ = Stage::kTemperature;
-      if (!take_conversion(&counts)) return false;
-      *reading = compensate(prom_, counts, temperature_counts_);
-      *fresh = true;
-      faulty_ = false;
-      return command(kConvertTemperature);
+      taken_ = false;
+      return true;
   }
   return false;
 }

@@ -35,6 +35,8 @@ class Ms5837 {
   Stage stage_ = Stage::kReset;
   uint8_t wait_ = 0;
   bool faulty_ = false;
+  bool retried_ = false;  // the last step failed, and is taken again
+  bool taken_ = false;    // of this stage, the conversion
 };
 
 }  // namespace mucat

@@ -24,6 +24,7 @@ class Sensors {
   void read(Beacon* packet) const;
 
   uint16_t battery_millivolts() const { return battery_millivolts_; }
+  uint8_t imu_identity() const { return imu_.identity(); }
   // Bits of DeviceFault.
   uint8_t faults() const;
 

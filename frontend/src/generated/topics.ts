@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = 'b1d1d8ef';
+export const DEFINITIONS_HASH = 'cbf539b7';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -56,6 +56,7 @@ export const DeviceFault = {
   TRACKING_BACK_RIGHT: 2048,
   TRACKING_BACK_LEFT: 4096,
   TRACKING_FRONT_LEFT: 8192,
+  MAGNET: 16384,
 } as const;
 
 export const ResetCause = {

@@ -50,6 +50,7 @@ export const system = {
       encoder: (fin: string) => `encoder ${fin}`,
       bridge: (fin: string) => `H-bridge ${fin}`,
       tracking: (fin: string) => `motor ${fin}`,
+      magnet: 'an encoder’s magnet out of place',
     },
     fins: { frontRight: 'front right', backRight: 'back right', backLeft: 'back left', frontLeft: 'front left' },
     flags: {

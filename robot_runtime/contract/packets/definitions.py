@@ -52,7 +52,7 @@ class DeviceFault(IntFlag):
 
     The last reading of an IMU, a pressure sensor or an encoder failed or was invalid; a powered H-bridge does
     not answer or reports a fault; a fin turned against its drive or not at all, and is not driven until the
-    next arming.
+    next arming; the magnet of an encoder is too near or too far, and the fin's angle is less exact.
     """
 
     IMU = 1
@@ -69,6 +69,7 @@ class DeviceFault(IntFlag):
     TRACKING_BACK_RIGHT = 2048
     TRACKING_BACK_LEFT = 4096
     TRACKING_FRONT_LEFT = 8192
+    MAGNET = 16384
 
 
 class ResetCause(IntEnum):

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from math import cos, sin
+from typing import Literal
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Event
@@ -39,11 +40,6 @@ class Board:
         return self.connected
 
 
-def imu(tilt: float) -> Imu:
-    attitude = (cos(tilt / 2), sin(tilt / 2), 0.0, 0.0)
-    return Imu(time=0, attitude=attitude, rate=(0.0, 0.0, 0.0), force=(0.0, 0.0, -9.81))
-
-
 class Rig:
     """A supervisor, its board and its events."""
 
@@ -58,6 +54,7 @@ class Rig:
             self.clock, self.board, self.events.append, self.hil, heartbeat=heartbeat
         )
         self._pressure = 101_325
+        self._rate = self._force = 0.0
         self.board.send = self._send  # type: ignore[method-assign]
 
     def _send(self, *packets: Packet) -> bool:
@@ -101,9 +98,13 @@ class Rig:
         reading = Depth(time=0, depth=depth, pressure=self._pressure, temperature=20.0)
         self.supervisor.detector.see_depth(reading)
 
-    def sense_attitude(self, tilt: float = 0.0) -> None:
+    def sense_attitude(self, tilt: float = 0.0, *, frozen: Literal["rate", "force"] | None = None) -> None:
+        self._rate += 1e-6 * (frozen != "rate")
+        self._force += 1e-6 * (frozen != "force")
         self.supervisor.detector.see_messages()
-        self.supervisor.detector.see_imu(imu(tilt))
+        attitude = (cos(tilt / 2), sin(tilt / 2), 0.0, 0.0)
+        rate, force = (self._rate, 0.0, 0.0), (0.0, 0.0, -9.81 + self._force)
+        self.supervisor.detector.see_imu(Imu(time=0, attitude=attitude, rate=rate, force=force))
 
     def ready(self) -> None:
         self.report()

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from math import radians
+from typing import Literal
 
 import pytest
 
@@ -78,6 +79,20 @@ def test_a_frozen_pressure_is_one_that_repeats_often_and_long(rig: Rig) -> None:
     assert wrong(rig) == set()
     live(rig, 0.04, lambda: rig.sense(frozen=True))
     assert wrong(rig) == {"depth_frozen"}
+    rig.sense()
+    assert wrong(rig) == set()
+
+
+@pytest.mark.parametrize("frozen", ["rate", "force"])
+def test_a_frozen_imu_repeats_its_rate_or_its_force(rig: Rig, frozen: Literal["rate", "force"]) -> None:
+    def sense() -> None:
+        rig.sense_depth()
+        rig.sense_attitude(frozen=frozen)
+
+    live(rig, 0.38, sense)
+    assert wrong(rig) == set()
+    live(rig, 0.04, sense)
+    assert wrong(rig) == {"imu_frozen"}
     rig.sense()
     assert wrong(rig) == set()
 

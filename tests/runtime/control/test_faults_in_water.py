@@ -32,6 +32,7 @@ ROWS: list[tuple[str, Break]] = [
     ("depth_frozen", lambda flight: flight.break_("pressure", "stuck")),
     ("depth_range", lambda flight: flight.break_("pressure", "spike", share=1.0, size=300_000.0)),
     ("imu_stale", absent("gyroscope")),
+    ("imu_frozen", lambda flight: flight.break_("accelerometer", "stuck")),
     ("board_silent", lambda flight: flight.cut(on=True)),
     ("server_silent", lambda flight: setattr(flight, "server", False)),
     ("control_failed", lambda flight: setattr(flight.robot.control.depth.controller, "step", None)),

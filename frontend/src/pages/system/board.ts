@@ -26,6 +26,7 @@ const FAULTS: readonly (readonly [number, string])[] = [
   [DeviceFault.TRACKING_BACK_RIGHT, texts.sensors.tracking(texts.fins.backRight)],
   [DeviceFault.TRACKING_BACK_LEFT, texts.sensors.tracking(texts.fins.backLeft)],
   [DeviceFault.TRACKING_FRONT_LEFT, texts.sensors.tracking(texts.fins.frontLeft)],
+  [DeviceFault.MAGNET, texts.sensors.magnet],
 ];
 
 const FLAGS: readonly (readonly [number, string])[] = [
