@@ -19,28 +19,28 @@ _SWING_MIN = 0.2
 
 
 class FinTracking:
-    """How a fin follows its set point, from samples of both (rad, -π to π)."""
+    """Judges whether a fin follows its set point, by samples of both (rad, -π to π)."""
 
     def __init__(self) -> None:
         self._unwrapped = 0.0
-        self._wanted: list[float] = []
+        self._set_points: list[float] = []
         self._errors: list[float] = []
 
-    def see(self, wanted: float, angle: float) -> None:
+    def see(self, set_point: float, angle: float) -> None:
         """Takes a sample."""
-        self._unwrapped += _wrap(wanted - self._unwrapped)
-        self._wanted.append(self._unwrapped)
-        self._errors.append(_wrap(angle - wanted))
+        self._unwrapped += _wrap(set_point - self._unwrapped)
+        self._set_points.append(self._unwrapped)
+        self._errors.append(_wrap(angle - set_point))
 
     def judge(self) -> str:
         """Returns what is wrong with the fin; empty if it follows."""
-        if not self._wanted or max(self._wanted) - min(self._wanted) < _SWING_MIN:
+        if not self._set_points or max(self._set_points) - min(self._set_points) < _SWING_MIN:
             return "was not moved"
         error = sqrt(fmean(one * one for one in self._errors))
-        if error <= _ERROR_MAX * pstdev(self._wanted):
+        if error <= _ERROR_MAX * pstdev(self._set_points):
             return ""
         # The slope of the angle over the set point is 1 + this; it is -1 where the fin is mirrored.
-        slope = linear_regression(self._wanted, self._errors).slope
+        slope = linear_regression(self._set_points, self._errors).slope
         return "turned against its set point" if slope < -1.2 else f"was off its set point by {error:.2f} rad"
 
 
@@ -67,8 +67,8 @@ class FinCheck:
 
     def see(self, motor: Motor) -> None:
         """Takes the fins' angles and their set points."""
-        for fin, wanted, angle in zip(self._fins, motor.wanted, motor.angle, strict=True):
-            fin.see(wanted, angle)
+        for fin, set_point, angle in zip(self._fins, motor.wanted, motor.angle, strict=True):
+            fin.see(set_point, angle)
 
     def failed(self) -> dict[str, str]:
         """Returns the fins that did not follow, by name, with what they did."""
