@@ -24,6 +24,8 @@ from tests.board.host import BAUD
 from tests.board.monitor import REFUSED_ADDRESS, Monitor
 from tests.board.rig import OPTIBOOT, PROGRAM, ROOT, SKETCHES, Port, Rig, build, wait_for
 
+pytestmark = pytest.mark.usefixtures("built")
+
 ROBOT = ROOT / "build/firmware/robot.hex"
 BOOT_BAUD = 115200
 TIMEOUT = 131072 / 128e3
