@@ -17,11 +17,12 @@ struct as5040 {
   unsigned position;  // ticks
   uint32_t shift;     // bits still to send, the uppermost first
   bool selected;
+  bool begun;  // a byte was exchanged since the select
   enum fault fault;
 };
 
 void as5040_turn(struct as5040 *encoder, double ticks);
 void as5040_select(struct as5040 *encoder, bool selected);
-uint8_t as5040_exchange(struct as5040 *encoder);
+uint8_t as5040_exchange(struct as5040 *encoder, bool mode_0);
 
 #endif

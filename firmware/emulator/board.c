@@ -8,10 +8,10 @@ static void after_reset(void *owner) {
   pins_reset(&board->pins);
 }
 
-static uint8_t exchange(void *owner, uint8_t sent) {
+static uint8_t exchange(void *owner, uint8_t sent, bool mode_0) {
   (void)sent;  // an encoder has no input
   struct board *board = owner;
-  return devices_exchange_spi(&board->devices);
+  return devices_exchange_spi(&board->devices, mode_0);
 }
 
 static double chip_time(const void *chip) { return chip_seconds(chip_now(chip)); }

@@ -146,13 +146,18 @@ static void fault(struct service *service, struct client *client, char *argument
   if (kind) {
     *kind++ = 0;
   }
-  if (kind && devices_set_fault(&service->board.devices, arguments, kind)) {
+  struct board *board = &service->board;
+  bool bus = !strcmp(arguments, "i2c");
+  if (kind &&
+      (bus ? twi_set_fault(&board->twi, kind) : devices_set_fault(&board->devices, arguments, kind))) {
     send_ok(service, client);
     return;
   }
   refuse(service, client,
          "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck; reversed for the "
-         "last eight");
+         "last eight, "
+         "weak for encoders, tripped for bridges, dip for the imu; or i2c, and none, stuck, refused or "
+         "stretched");
 }
 
 static bool disturb(struct host_port *port, enum direction direction, const char *kind, const char *value) {

@@ -31,31 +31,47 @@ void devices_set_motor_power(struct devices *devices, bool on) {
   }
 }
 
-uint8_t devices_exchange_spi(struct devices *devices) {
+uint8_t devices_exchange_spi(struct devices *devices, bool mode_0) {
   uint8_t received = 0xff;
   for (unsigned i = 0; i < FIN_COUNT; i++) {
     if (devices->encoders[i].selected) {
-      received &= as5040_exchange(&devices->encoders[i]);
+      received &= as5040_exchange(&devices->encoders[i], mode_0);
     }
   }
   return received;
 }
 
-static enum fault *fault_of(struct devices *devices, const char *name, bool *turns) {
-  *turns = false;
+enum kind_of_device { IMU = 1, PRESSURE = 2, ENCODER = 4, BRIDGE = 8 };
+
+static const struct {
+  const char *name;
+  unsigned devices;  // which can have it
+} faults[] = {
+    [FAULT_NONE] = {"none", IMU | PRESSURE | ENCODER | BRIDGE},
+    [FAULT_ABSENT] = {"absent", IMU | PRESSURE | ENCODER | BRIDGE},
+    [FAULT_STUCK] = {"stuck", IMU | PRESSURE | ENCODER | BRIDGE},
+    [FAULT_REVERSED] = {"reversed", ENCODER | BRIDGE},
+    [FAULT_WEAK] = {"weak", ENCODER},
+    [FAULT_TRIPPED] = {"tripped", BRIDGE},
+};
+
+static enum fault *fault_of(struct devices *devices, const char *name, enum kind_of_device *kind) {
+  *kind = IMU;
   if (!strcmp(name, "imu")) {
     return &devices->imu.fault;
   }
+  *kind = PRESSURE;
   if (!strcmp(name, "pressure")) {
     return &devices->pressure.fault;
   }
-  *turns = true;
   for (unsigned i = 0; i < FIN_COUNT; i++) {
     char encoder[] = "encoder0", bridge[] = "bridge0";
     encoder[sizeof encoder - 2] = bridge[sizeof bridge - 2] = (char)('0' + i);
+    *kind = ENCODER;
     if (!strcmp(name, encoder)) {
       return &devices->encoders[i].fault;
     }
+    *kind = BRIDGE;
     if (!strcmp(name, bridge)) {
       return &devices->bridges[i].fault;
     }
@@ -63,17 +79,16 @@ static enum fault *fault_of(struct devices *devices, const char *name, bool *tur
   return NULL;
 }
 
-bool devices_set_fault(struct devices *devices, const char *name, const char *kind) {
-  static const char *const kinds[] = {[FAULT_NONE] = "none",
-                                      [FAULT_ABSENT] = "absent",
-                                      [FAULT_STUCK] = "stuck",
-                                      [FAULT_REVERSED] = "reversed"};
-  bool turns;
-  enum fault *fault = fault_of(devices, name, &turns);
-  unsigned count = turns ? FAULT_REVERSED + 1 : FAULT_REVERSED;
-  for (unsigned i = 0; fault && i < count; i++) {
-    if (!strcmp(kind, kinds[i])) {
-      *fault = (enum fault)i;
+bool devices_set_fault(struct devices *devices, const char *name, const char *fault) {
+  enum kind_of_device kind;
+  enum fault *device = fault_of(devices, name, &kind);
+  if (device == &devices->imu.fault && !strcmp(fault, "dip")) {
+    mpu6050_dip(&devices->imu);
+    return true;
+  }
+  for (unsigned i = 0; device && i < sizeof faults / sizeof *faults; i++) {
+    if (!strcmp(fault, faults[i].name) && faults[i].devices & kind) {
+      *device = (enum fault)i;
       return true;
     }
   }

@@ -38,11 +38,13 @@ void devices_create(struct devices *devices, struct device_clock clock);
 
 void devices_set_motor_power(struct devices *devices, bool on);
 
-// The byte on the data line of the encoders; 0xff, by the pull-up, if none is selected.
-uint8_t devices_exchange_spi(struct devices *devices);
+// The byte on the data line of the encoders; 0xff, by the pull-up, if none is selected. `mode_0` as in spi.h.
+uint8_t devices_exchange_spi(struct devices *devices, bool mode_0);
 
-// Sets the fault of imu, pressure, encoder0 to 3 or bridge0 to 3: `none`, `absent`, `stuck`, or, of an
-// encoder that counts backwards or a motor whose leads are swapped, `reversed`. False for other words.
-bool devices_set_fault(struct devices *devices, const char *name, const char *kind);
+// Sets the fault of imu, pressure, encoder0 to 3 or bridge0 to 3: `none`, `absent`, `stuck`; of an encoder
+// that counts backwards or a motor whose leads are swapped `reversed`; of an encoder with a weak magnet
+// `weak`; of an H-bridge after an overcurrent `tripped`. `dip` puts the IMU to sleep, as a dip of its supply
+// does. False for other words.
+bool devices_set_fault(struct devices *devices, const char *name, const char *fault);
 
 #endif

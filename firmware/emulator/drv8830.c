@@ -5,12 +5,20 @@
 #define CONTROL_IN1 1
 #define CONTROL_IN2 2
 #define VSET_SHIFT 2
+#define VSET_MIN 6  // 0.48 V; the data sheet reserves what is less
+#define REGISTER_FAULT 1
+#define FAULT_BITS 0x03  // any fault, overcurrent
+#define FAULT_CLEAR 0x80
 
 int drv8830_drive(const struct drv8830 *bridge) {
   if (!*bridge->powered || bridge->fault == FAULT_ABSENT) {
     return 0;
   }
-  int steps = (bridge->control >> VSET_SHIFT) * (bridge->fault == FAULT_REVERSED ? -1 : 1);
+  int steps = bridge->control >> VSET_SHIFT;
+  if (steps < VSET_MIN || bridge->fault == FAULT_TRIPPED) {
+    return 0;
+  }
+  steps = bridge->fault == FAULT_REVERSED ? -steps : steps;
   switch (bridge->control & (CONTROL_IN1 | CONTROL_IN2)) {
     case CONTROL_IN1:
       return steps;
@@ -32,11 +40,16 @@ void drv8830_write(void *device, unsigned index, uint8_t byte) {
     bridge->pointer = byte;
   } else if (index == 1 && bridge->pointer == REGISTER_CONTROL && bridge->fault != FAULT_STUCK) {
     bridge->control = byte;
+  } else if (index == 1 && bridge->pointer == REGISTER_FAULT && byte & FAULT_CLEAR &&
+             bridge->fault == FAULT_TRIPPED) {
+    bridge->fault = FAULT_NONE;
   }
 }
 
-// The other register reports overcurrent and overheating, which are not emulated.
 uint8_t drv8830_read(void *device) {
   const struct drv8830 *bridge = device;
-  return bridge->pointer == REGISTER_CONTROL ? bridge->control : 0;
+  if (bridge->pointer == REGISTER_CONTROL) {
+    return bridge->control;
+  }
+  return bridge->pointer == REGISTER_FAULT && bridge->fault == FAULT_TRIPPED ? FAULT_BITS : 0;
 }

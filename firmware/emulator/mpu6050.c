@@ -58,6 +58,8 @@ void mpu6050_create(struct mpu6050 *imu, const struct surroundings *surroundings
   reset(imu);
 }
 
+void mpu6050_dip(struct mpu6050 *imu) { reset(imu); }
+
 // A transfer reads one complete sample.
 bool mpu6050_start(void *device) {
   struct mpu6050 *imu = device;

@@ -17,6 +17,9 @@ struct mpu6050 {
 };
 
 void mpu6050_create(struct mpu6050 *imu, const struct surroundings *surroundings);
+// A dip of the supply: the chip sleeps with its settings lost.
+void mpu6050_dip(struct mpu6050 *imu);
+
 bool mpu6050_start(void *imu);
 void mpu6050_write(void *imu, unsigned index, uint8_t byte);
 uint8_t mpu6050_read(void *imu);

@@ -120,6 +120,7 @@ void ms5837_write(void *device, unsigned index, uint8_t byte) {
   }
   sensor->command = byte;
   if (byte == COMMAND_RESET) {
+    sensor->was_reset = true;
     sensor->conversion = 0;
     sensor->ready = now(sensor) + RESET_SECONDS;
   } else if ((byte & 0xf0) == COMMAND_PRESSURE || (byte & 0xf0) == COMMAND_TEMPERATURE) {
@@ -127,7 +128,8 @@ void ms5837_write(void *device, unsigned index, uint8_t byte) {
   }
 }
 
-// Reads 0 before a reset or conversion is done, and without a request.
+// Reads 0 before a reset or conversion is done, and without a request. After power-on only a reset loads the
+// PROM.
 uint8_t ms5837_read(void *device) {
   struct ms5837 *sensor = device;
   unsigned index = sensor->read_index++;
@@ -140,7 +142,7 @@ uint8_t ms5837_read(void *device) {
     return byte;
   }
   unsigned word = (sensor->command - COMMAND_PROM) / 2u;
-  if (sensor->command >= COMMAND_PROM && word < MS5837_PROM_WORDS && index < 2) {
+  if (sensor->was_reset && sensor->command >= COMMAND_PROM && word < MS5837_PROM_WORDS && index < 2) {
     return (uint8_t)(sensor->prom[word] >> (8 - 8 * index));
   }
   return 0;

@@ -16,6 +16,7 @@ struct ms5837 {
   struct device_clock clock;
   const struct surroundings *surroundings;
   uint16_t prom[MS5837_PROM_WORDS];
+  bool was_reset;  // since power-on
   uint8_t command;
   unsigned read_index;
   double ready;  // s, end of its reset or conversion

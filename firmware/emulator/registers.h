@@ -3,9 +3,13 @@
 #ifndef REGISTERS_H
 #define REGISTERS_H
 
+#define REGISTER_DDRC 0x27
+#define PIN_SCL 0x20
 #define REGISTER_EECR 0x3f
 #define EECR_EEPE 0x02
 #define REGISTER_SPCR 0x4c
+#define SPCR_CPHA 0x04
+#define SPCR_CPOL 0x08
 #define REGISTER_SPSR 0x4d
 #define REGISTER_SPDR 0x4e
 #define REGISTER_TWBR 0xb8

@@ -24,12 +24,13 @@ static void on_data_written(void *owner, uint8_t value) {
 static void on_byte(avr_irq_t *irq, uint32_t value, void *param) {
   (void)irq;
   struct spi *spi = param;
-  uint8_t received = spi->exchange(spi->owner, (uint8_t)value);
+  uint8_t mode = spi->chip->avr->data[REGISTER_SPCR] & (SPCR_CPOL | SPCR_CPHA);
+  uint8_t received = spi->exchange(spi->owner, (uint8_t)value, !mode);
   avr_raise_irq(spi->module->io.irq + SPI_IRQ_INPUT, received);
 }
 
-void spi_create(struct spi *spi, struct chip *chip, uint8_t (*exchange)(void *owner, uint8_t sent),
-                void *owner) {
+void spi_create(struct spi *spi, struct chip *chip,
+                uint8_t (*exchange)(void *owner, uint8_t sent, bool mode_0), void *owner) {
   *spi = (struct spi){.chip = chip, .module = chip_module(chip, "spi"), .exchange = exchange, .owner = owner};
   chip_hook_write(chip, REGISTER_SPDR, &spi->data_written, on_data_written, spi);
   avr_irq_register_notify(spi->module->io.irq + SPI_IRQ_OUTPUT, on_byte, spi);

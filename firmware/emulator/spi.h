@@ -12,12 +12,13 @@ struct spi {
   struct chip *chip;
   avr_spi_t *module;
   struct chip_write_hook data_written;
-  uint8_t (*exchange)(void *owner, uint8_t sent);
+  uint8_t (*exchange)(void *owner, uint8_t sent, bool mode_0);
   void *owner;
 };
 
-// `exchange` is called with every byte sent and returns the byte received.
-void spi_create(struct spi *spi, struct chip *chip, uint8_t (*exchange)(void *owner, uint8_t sent),
-                void *owner);
+// `exchange` is called with every byte sent and returns the byte received. `mode_0`: the clock rests low, and
+// bits are read at its first edge.
+void spi_create(struct spi *spi, struct chip *chip,
+                uint8_t (*exchange)(void *owner, uint8_t sent, bool mode_0), void *owner);
 
 #endif

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "twi.h"
 
+#include <string.h>
+
 #include "registers.h"
 
 #define CHARACTER_BITS 9
 #define START_BITS 1
+#define CLOCKS_TO_RELEASE 9
+#define STRETCH 200e-6  // s
 
 // The TWSR codes of a master, as in the chip's data sheet.
 enum status {
@@ -50,6 +54,9 @@ static void on_bus(avr_irq_t *irq, uint32_t value, void *param) {
     return;
   }
   if (condition & TWI_COND_WRITE) {
+    if (twi->fault == TWI_FAULT_REFUSED) {
+      return;
+    }
     device->write(device->device, twi->index++, message.u.twi.data);
     answer(twi, TWI_COND_ACK, 1);
   }
@@ -88,17 +95,36 @@ static void on_control_written(void *owner, uint8_t value) {
   if (!slot || slot->when == twi->timer_when) {
     return;
   }
+  if (twi->fault == TWI_FAULT_STUCK) {
+    twi->clocks = 0;
+    avr_cycle_timer_cancel(twi->chip->avr, slot->timer, slot->param);
+    return;
+  }
   uint8_t status = corrected_status(twi, twi->module->next_twstate);
   twi->module->next_twstate = status;
   unsigned bits = status == START || status == REPEATED_START ? START_BITS : CHARACTER_BITS;
   avr_cycle_count_t delay = bits * bit_cycles(twi);
+  if (twi->fault == TWI_FAULT_STRETCHED && bits == CHARACTER_BITS) {
+    delay += chip_cycles(STRETCH);
+  }
   twi->timer_when = chip_now(twi->chip) + delay;
   avr_cycle_timer_register(twi->chip->avr, delay, slot->timer, slot->param);
+}
+
+// The program clocks the bus by hand: resistors pull the pin up where it is an input.
+static void on_direction_written(void *owner, uint8_t value) {
+  struct twi *twi = owner;
+  bool low = value & PIN_SCL;
+  if (twi->clock_low && !low && twi->fault == TWI_FAULT_STUCK && ++twi->clocks == CLOCKS_TO_RELEASE) {
+    twi->fault = TWI_FAULT_NONE;
+  }
+  twi->clock_low = low;
 }
 
 void twi_create(struct twi *twi, struct chip *chip) {
   *twi = (struct twi){.chip = chip, .module = chip_module(chip, "twi")};
   chip_hook_write(chip, REGISTER_TWCR, &twi->control_written, on_control_written, twi);
+  chip_hook_write(chip, REGISTER_DDRC, &twi->direction_written, on_direction_written, twi);
   avr_irq_register_notify(twi->module->io.irq + TWI_IRQ_OUTPUT, on_bus, twi);
 }
 
@@ -111,4 +137,19 @@ void twi_attach(struct twi *twi, struct i2c_device device) {
 void twi_reset(struct twi *twi) {
   twi->selected = NULL;
   twi->addressed = false;
+}
+
+bool twi_set_fault(struct twi *twi, const char *fault) {
+  static const char *const faults[] = {[TWI_FAULT_NONE] = "none",
+                                       [TWI_FAULT_STUCK] = "stuck",
+                                       [TWI_FAULT_REFUSED] = "refused",
+                                       [TWI_FAULT_STRETCHED] = "stretched"};
+  for (unsigned i = 0; i < sizeof faults / sizeof *faults; i++) {
+    if (!strcmp(fault, faults[i])) {
+      twi->fault = (enum twi_fault)i;
+      twi->clocks = 0;
+      return true;
+    }
+  }
+  return false;
 }

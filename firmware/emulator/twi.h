@@ -13,10 +13,18 @@
 
 #define TWI_DEVICES_MAX 8
 
+// Of the bus: a device holds SDA low until it has got nine clocks in a row; one refuses every byte of data;
+// one stretches the clock of every character.
+enum twi_fault { TWI_FAULT_NONE, TWI_FAULT_STUCK, TWI_FAULT_REFUSED, TWI_FAULT_STRETCHED };
+
 struct twi {
   struct chip *chip;
   avr_twi_t *module;
   struct chip_write_hook control_written;
+  struct chip_write_hook direction_written;
+  enum twi_fault fault;
+  bool clock_low;   // by the pin's direction, without the TWI
+  unsigned clocks;  // in a row, since the TWI last tried
   struct i2c_device devices[TWI_DEVICES_MAX];
   unsigned device_count;
   struct i2c_device *selected;
@@ -28,5 +36,7 @@ struct twi {
 void twi_create(struct twi *twi, struct chip *chip);
 void twi_attach(struct twi *twi, struct i2c_device device);
 void twi_reset(struct twi *twi);
+// Sets the bus's fault: none, stuck, refused or stretched. False for other words.
+bool twi_set_fault(struct twi *twi, const char *fault);
 
 #endif

@@ -8,7 +8,7 @@ TICK = 0.5e-6
 """s."""
 ACKNOWLEDGED_ADDRESS, REFUSED_ADDRESS = 0x18, 0x20
 REFUSED_READ_ADDRESS = 0x48
-ACKNOWLEDGED_DATA = 0x28
+ACKNOWLEDGED_DATA, REFUSED_DATA = 0x28, 0x30
 LAST_DATA = 0x58
 
 
@@ -38,11 +38,19 @@ class Monitor:
 
     def encoder(self, number: int) -> tuple[float, int]:
         """The duration of three bytes on SPI (s), and the word without its leading one."""
+        duration, bits = self.encoder_bits(number)
+        assert bits >> 23 == 1
+        return duration, bits >> 7 & 0xFFFF
+
+    def encoder_bits(self, number: int) -> tuple[float, int]:
+        """The duration of three bytes on SPI (s), and their bits."""
         said = self._ask(b"S" + bytes([number]), 5)
         (ticks,) = struct.unpack_from("<H", said)
-        bits = int.from_bytes(said[2:], "big")
-        assert bits >> 23 == 1
-        return ticks * TICK, bits >> 7 & 0xFFFF
+        return ticks * TICK, int.from_bytes(said[2:], "big")
+
+    def set_spi_mode(self, clock_rests_high: bool, second_edge: bool) -> None:
+        """Choose polarity and phase of the SPI clock."""
+        self._ask(b"M" + bytes([8 * clock_rests_high + 4 * second_edge]), 0)
 
     def adc(self, channel: int) -> int:
         """Counts of 1023."""

@@ -12,6 +12,7 @@ from tests.board.monitor import (
     ACKNOWLEDGED_DATA,
     LAST_DATA,
     REFUSED_ADDRESS,
+    REFUSED_DATA,
     REFUSED_READ_ADDRESS,
     Monitor,
 )
@@ -104,6 +105,11 @@ def convert(rig: Rig, monitor: Monitor, command: int, wait: float) -> int:
     return int.from_bytes(monitor.transfer(PRESSURE, b"\0", 3)[2], "big")
 
 
+def reset_pressure_sensor(rig: Rig, monitor: Monitor) -> None:
+    monitor.transfer(PRESSURE, b"\x1e")
+    rig.board.run(0.003)
+
+
 def prom(monitor: Monitor) -> list[int]:
     return [
         int.from_bytes(monitor.transfer(PRESSURE, bytes([0xA0 + 2 * word]), 2)[2], "big") for word in range(7)
@@ -126,7 +132,9 @@ def compensated(c: list[int], d1: int, d2: int) -> tuple[float, float]:
     return ((d1 * sens >> 21) - off) / 2**13 * 10, (temp - ti) / 100
 
 
-def test_the_prom_carries_its_checksum(monitor: Monitor) -> None:
+def test_the_prom_is_empty_until_a_reset_and_carries_its_checksum(rig: Rig, monitor: Monitor) -> None:
+    assert prom(monitor) == [0] * 7
+    reset_pressure_sensor(rig, monitor)
     words = prom(monitor)
     remainder = 0
     for index, byte in enumerate(
@@ -147,6 +155,7 @@ def test_the_compensation_returns_the_true_pressure(
     rig.board.sense(STILL_WATER._replace(pressure=pressure, temperature=temperature))
     d2 = convert(rig, monitor, 0x5A, 0.02)
     d1 = convert(rig, monitor, 0x4A, 0.02)
+    reset_pressure_sensor(rig, monitor)
     felt = compensated(prom(monitor), d1, d2)
     assert felt[0] == pytest.approx(pressure, abs=10)
     assert felt[1] == pytest.approx(temperature, abs=0.01)
@@ -215,6 +224,21 @@ def test_an_absent_encoder_leaves_the_line_high(rig: Rig, monitor: Monitor) -> N
     assert monitor.encoder(1)[1] != 0xFFFF
 
 
+def test_in_spi_mode_0_an_encoder_s_word_comes_a_bit_late(monitor: Monitor) -> None:
+    right = monitor.encoder_bits(0)[1]
+    monitor.set_spi_mode(clock_rests_high=False, second_edge=False)
+    wrong = monitor.encoder_bits(0)[1]
+    assert wrong == 1 << 23 | right >> 1
+    monitor.set_spi_mode(clock_rests_high=True, second_edge=True)
+    assert monitor.encoder_bits(0)[1] == right
+
+
+def test_a_weak_magnet_shows_in_the_status_bits(rig: Rig, monitor: Monitor) -> None:
+    before = monitor.encoder(1)[1]
+    rig.board.fault("encoder1", "weak")
+    assert monitor.encoder(1)[1] == before | 0b110
+
+
 # The motors
 
 
@@ -229,7 +253,7 @@ def test_a_motor_turns_its_fin_as_it_is_driven(rig: Rig, monitor: Monitor) -> No
         assert drive(monitor, fin, steps) == ACKNOWLEDGED_DATA
     rig.board.run(0.3)
     before = rig.board.fins()
-    assert before.drives == (40, -40, 40, 1)
+    assert before.drives == (40, -40, 40, 0)
     assert before.speeds == pytest.approx((12.6, -12.6, -12.6, 0), abs=0.01)
     rig.board.run(0.1)
     after = rig.board.fins()
@@ -299,6 +323,38 @@ def test_inputs_survive_a_reset(rig: Rig, monitor: Monitor) -> None:
 # Faults
 
 
+def test_a_dip_of_the_supply_puts_the_imu_to_sleep(rig: Rig, monitor: Monitor) -> None:
+    monitor.transfer(IMU, b"\x6b\0")
+    assert imu_counts(monitor)[2] != 0
+    rig.board.fault("imu", "dip")
+    assert monitor.transfer(IMU, b"\x6b", 1)[2] == b"\x40"
+    assert imu_counts(monitor) == (0,) * 7
+
+
+def test_a_tripped_bridge_coasts_until_its_fault_is_cleared(rig: Rig, monitor: Monitor) -> None:
+    monitor.outputs(MOTOR_POWER)
+    drive(monitor, 0, 40)
+    rig.board.fault("bridge0", "tripped")
+    assert rig.board.fins().drives[0] == 0
+    assert monitor.transfer(BRIDGES[0], b"\x01", 1)[2] == b"\x03"
+    monitor.transfer(BRIDGES[0], b"\x01\x80")
+    assert monitor.transfer(BRIDGES[0], b"\x01", 1)[2] == b"\0"
+    assert rig.board.fins().drives[0] == 40
+
+
+def test_a_bus_that_refuses_data(rig: Rig, monitor: Monitor) -> None:
+    rig.board.fault("i2c", "refused")
+    assert monitor.transfer(IMU, b"\x6b\0")[0] == REFUSED_DATA
+    rig.board.fault("i2c", "none")
+    assert monitor.transfer(IMU, b"\x6b\0")[0] == ACKNOWLEDGED_DATA
+
+
+def test_a_bus_that_stretches_its_clock(rig: Rig, monitor: Monitor) -> None:
+    usual = monitor.transfer(IMU, b"\x6b\0")[1]
+    rig.board.fault("i2c", "stretched")
+    assert monitor.transfer(IMU, b"\x6b\0")[1] == pytest.approx(usual + 3 * 200e-6, abs=5e-6)
+
+
 def test_absent_devices_refuse_their_addresses(rig: Rig, monitor: Monitor) -> None:
     monitor.outputs(MOTOR_POWER)
     for name, address in {"imu": IMU, "pressure": PRESSURE, "bridge3": BRIDGES[3]}.items():
@@ -337,7 +393,19 @@ def test_a_stuck_encoder_and_a_stuck_bridge(rig: Rig, monitor: Monitor) -> None:
     assert monitor.encoder(0)[1] != before
 
 
-@pytest.mark.parametrize(("device", "kind"), [("imu", "broken"), ("encoder4", "none"), ("", "")])
+@pytest.mark.parametrize(
+    ("device", "kind"),
+    [
+        ("imu", "broken"),
+        ("encoder4", "none"),
+        ("", ""),
+        ("imu", "reversed"),
+        ("pressure", "dip"),
+        ("encoder0", "tripped"),
+        ("bridge0", "weak"),
+        ("i2c", "absent"),
+    ],
+)
 def test_unknown_faults_are_refused(rig: Rig, device: str, kind: str) -> None:
     with pytest.raises(BoardError, match="fault takes imu"):
         rig.board.fault(device, kind)  # type: ignore[arg-type]

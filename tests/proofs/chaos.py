@@ -262,6 +262,9 @@ class Storm:
             self._expect(f"{name}_down", report.alarms[f"{name}_down"], done[f"{name} killed"])
         self._expect("server_restarted", report.alarms["server_restarted"], done["server killed"])
         self._expect("disk_low", report.alarms["disk_low"], done["disk full"])
+        if report.alarms["disk_low"] != done["disk full"]:
+            times = [f"{time:.1f}" for time in self._disk_low]
+            self.report.problems.append(f"disk_low came at {', '.join(times)} s")
         self._expect("restarted state", report.gaps.pop("restarted state", 0), done["runtime killed"])
         self._expect("restarted truth", report.gaps.pop("restarted truth", 0), done["simulator killed"])
         others = {name: count for name, count in report.gaps.items() if not name.startswith("restarted ")}
@@ -291,7 +294,8 @@ class Storm:
         report, ends, ticks = self.report, dict[str, int](), list[float]()
         with closing(sqlite3.connect(self._world.folder.database)) as database:
             (report.integrity,) = database.execute("PRAGMA integrity_check").fetchone()
-            (state,) = database.execute("SELECT state FROM session WHERE id = ?", (session,)).fetchone()
+            query = "SELECT state, started_steady FROM session WHERE id = ?"
+            state, started = database.execute(query, (session,)).fetchone()
             self._insist(state == "complete", f"the session is {state}")
             gaps = database.execute("SELECT kind, topic FROM gap WHERE session_id = ?", (session,))
             report.gaps = Counter(f"{kind} {topic}" for kind, topic in gaps)
@@ -308,7 +312,9 @@ class Storm:
                 if topic == "control":
                     ticks += row_times(topic, data)
                 elif topic == "notice":
-                    report.alarms.update(one["kind"] for one in decode_documents(data))
+                    notices = decode_documents(data)
+                    report.alarms.update(one["kind"] for one in notices)
+                    self._disk_low += [one["time"] - started for one in notices if one["kind"] == "disk_low"]
         late = [1000 * abs(after - before - 0.1) for before, after in pairwise(ticks)]
         cuts = quantiles(late, n=1000)
         report.jitter = {"p50": round(cuts[499], 2), "p99": round(cuts[989], 2), "max": round(max(late), 1)}

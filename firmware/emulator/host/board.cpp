@@ -115,7 +115,7 @@ bool exchange_i2c(uint8_t address, const uint8_t* out, uint8_t out_size, uint8_t
 void read_encoder(uint8_t fin, uint8_t (&bytes)[kEncoderBytes]) {
   as5040* const encoder = &current->parts.encoders[fin];
   as5040_select(encoder, true);
-  for (uint8_t& byte : bytes) byte = devices_exchange_spi(&current->parts);
+  for (uint8_t& byte : bytes) byte = devices_exchange_spi(&current->parts, false);
   as5040_select(encoder, false);
 }
 

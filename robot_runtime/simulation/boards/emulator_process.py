@@ -19,7 +19,8 @@ ANSWER_TIMEOUT = 60.0
 """s of real time for an answer; a `run` of many emulated seconds takes a while."""
 
 Water = Callable[[FinMotion], Reading]
-FaultKind = Literal["none", "absent", "stuck", "reversed"]
+FaultKind = Literal["none", "absent", "stuck", "reversed", "weak", "tripped", "dip", "refused", "stretched"]
+"""Not every device has each; see docs/reference/emulator.md."""
 LineDirection = Literal["to_board", "from_board"]
 LineFault = Literal["bit_errors", "drop", "double", "insert"]
 

@@ -155,6 +155,9 @@ static void do_command(uint8_t command) {
     case 'S':
       do_spi();
       break;
+    case 'M':
+      SPCR = (SPCR & ~(_BV(CPOL) | _BV(CPHA))) | serial_get();
+      break;
     case 'A':
       do_adc();
       break;

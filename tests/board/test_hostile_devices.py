@@ -1,0 +1,94 @@
+"""The robot's firmware at full load on a board whose devices misbehave, in emulated time."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.contract.packets import DeviceFault, Imu, Navigation, Status, StatusFlag
+from robot_runtime.simulation.boards.emulator_process import FaultKind
+from tests.board.host import Robot, all_of, last, start
+from tests.board.rig import ROOT, build
+
+DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
+SENSORS = DeviceFault.IMU | DeviceFault.PRESSURE
+BRIDGES = DeviceFault(sum(DeviceFault.BRIDGE_FRONT_RIGHT << fin for fin in range(4)))
+TICK_US = 10_000
+
+
+@pytest.fixture
+def robot(built: None, tmp_path: Path) -> Iterator[Robot]:  # noqa: ARG001 - built first
+    build(ROOT / "firmware", "robot")
+    with start("robot", tmp_path) as rig:
+        robot = Robot(rig)
+        robot.listen(0.5)
+        robot.arm()
+        robot.converse(0.5, DOWN)
+        yield robot
+
+
+@pytest.mark.parametrize(
+    ("device", "kind", "faults"),
+    [
+        ("imu", "absent", DeviceFault.IMU),
+        ("pressure", "absent", DeviceFault.PRESSURE),
+        ("encoder0", "absent", DeviceFault.ENCODER_FRONT_RIGHT),
+        ("encoder1", "weak", DeviceFault.MAGNET),
+        ("bridge2", "absent", DeviceFault.BRIDGE_BACK_LEFT),
+        ("i2c", "refused", SENSORS | BRIDGES),
+        ("i2c", "stretched", SENSORS | BRIDGES),
+    ],
+)
+def test_no_device_delays_a_tick_and_each_is_reported_and_found_again(
+    robot: Robot, device: str, kind: FaultKind, faults: DeviceFault
+) -> None:
+    robot.board.fault(device, kind)
+    statuses = all_of(robot.converse(1.5, DOWN), Status)
+    assert statuses[-1].faults == faults
+    robot.board.fault(device, "none")
+    statuses += all_of(robot.converse(1.0, DOWN), Status)
+    assert statuses[-1].faults == 0
+    assert {status.missed_ticks for status in statuses} == {0}
+    assert max(status.loop_worst for status in statuses) < TICK_US
+    assert all(status.flags & StatusFlag.ARMED for status in statuses)
+    assert robot.board.stats()["watchdog_resets"] == 0
+
+
+@pytest.mark.parametrize("kind", ["refused", "stretched"])
+def test_fins_stop_in_time_on_a_bus_that_misbehaves(robot: Robot, kind: FaultKind) -> None:
+    """The motor power goes by a pin of its own, whatever the bus does."""
+    robot.board.fault("i2c", kind)
+    robot.listen(1.2)  # the host is silent
+    fins = robot.board.fins()
+    assert not fins.powered
+    assert fins.speeds == pytest.approx((0, 0, 0, 0), abs=0.02)
+
+
+def test_nine_clocks_free_a_bus_whose_data_line_is_held_low(robot: Robot) -> None:
+    for _ in range(5):
+        robot.board.fault("i2c", "stuck")
+        statuses = all_of(robot.converse(0.5, DOWN), Status)
+        assert statuses[-1].faults == 0
+        assert statuses[-1].missed_ticks == 0
+        assert max(status.loop_worst for status in statuses) < TICK_US
+    assert robot.board.stats()["watchdog_resets"] == 0
+
+
+def test_an_imu_that_fell_asleep_is_woken_within_100_ms(robot: Robot) -> None:
+    before = last(robot.heard, Imu)
+    robot.board.fault("imu", "dip")
+    packets = robot.converse(0.5, DOWN)
+    readings = [before, *all_of(packets, Imu)]
+    gaps = [after.time - before.time for before, after in pairwise(readings)]
+    assert 50_000 < max(gaps) < 100_000  # µs; the gyroscope needs 50 ms to start
+    assert all(reading.force[2] for reading in readings)
+    assert last(packets, Status).faults == 0
+
+
+def test_a_tripped_bridge_is_reported_and_cleared(robot: Robot) -> None:
+    robot.board.fault("bridge1", "tripped")
+    statuses = all_of(robot.converse(1.0, DOWN), Status)
+    assert DeviceFault.BRIDGE_BACK_RIGHT in {status.faults for status in statuses}
+    assert statuses[-1].faults == 0
+    assert abs(robot.board.fins().speeds[1]) > 0.5
