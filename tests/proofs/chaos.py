@@ -96,6 +96,7 @@ class Storm:
         self._stack = stack
         self._pages = [SlowPage(self._stack, stalled=stalled) for stalled in (False, False, True, True)]
         self._memory: dict[int, tuple[str, list[tuple[float, float]]]] = {}
+        self._disk_low: list[float] = []
         self._sampled = 0.0
         self._gentle: list[Callable[[], str]] = [self._noise, self._cut, self._stop, self._jump]
         if small_disk:

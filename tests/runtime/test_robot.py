@@ -104,13 +104,14 @@ class Board:
             self.end.say(Parameter.from_bytes(payload))
 
     def _report(self) -> None:
-        # A sensor that hangs shows the same again and again; this one is well.
-        pressures = itertools.cycle((103_000, 103_010))
+        # A sensor that hangs shows the same again and again; these are well.
+        noises = itertools.cycle((0, 1))
         while not self._ending.wait(0.02):
             if not self.silent:
-                pressure = next(pressures)
+                noise = next(noises)
+                pressure = 103_000 + 10 * noise
                 depth = Depth(time=_micros(), depth=self.depth, pressure=pressure, temperature=20.0)
-                self.end.say(depth, _level(), self._status())
+                self.end.say(depth, _level(0.01 * noise), self._status())
 
     def _status(self) -> Packet:
         flags = StatusFlag.HOST_ALIVE | (StatusFlag.ARMED if self._armed else 0)
@@ -228,9 +229,9 @@ def rig(tmp_path: Path) -> Iterator[Rig]:
     rig.close()
 
 
-def _level() -> Imu:
-    rest = (0.0, 0.0, 0.0)
-    return Imu(time=_micros(), attitude=(1.0, 0.0, 0.0, 0.0), rate=rest, force=(0.0, 0.0, -9.81))
+def _level(noise: float) -> Imu:
+    rate, force = (noise, 0.0, 0.0), (noise, 0.0, -9.81)
+    return Imu(time=_micros(), attitude=(1.0, 0.0, 0.0, 0.0), rate=rate, force=force)
 
 
 def _micros() -> int:

@@ -97,6 +97,16 @@ def test_a_frozen_imu_repeats_its_rate_or_its_force(rig: Rig, frozen: Literal["r
     assert wrong(rig) == set()
 
 
+def test_in_the_loop_the_board_repeats_what_it_was_sent() -> None:
+    rig = Rig(in_the_loop=True)
+    rig.ready()
+    for _ in range(50):
+        rig.clock.forward(0.01)
+        rig.sense_depth()
+        rig.sense_attitude(frozen="rate")
+    assert "imu_frozen" not in wrong(rig)
+
+
 def test_on_a_slow_line_a_few_equal_readings_are_not_frozen() -> None:
     rig = Rig(1200)
     rig.ready()
