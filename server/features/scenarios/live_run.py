@@ -22,6 +22,8 @@ from server.processes.supervisor import Notify, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 POLL_SECONDS = 0.1
+STATE_SECONDS = 5.0
+"""The runtime sends its state once a second."""
 SETTLE_SECONDS = 0.5
 """Time after a change of the water, for the sensors to follow before the recording begins."""
 NEEDED = ("board", "runtime", "simulator")
@@ -66,7 +68,7 @@ class LiveExecutor:
         """Perform a run. Raises the errors that `ScenarioExecutor.perform` names."""
         self.check(run.scenario)
         run.phase = "preparing"
-        before = await self._surroundings.read(self._state())
+        before = await self._surroundings.read(await self._next_state())
         await asyncio.to_thread(before.write, self._snapshot)
         async with self._changes.together(run.who, f"Scenario “{run.scenario.title}”") as send:
             try:
@@ -214,10 +216,15 @@ class LiveExecutor:
             )
         return reasons
 
-    def _state(self) -> dict[str, Any]:
-        state = self._monitor.state()
-        if state is None:
-            raise RefusedError("The robot's runtime has said nothing yet. Wait a moment.")
+    async def _next_state(self) -> dict[str, Any]:
+        """A state that the runtime sends from now on: the newest one may be from before the last change."""
+        asked = self._clock.now()
+        try:
+            async with asyncio.timeout(STATE_SECONDS):
+                while (state := self._monitor.state()) is None or state["time"] < asked:
+                    await asyncio.sleep(POLL_SECONDS)
+        except TimeoutError:
+            raise RefusedError("The robot's runtime does not tell its state. Wait a moment.") from None
         return state
 
     def _process_ids(self) -> dict[str, int | None]:
