@@ -19,6 +19,10 @@ volatile uint8_t ticks;
 
 }  // namespace
 
+// Here, not beside the reset's cause, whose start-up code switches the watchdog on in every program that
+// links it.
+__attribute__((section(".noinit"))) volatile uint8_t unfed_ticks;
+
 ISR(TIMER1_COMPA_vect) {
   if (ticks != UINT8_MAX) ++ticks;
   if (unfed_ticks != UINT8_MAX) ++unfed_ticks;

@@ -56,8 +56,6 @@ __attribute__((naked, used, section(".init3"))) void mucat_early_start(void) {
 }
 }
 
-__attribute__((section(".noinit"))) volatile uint8_t unfed_ticks;
-
 void start() {
   cause = find_cause();
   mark = kMark;
