@@ -103,9 +103,10 @@ def last(packets: list[Packet], cls: type[P]) -> P:
     return found[-1]
 
 
-def start(name: str, folder: Path, *options: str) -> Rig:
-    """Start a board with this program of the firmware behind the boot loader of the robot's board."""
-    return Rig(FIRMWARE / f"{name}.elf", folder, "--bootloader", str(OPTIBOOT), *options, baud=BAUD)
+def start(name: str, folder: Path, *options: str, boot_loader: bool = True) -> Rig:
+    """Start a board with this program of the firmware, behind the boot loader of the robot's board."""
+    loader = ("--bootloader", str(OPTIBOOT)) if boot_loader else ()
+    return Rig(FIRMWARE / f"{name}.elf", folder, *loader, *options, baud=BAUD)
 
 
 class Host:

@@ -214,7 +214,9 @@ class World:
         self.joined = False
 
     def _switch_on(self) -> None:
-        self._rig = start(self._program, self._folder, "--eeprom", str(self._folder / "eeprom"))
+        eeprom = ("--eeprom", str(self._folder / "eeprom"))
+        # The session's time is measured, not the second in which a boot loader waits for an upload.
+        self._rig = start(self._program, self._folder, *eeprom, boot_loader=False)
         self._set_noise(self._noisy)
 
     def _start_host(self) -> None:
