@@ -155,9 +155,8 @@ static void fault(struct service *service, struct client *client, char *argument
   }
   refuse(service, client,
          "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck; reversed for the "
-         "last eight, "
-         "weak for encoders, tripped for bridges, dip for the imu; or i2c, and none, stuck, refused or "
-         "stretched");
+         "last eight, weak for encoders, tripped for bridges, dip for the imu; or i2c, and none, stuck, "
+         "refused or stretched");
 }
 
 static bool disturb(struct host_port *port, enum direction direction, const char *kind, const char *value) {

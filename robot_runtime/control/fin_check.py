@@ -1,10 +1,11 @@
 """The fin check: moves each axis briefly and compares each fin's angle with its set point."""
 
-from math import pi, sqrt
+from math import sqrt
 from statistics import fmean, linear_regression, pstdev
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import FIN_COUNT, Motor, Navigation
+from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.control.pilot import AXES, NEUTRAL
 
 FINS = ("front right", "back right", "back left", "front left")
@@ -28,9 +29,9 @@ class FinTracking:
 
     def see(self, set_point: float, angle: float) -> None:
         """Takes a sample."""
-        self._unwrapped += _wrap(set_point - self._unwrapped)
+        self._unwrapped += wrap_angle(set_point - self._unwrapped)
         self._set_points.append(self._unwrapped)
-        self._errors.append(_wrap(angle - set_point))
+        self._errors.append(wrap_angle(angle - set_point))
 
     def judge(self) -> str:
         """Returns what is wrong with the fin; empty if it follows."""
@@ -73,7 +74,3 @@ class FinCheck:
     def failed(self) -> dict[str, str]:
         """Returns the fins that did not follow, by name, with what they did."""
         return {name: words for fin, name in zip(self._fins, FINS, strict=True) if (words := fin.judge())}
-
-
-def _wrap(angle: float) -> float:
-    return (angle + pi) % (2 * pi) - pi
