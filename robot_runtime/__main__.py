@@ -3,10 +3,12 @@
 import argparse
 import logging
 import sys
+from dataclasses import replace
 from pathlib import Path
 
-from robot_runtime.config import Config, load
+from robot_runtime.config import Config, craft_in, craft_path, load
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.durable_files import keep_private
 from robot_runtime.robot import Robot
 from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
@@ -24,6 +26,8 @@ def main() -> int:
         end_with_parent()
     try:
         config = load(options.config)
+        craft = craft_in(craft_path(config, options.config, options.data))
+        config = replace(config, control=tune_to_craft(config.control, craft))
         with open_transport(config, options.data) as messages:
             port = options.port or config.link.port
             vision_file = VisionSettingsFile(options.data / "vision.json")

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Literal
 
+from robot_runtime.contract.craft import Craft, load_craft
 from robot_runtime.contract.limits import SET_POINT, ConfigError, Range
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.problems import DocumentEntry
@@ -15,6 +16,9 @@ NETWORK_ENDPOINT = re.compile(r"tls/[^\s/#?;]+:[0-9]+")
 """A Zenoh endpoint with certificates. What may follow in one, from ? or # on, could switch them off."""
 HIL_BAUD_MIN = 115_200
 """bit/s from which the line carries the fins' angles at full rate."""
+
+ADOPTED_CRAFT = "craft.toml"
+"""File of the data folder with the adopted craft."""
 
 CHIP_CLOCK = 16_000_000
 """Hz."""
@@ -59,6 +63,13 @@ class HilConfig:
 
     board: Literal["emulated", "real"] = "emulated"
     simulator: Literal["here", "elsewhere"] = "here"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CraftConfig:
+    """The file with the craft's physical numbers, for simulator, scenarios and model-based controller."""
+
+    file: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,6 +144,7 @@ class Config:
     robot: RobotConfig = RobotConfig()
     link: LinkConfig = LinkConfig()
     hil: HilConfig = HilConfig()
+    craft: CraftConfig = CraftConfig()
     control: ControlConfig = ControlConfig()
     vision: VisionConfig = VisionConfig()
     zenoh: ZenohConfig = ZenohConfig()
@@ -156,3 +168,21 @@ def load(path: Path) -> Config:
     except TomlError as problem:
         raise ConfigError(f"{path} cannot be read: it {problem}") from problem
     return parse(Config, table, DocumentEntry(path.name))
+
+
+def craft_path(config: Config, path: Path, data: Path) -> Path:
+    """Returns the craft file that the configuration at `path` names, else the adopted one in the data folder.
+
+    The adopted one need not exist. Raises ConfigError if the named one does not.
+    """
+    if not config.craft.file:
+        return data / ADOPTED_CRAFT
+    named = path.absolute().parent / config.craft.file
+    if not named.is_file():
+        raise ConfigError(f"craft.file is {config.craft.file!r}; there is no file {named}")
+    return named
+
+
+def craft_in(path: Path) -> Craft:
+    """Returns the craft in this file, the default one where there is no file. Raises ConfigError."""
+    return load_craft(path).craft if path.exists() else Craft()

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from robot_runtime.generate import cpp, json_schema, reference, typescript
 from robot_runtime.generate.configuration import configuration_page
+from robot_runtime.generate.craft import craft_page
 
 SOURCES = Path(__file__).resolve().parents[2]
 ROOT = SOURCES
@@ -29,6 +30,7 @@ def main() -> int:
         "docs/reference/configuration.md": configuration_page(
             (SOURCES / "robot.toml").read_text(encoding="utf-8")
         ),
+        "docs/reference/craft.md": craft_page(),
         "docs/reference/faults.md": reference.faults_page(),
         "docs/reference/packets.md": reference.packets_page(),
         "docs/reference/parameters.md": reference.parameters_page(),

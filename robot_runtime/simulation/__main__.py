@@ -11,6 +11,9 @@ import sys
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.config import craft_in
+from robot_runtime.contract.craft import Craft
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import keep_private
 from robot_runtime.simulation.water.hil import HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
@@ -23,8 +26,8 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 log = logging.getLogger(__name__)
 
 
-def main() -> None:
-    """Runs until SIGTERM or SIGINT."""
+def main() -> int:
+    """Runs until SIGTERM or SIGINT. Returns 2 if the craft cannot be used."""
     keep_private()
     arguments = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(levelname)s simulation: %(message)s")
@@ -32,6 +35,11 @@ def main() -> None:
         end_with_parent()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: sys.exit())
+    try:
+        craft = craft_in(arguments.craft) if arguments.craft else Craft()
+    except ConfigError as problem:
+        log.error("%s", problem)
+        return 2
     network = connect_settings(arguments.certificate) if arguments.certificate else LOCAL_ONLY
     joined = (
         join(arguments.robot, arguments.connect, network)
@@ -39,7 +47,7 @@ def main() -> None:
         else ZenohTransport(arguments.robot, connect=arguments.connect)
     )
     with joined as messages:
-        simulator = Simulator(SimulationParameters(), arguments.seed)
+        simulator = Simulator(SimulationParameters.of(craft), arguments.seed)
         process: WaterProcess | HilSimulator
         if arguments.in_the_loop:
             process = HilSimulator(simulator, messages)
@@ -47,6 +55,7 @@ def main() -> None:
             process = WaterProcess(simulator, arguments.board, messages, SteadyClock())
         end_on_request(arguments, process.end)
         process.run()
+    return 0
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -68,9 +77,10 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sensors' noise")
+    parser.add_argument("--craft", type=Path, metavar="FILE", help="the craft; an absent file: the default")
     add_server_options(parser)
     return parser
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -11,7 +11,17 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.config import HilConfig, LinkConfig, SessionsConfig, ZenohConfig, load
+from robot_runtime.config import (
+    ADOPTED_CRAFT,
+    HilConfig,
+    LinkConfig,
+    SessionsConfig,
+    ZenohConfig,
+    craft_in,
+    craft_path,
+    load,
+)
+from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import make_folder
 from server.platform.pidfile import running_parts
@@ -84,6 +94,8 @@ class DataFolder:
         """Exists while a scenario runs on the robot: the settings before it."""
         self.scenarios = path / "scenarios"
         """Your own scenarios."""
+        self.craft = path / ADOPTED_CRAFT
+        """The adopted craft (docs/use/identify.md)."""
         self.panels = path / "panels"
         """Your own panels for the page (docs/use/panels.md)."""
 
@@ -108,6 +120,8 @@ class Settings:
     """The origin that people open, where a reverse proxy stands before the server."""
     trusted_proxies: tuple[Network, ...] = ()
     """The networks whose X-Forwarded-For is believed."""
+    craft: Path | None = None
+    """The craft file that the configuration names; None: the adopted one."""
     build: Path = Path(__file__).parents[2] / "build"
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"
@@ -134,6 +148,15 @@ class Settings:
         return f"{self.scheme}://{name}:{self.port}"
 
     @property
+    def craft_file(self) -> Path:
+        """The craft file in force, which need not exist."""
+        return self.craft or self.data.craft
+
+    def read_craft(self) -> Craft:
+        """The craft in force. Raises ConfigError where its file cannot be used."""
+        return craft_in(self.craft_file)
+
+    @property
     def emulated_board(self) -> bool:
         """True where the robot's board is an emulated one."""
         return self.mode == "emulated" or (self.mode == "hil" and self.hil.board == "emulated")
@@ -154,6 +177,11 @@ def read_settings(
         raise SetupError(f"{problem}. Correct the file, or name another with --config.") from problem
     folder = DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
     _check_socket_paths(folder)
+    try:
+        craft = craft_path(loaded, config, folder.path)
+        craft_in(craft)
+    except ConfigError as problem:
+        raise SetupError(f"{problem}. Correct or remove the craft file.") from problem
     if not ROBOT_NAME.fullmatch(loaded.robot.name):
         raise SetupError(f"{config}: robot.name is {loaded.robot.name!r}; use up to 32 of a-z, 0-9, - and _.")
     chosen_port = loaded.server.port if port is None else port
@@ -174,6 +202,7 @@ def read_settings(
         hil=loaded.hil,
         sessions=loaded.sessions,
         zenoh=loaded.zenoh,
+        craft=None if craft == folder.craft else craft,
         host=chosen_host,
         port=chosen_port,
         tls=loaded.server.tls,

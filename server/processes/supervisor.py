@@ -271,7 +271,7 @@ def plan(settings: Settings) -> list[ProcessCommand]:
     folder, build = settings.data, settings.build
     runtime = [sys.executable, "-m", "robot_runtime", "--config", str(settings.config)]
     runtime += ["--data", str(folder.path), "--heartbeat", f"{HEARTBEAT_SECONDS:g}"]
-    runtime_files = (settings.config, *sorted(folder.zenoh.rglob("*.pem")))
+    runtime_files = (settings.config, settings.craft_file, *sorted(folder.zenoh.rglob("*.pem")))
     if settings.mode == "robot":
         # Without --server-lock it outlives the server: it must go on controlling a robot under water.
         return [ProcessCommand("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files)]
@@ -283,9 +283,9 @@ def plan(settings: Settings) -> list[ProcessCommand]:
         simulator += ["--board", str(folder.board_socket)]
         for socket in (folder.runtime_socket, folder.server_socket, folder.scene_socket):
             simulator += ["--connect", f"unixsock-stream/{socket}"]
-    simulator += ["--robot", settings.robot, *lock]
+    simulator += ["--robot", settings.robot, "--craft", str(settings.craft_file), *lock]
     needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
-    water = ProcessCommand("simulator", "simulator", tuple(simulator), needs)
+    water = ProcessCommand("simulator", "simulator", tuple(simulator), needs, (settings.craft_file,))
     scene = [sys.executable, "-m", "robot_runtime.simulation.scene"]
     scene += ["--listen", f"unixsock-stream/{folder.scene_socket}"]
     for socket in (folder.runtime_socket, folder.server_socket):

@@ -5,9 +5,11 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.config import Config, load
+from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import parse
 from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.control.craft_gains import craft_gains
 
 SHIPPED = Path(__file__).resolve().parents[2] / "robot.toml"
 
@@ -27,6 +29,9 @@ def test_the_shipped_file_holds_the_defaults() -> None:
     defaults = {
         cls.name: {name: one.default for name, one in cls.limits.items()} for cls in CONTROLLERS["depth"]
     }
+    # Those of the craft are not set, so that another craft has its own.
+    of_the_craft = {name: defaults["predictive"].pop(name) for name in craft_gains(Craft())}
+    assert craft_gains(Craft()) == pytest.approx(of_the_craft, rel=0.002)
     assert shipped.control.gains == defaults
 
 

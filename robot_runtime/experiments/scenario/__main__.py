@@ -20,6 +20,8 @@ from typing import IO, Any
 
 import cv2
 
+from robot_runtime.config import craft_in
+from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
@@ -55,6 +57,9 @@ def main() -> int:
     made = boards()
     parser = argparse.ArgumentParser(prog="python -m robot_runtime.experiments.scenario", description=__doc__)
     parser.add_argument("--board", choices=sorted(made), default="host", help="what runs the firmware")
+    parser.add_argument(
+        "--craft", type=Path, metavar="FILE", help="the craft that scenarios call the robot's"
+    )
     parser.add_argument("--out", type=Path, metavar="FILE", help="write there instead of standard output")
     options = parser.parse_args()
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
@@ -63,7 +68,8 @@ def main() -> int:
         stream = opened.enter_context(options.out.open("wb")) if options.out else sys.stdout.buffer
         messages = RunOutput(stream)
         try:
-            scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"))
+            craft = craft_in(options.craft) if options.craft else Craft()
+            scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"), craft)
         except ConfigError as problem:
             messages.event("refused", problems=problem.texts)
             return REFUSED

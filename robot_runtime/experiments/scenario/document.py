@@ -4,14 +4,16 @@ SI units; world axes north, east, down from the start, angles in rad. docs/use/s
 """
 
 import re
-from dataclasses import asdict, dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Any, Literal, get_type_hints
 
 from robot_runtime.config import ControlConfig
+from robot_runtime.contract.craft import Craft, complete_sensors
 from robot_runtime.contract.limits import VISION_RATE, ConfigError, Range
 from robot_runtime.contract.parsing import TOP, parse, read_value
 from robot_runtime.contract.problems import DocumentEntry, EntryProblem
 from robot_runtime.contract.toml_text import TomlError, read_toml
+from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.experiments.scenario.events import (
     Colour,
     TimedEvent,
@@ -21,10 +23,7 @@ from robot_runtime.experiments.scenario.events import (
 )
 from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Vector
 from robot_runtime.simulation.water.surroundings import (
-    BUOYANCY_MAX,
-    BUOYANCY_MIN,
     FLOATING,
-    OFFSET_MAX,
     Basin,
     Current,
     StartPose,
@@ -46,14 +45,12 @@ FACTOR = 4.0
 """By which a number of the robot may be smaller or larger than the one it replaces: twice what is uncertain
 about the assumed ones, and as far as steps of 5 ms remain stable."""
 _LIMITS: dict[str, tuple[float, float]] = {
-    "buoyancy": (BUOYANCY_MIN, BUOYANCY_MAX),
-    "buoyancy_height": (-OFFSET_MAX, OFFSET_MAX),
-    "restitution": (0.0, 1.0),
-    "friction": (0.0, 2.0),
     "temperature": (0.0, 40.0),
-    "pressure_position": (-0.2, 0.2),
     "latency": (0.0, 5.0),
 }
+DEFAULT_CRAFT = Craft()
+_OF_A_CRAFT = frozenset(one.name for one in fields(Craft))
+"""Numbers whose limits are the craft's own."""
 _ELSEWHERE = {"floor": "[scene] depth", "beacons": "[scene] beacons"}
 
 
@@ -112,7 +109,11 @@ class VisionChoice:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenario:
-    """One experiment. `trim` is None where the hull's parameters say it; events are in order of time."""
+    """One experiment. `trim` is None where the hull's parameters say it; events are in order of time.
+
+    `craft` says whose numbers hull and model-based controller have where `robot` and `control` leave them
+    out: those of the default craft, or of the craft that the robot's configuration names.
+    """
 
     name: str
     title: str
@@ -123,6 +124,7 @@ class Scenario:
     start: StartPose = FLOATING
     water: WaterMotion = WaterMotion()
     trim: Trim | None = None
+    craft: Literal["default", "robot"] = "default"
     robot: SimulationParameters = field(default_factory=SimulationParameters)
     control: ControlConfig = field(default_factory=ControlConfig)
     vision: VisionChoice = VisionChoice()
@@ -187,24 +189,25 @@ _STAND_IN: dict[str, Any] = {
 """Defaults for missing required entries, so that the rest can still be checked."""
 
 
-def read_scenario(text: str) -> Scenario:
-    """The scenario that a TOML text says. Raises ConfigError with all problems."""
+def read_scenario(text: str, craft: Craft = DEFAULT_CRAFT) -> Scenario:
+    """The scenario that a TOML text says, on this robot's craft. Raises ConfigError with all problems."""
     try:
         table = read_toml(text)
     except TomlError as problem:
         raise ConfigError(f"the scenario {problem}") from problem
     problems: list[str | EntryProblem] = []
-    values = _read_entries(table, problems)
+    own = craft if table.get("craft") == "robot" else DEFAULT_CRAFT
+    values = {"robot": SimulationParameters.of(own)} | _read_entries(table, own, problems)
     try:
         scenario = Scenario(**(_STAND_IN | values))
     except ConfigError as problem:
         raise ConfigError(*problems, *problem.problems) from problem
     if problems:
         raise ConfigError(*problems)
-    return scenario
+    return replace(scenario, control=tune_to_craft(scenario.control, own))
 
 
-def _read_entries(table: dict[str, Any], problems: list[str | EntryProblem]) -> dict[str, Any]:
+def _read_entries(table: dict[str, Any], craft: Craft, problems: list[str | EntryProblem]) -> dict[str, Any]:
     """Returns the valid entries of the table; adds the problems of the others."""
     hints = get_type_hints(Scenario, include_extras=True)
     values: dict[str, Any] = {}
@@ -216,7 +219,7 @@ def _read_entries(table: dict[str, Any], problems: list[str | EntryProblem]) -> 
             elif name == "events":
                 values[name] = tuple(sorted(_read_events(value, problems), key=lambda one: one.at))
             elif name == "robot":
-                values[name] = _read_robot(value)
+                values[name] = _read_robot(value, craft)
             else:
                 values[name] = read_value(hints[name], value, TOP.field(name))
         except ConfigError as problem:
@@ -241,9 +244,9 @@ def _read_events(tables: Any, problems: list[str | EntryProblem]) -> list[TimedE
     return events
 
 
-def _read_robot(table: Any) -> SimulationParameters:
+def _read_robot(table: Any, craft: Craft) -> SimulationParameters:
     """The simulated robot with what the scenario changes about it. Raises ConfigError."""
-    plain = SimulationParameters()
+    plain = SimulationParameters.of(craft)
     if not isinstance(table, dict):
         raise ConfigError(ROBOT.problem("must be a table"))
     problems = [
@@ -252,22 +255,18 @@ def _read_robot(table: Any) -> SimulationParameters:
         if name in table
     ]
     given = {name: value for name, value in table.items() if name not in _ELSEWHERE}
-    for name, value in given.items():
-        default = getattr(plain, name, None)
-        if is_dataclass(default) and isinstance(value, dict):
-            # Missing entries of a sensor's table keep their defaults.
-            given[name] = asdict(default) | value  # type: ignore[arg-type]
     try:
-        changed = parse(SimulationParameters, given, ROBOT)
+        parsed = parse(SimulationParameters, complete_sensors(plain, given), ROBOT)
     except ConfigError as problem:
         raise ConfigError(*problems, *problem.problems) from problem
-    for one in fields(SimulationParameters):
-        if one.name in given:
-            where = ROBOT.field(one.name)
-            problems += _check_number(where, getattr(changed, one.name), getattr(plain, one.name))
+    default = SimulationParameters()
+    values = {name: getattr(parsed, name) for name in given}
+    for name, value in values.items():
+        if name not in _OF_A_CRAFT or isinstance(value, SensorQuality):
+            problems += _check_number(ROBOT.field(name), value, getattr(default, name))
     if problems:
         raise ConfigError(*problems)
-    return changed
+    return replace(plain, **values)
 
 
 def _check_number(where: DocumentEntry, value: Any, default: Any) -> list[EntryProblem]:

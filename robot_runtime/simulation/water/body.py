@@ -38,7 +38,7 @@ class Body:
         self._linear = parameters.damping_linear
         self._quadratic = parameters.damping_quadratic
         self._weight = parameters.weight
-        self.trim = Trim(parameters.buoyancy, 0.0, 0.0, parameters.buoyancy_height)
+        self.trim = Trim.of(parameters)
         self.start()
 
     def start(self, start: StartPose = FLOATING) -> None:

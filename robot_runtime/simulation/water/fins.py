@@ -1,5 +1,6 @@
 """Force and torque of four flapping fins."""
 
+from collections import deque
 from math import cos, sin
 
 from robot_runtime.simulation.water.parameters import SimulationParameters, Six, Vector
@@ -60,3 +61,37 @@ class Fins:
             pitch += at_z * force_x - at_x * force_z
             yaw += at_x * force_y - at_y * force_x
         return x, y, z, roll, pitch, yaw
+
+
+class FinDelay:
+    """The motion of the fins to which the water answers now: that of `seconds` ago."""
+
+    def __init__(self, seconds: float) -> None:
+        self._seconds = seconds
+        self._motions: deque[tuple[float, Four, Four]] = deque()
+        self._time = 0.0
+
+    def delay(self, period: float, angles: Four, speeds: Four) -> tuple[Four, Four]:
+        """Takes angles (rad) and speeds (rad/s) at the end of a period (s); returns the delayed ones.
+
+        Between two periods' ends the fins turn evenly, at the speeds of the later one. Before the first they
+        were where it begins.
+        """
+        if self._seconds == 0:
+            return angles, speeds
+        if not self._motions:
+            start = _turned(angles, speeds, -period)
+            self._motions.append((self._time, start, (0.0, 0.0, 0.0, 0.0)))
+        self._time += period
+        self._motions.append((self._time, angles, speeds))
+        moment = self._time - self._seconds
+        while len(self._motions) > 1 and self._motions[0][0] < moment:
+            self._motions.popleft()
+        time, angles, speeds = self._motions[0]
+        return _turned(angles, speeds, moment - time), speeds
+
+
+def _turned(angles: Four, speeds: Four, seconds: float) -> Four:
+    a, b, c, d = angles
+    e, f, g, h = speeds
+    return a + e * seconds, b + f * seconds, c + g * seconds, d + h * seconds

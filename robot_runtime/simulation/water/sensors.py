@@ -21,19 +21,21 @@ SAME_TIME = 1e-9
 
 
 class Sensor:
-    """A sensor of one or more axes.
+    """A sensor of one or more axes, with a fixed `offset` beside the one that is drawn.
 
     Its random numbers come from the seed and its name, those of its faults from another generator, so that
     neither other sensors nor its own faults change its noise.
     """
 
-    def __init__(self, name: str, quality: SensorQuality, axes: int, seed: int) -> None:
+    def __init__(
+        self, name: str, quality: SensorQuality, axes: int, seed: int, offset: Numbers | None = None
+    ) -> None:
         self._noise, self._walk, self._step = quality.noise, quality.walk, quality.step
         self._latency = quality.latency
         self._interval = 1 / quality.rate
         self._gauss = Random(f"{seed} {name}").gauss
         self._chance = Random(f"{seed} {name} fault").random
-        self._offset = [self._gauss(0, quality.bias) for _ in range(axes)]
+        self._offset = [one + self._gauss(0, quality.bias) for one in offset or (0.0,) * axes]
         self._due = 0.0
         self._walk_due = WALK_PERIOD
         self._shown: Numbers | None = None
@@ -124,9 +126,14 @@ class Sensors:
 
     def start(self) -> None:
         """Restarts at time 0, with the same readings for the same motion; beacons and faults stay."""
+        parameters = self._parameters
+        offsets = {
+            "gyroscope": parameters.gyroscope_offset,
+            "accelerometer": parameters.accelerometer_offset,
+        }
         self._sensors = {
-            name: Sensor(name, quality, axes, self.seed)
-            for name, (quality, axes) in _qualities(self._parameters).items()
+            name: Sensor(name, quality, axes, self.seed, offsets.get(name))
+            for name, (quality, axes) in _qualities(parameters).items()
         }
         for name, fault in self.faults.items():
             self._sensors[name].set_fault(fault, 0.0)

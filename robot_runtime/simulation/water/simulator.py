@@ -8,7 +8,7 @@ from typing import NamedTuple
 from robot_runtime.contract.documents import Truth
 from robot_runtime.simulation.water.body import Body
 from robot_runtime.simulation.water.faults import SimulatedFault
-from robot_runtime.simulation.water.fins import Fins, Four
+from robot_runtime.simulation.water.fins import FinDelay, Fins, Four
 from robot_runtime.simulation.water.geometry import rotation, to_world
 from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
 from robot_runtime.simulation.water.sensors import Reading, Sensors
@@ -70,6 +70,7 @@ class Simulator:
         self._sensors = Sensors(parameters, self._world, seed)
         self._battery = parameters.battery_full
         self._angles: Four = (0.0, 0.0, 0.0, 0.0)
+        self._delay = FinDelay(parameters.fin_delay)
         self._lock = threading.Lock()
 
     def advance(self, period: float, fins: FinMotion) -> Reading:
@@ -78,12 +79,12 @@ class Simulator:
             before = self._velocity()
             steps = ceil(period / STEP_MAX)
             duration = period / steps
-            a, b, c, d = fins.angles
-            e, f, g, h = fins.speeds
+            (a, b, c, d), speeds = self._delay.delay(period, fins.angles, fins.speeds)
+            e, f, g, h = speeds
             for step in range(steps):
                 left = period - step * duration
                 start = (a - e * left, b - f * left, c - g * left, d - h * left)
-                self._body.step(duration, start, fins.speeds)
+                self._body.step(duration, start, speeds)
             self._angles = fins.angles
             self._drain(period, fins)
             after = self._velocity()
@@ -172,6 +173,7 @@ class Simulator:
         self._body.start(start)
         self._world.set_current(self._world.current)
         self._sensors.start()
+        self._delay = FinDelay(self._parameters.fin_delay)
         self._battery = self._parameters.battery_full
 
     def _velocity(self) -> Vector:

@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 from math import hypot
+from typing import Self
 
-from robot_runtime.simulation.water.parameters import Vector
+from robot_runtime.contract.craft import Craft, Vector
 
 CURRENT_MAX = 2.0
 """m/s; ten times the robot's speed."""
@@ -75,6 +76,11 @@ class Trim:
     right: float
     above: float
     """m, the centre of buoyancy from the centre of mass, at most 0.05 each; below 0 above, it capsizes."""
+
+    @classmethod
+    def of(cls, craft: Craft) -> Self:
+        """The craft's own trim."""
+        return cls(craft.buoyancy, craft.buoyancy_forward, craft.buoyancy_right, craft.buoyancy_height)
 
     def __post_init__(self) -> None:
         _limit("buoyancy", self.buoyancy, BUOYANCY_MIN, BUOYANCY_MAX, "times the weight")

@@ -205,7 +205,10 @@ class LiveExecutor:
             isinstance(one, LineFaultChange) for one in scenario.events
         ):
             reasons.append("It disturbs the serial line, which needs an emulated board.")
-        if scenario.robot != SimulationParameters():
+        if scenario.robot not in (
+            SimulationParameters(),
+            SimulationParameters.of(self._settings.read_craft()),
+        ):
             reasons.append("It changes the hull's parameters, which needs simulated time.")
         state = self._monitor.state() or {}
         rate = state.get("control_rate", scenario.control.rate)

@@ -196,7 +196,7 @@ def _order(socket: Path, command: str) -> None:
 def _water_of(scenario: Scenario) -> Request:
     """The scenario's water as requests to the simulator."""
     basin, robot = scenario.scene.basin, scenario.robot
-    trim = scenario.trim or Trim(robot.buoyancy, 0.0, 0.0, robot.buoyancy_height)
+    trim = scenario.trim or Trim.of(robot)
     return {
         "world": {name: value for name, value in asdict(basin).items() if value is not None},
         "current": asdict(scenario.water.current),

@@ -149,6 +149,8 @@ async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Pr
         "robot_runtime.experiments.scenario",
         "--board",
         run.board,
+        "--craft",
+        str(settings.craft_file),
     ]
     process = await asyncio.create_subprocess_exec(
         *command,

@@ -223,7 +223,7 @@ def test_cards_have_the_colours_that_the_vision_node_knows() -> None:
             BARE + "[trim]\nbuoyancy = 2\nforward=0\nright=0\nabove=0",
             "trim: buoyancy is 2 times the weight; ",
         ),
-        (BARE + "[robot]\nmass = -3", "robot: simulation parameter mass is -3.0; it must be above 0"),
+        (BARE + "[robot]\nmass = -3", "robot: mass is -3; it must lie between 0.75 and 12"),
         (BARE + "[robot]\nmass = 100", "robot: mass is 100; it must lie between 0.75 and 12"),
         (BARE + "[robot]\nmass = nan", "robot: mass is nan; it must be a number"),
         (BARE + "[robot]\nbouyancy = 1", "robot: 'bouyancy' is not known here; known are mass, "),

@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from robot_runtime.simulation.water.fins import Fins, Four
+from robot_runtime.simulation.water.fins import FinDelay, Fins, Four
 from robot_runtime.simulation.water.geometry import rotation, to_world
 from robot_runtime.simulation.water.parameters import SimulationParameters, Six
 from tests.runtime.simulation.water.harness import NEUTRAL, STILL, Flapping, finned
@@ -144,3 +144,13 @@ def test_smaller_steps_converge() -> None:
     coarse, fine = abs(swim(0.005) - exact), abs(swim(0.00125) - exact)
     assert coarse < 1e-4
     assert fine < coarse / 8
+
+
+def test_the_water_answers_a_delayed_fin_later() -> None:
+    delay = FinDelay(0.012)
+    motions = [(0.005 * step, 0.3 * 0.005 * step) for step in range(1, 9)]
+    answered = [delay.delay(0.005, (angle, 0.0, 0.0, 0.0), (0.3, 0.0, 0.0, 0.0)) for _, angle in motions]
+    # Before the first period it was at rest where that began.
+    expected = [0.3 * max(time - 0.012, 0.0) for time, _ in motions]
+    assert [angles[0] for angles, _ in answered] == pytest.approx(expected)
+    assert [speeds[0] for _, speeds in answered] == [0.0, 0.0] + [0.3] * 6

@@ -97,3 +97,10 @@ def test_beacon_detectors_turn_with_the_hull() -> None:
     parameters = replace(QUIET, beacons=((3.0, 0.0, 1.0),))
     reading = read(turned((0, 0, 1), 50 * pi / 180), parameters=parameters)
     assert (reading.beacon_right, reading.beacon_left) == (False, True)
+
+
+def test_a_craft_s_fixed_offsets_are_added() -> None:
+    offset = replace(QUIET, gyroscope_offset=(0.1, 0.0, -0.1), accelerometer_offset=(0.0, 0.2, 0.5))
+    reading = read(at_rest(1.0), parameters=offset)
+    assert reading.rate == pytest.approx((0.1, 0.0, -0.1))
+    assert reading.force == pytest.approx((0.0, 0.2, -9.31))

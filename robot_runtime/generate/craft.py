@@ -1,0 +1,90 @@
+"""docs/reference/craft.md: every entry of a craft file."""
+
+from dataclasses import fields
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+from robot_runtime.contract.craft import Craft, SensorQuality
+from robot_runtime.generate.markdown import page, table
+
+SOURCE = "robot_runtime/contract/craft.py"
+INTRODUCTION = """\
+A craft file holds the physical numbers of one robot. Simulator, scenarios and the model-based controller take
+it. [Identify](../use/identify.md) says how one is made and adopted.
+
+```toml
+title = "Turtle 2"
+origin = "weighed on 3 March; drag and thrust fitted to sessions 12 and 14"
+
+[craft]
+mass = 2.4
+buoyancy = 1.008
+
+[craft.accelerometer]
+noise = 0.021
+```
+
+An entry that is left out is the default's, also in a sensor's table. An entry that is not known, or out of
+its range, is refused with its name. The file of the robot is named by `[craft] file` in `robot.toml`; without
+a name it is the adopted one, `craft.toml` in the data folder, and without that the default craft. A scenario
+with `craft = "robot"` has that craft's hull, and its model-based controller knows it.
+
+Origins: *published* numbers are from the robot's own published code, good to some per cent. *Assumed* ones
+are estimates, since nobody published them, and may be wrong by a factor of two.
+"""
+SENSORS = """\
+Each is a table. `pressure` is in Pa, `gyroscope` in rad/s, `accelerometer` in m/s², `encoder` in rad.
+"""
+_ENTRIES = {
+    "rate": "Hz of new readings, at most 200",
+    "latency": "s from input to reading, in steps of 5 ms",
+    "noise": "standard deviation of each reading, Gaussian and without memory",
+    "bias": "standard deviation of the offset that is drawn at the start",
+    "walk": "standard deviation of the offset's random walk after one second",
+    "step": "quantization of the readings; 0: they are not rounded",
+}
+
+
+def craft_page() -> str:
+    """The whole text of craft.md."""
+    hints, plain = get_type_hints(Craft, include_extras=True), Craft()
+    numbers = [one for one in fields(Craft) if one.metadata]
+    rows = [
+        (
+            f"`{one.name}`",
+            _ranges(hints[one.name]),
+            _shown(getattr(plain, one.name)),
+            one.metadata["unit"],
+            one.metadata["meaning"],
+        )
+        for one in numbers
+    ]
+    sensors = [one.name for one in fields(Craft) if not one.metadata]
+    defaults = [
+        (f"`{name}`", meaning, *(_shown(getattr(getattr(plain, one), name)) for one in sensors))
+        for name, meaning in _ENTRIES.items()
+    ]
+    assert set(_ENTRIES) == {one.name for one in fields(SensorQuality)}
+    return page(
+        "Craft",
+        SOURCE,
+        INTRODUCTION,
+        "## `[craft]`\n",
+        table(("entry", "range", "default", "unit", "meaning"), rows),
+        "## Sensors\n",
+        SENSORS,
+        table(("entry", "meaning", *(f"`{name}`" for name in sensors)), defaults),
+    )
+
+
+def _ranges(hint: Any) -> str:
+    """The range of a number, or those of a list's numbers without repetition."""
+    if get_origin(hint) is Annotated:
+        limits = get_args(hint)[1]
+        return f"{limits.minimum:g} to {limits.maximum:g}"
+    return "; ".join(dict.fromkeys(_ranges(one) for one in get_args(hint)))
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_shown, value))}]"
+    return f"{value:.4g}"
