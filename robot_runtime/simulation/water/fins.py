@@ -70,25 +70,30 @@ class FinDelay:
         self._seconds = seconds
         self._motions: deque[tuple[float, Four, Four]] = deque()
         self._time = 0.0
+        self._before: Four = (0.0, 0.0, 0.0, 0.0)
 
     def delay(self, period: float, angles: Four, speeds: Four) -> tuple[Four, Four]:
         """Takes angles (rad) and speeds (rad/s) at the end of a period (s); returns the delayed ones.
 
         Between two periods' ends the fins turn evenly, at the speeds of the later one. Before the first they
-        were where it begins.
+        were where it begins. The delayed speeds are the means of the period.
         """
         if self._seconds == 0:
             return angles, speeds
         if not self._motions:
             start = _turned(angles, speeds, -period)
             self._motions.append((self._time, start, (0.0, 0.0, 0.0, 0.0)))
+            self._before = start
         self._time += period
         self._motions.append((self._time, angles, speeds))
         moment = self._time - self._seconds
         while len(self._motions) > 1 and self._motions[0][0] < moment:
             self._motions.popleft()
         time, angles, speeds = self._motions[0]
-        return _turned(angles, speeds, moment - time), speeds
+        a, b, c, d = delayed = _turned(angles, speeds, moment - time)
+        e, f, g, h = self._before
+        self._before = delayed
+        return delayed, ((a - e) / period, (b - f) / period, (c - g) / period, (d - h) / period)
 
 
 def _turned(angles: Four, speeds: Four, seconds: float) -> Four:

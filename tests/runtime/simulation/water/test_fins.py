@@ -153,4 +153,5 @@ def test_the_water_answers_a_delayed_fin_later() -> None:
     # Before the first period it was at rest where that began.
     expected = [0.3 * max(time - 0.012, 0.0) for time, _ in motions]
     assert [angles[0] for angles, _ in answered] == pytest.approx(expected)
-    assert [speeds[0] for _, speeds in answered] == [0.0, 0.0] + [0.3] * 6
+    # In the third period it begins to turn after 0.002 s.
+    assert [speeds[0] for _, speeds in answered] == pytest.approx([0.0, 0.0, 0.18, *[0.3] * 5])

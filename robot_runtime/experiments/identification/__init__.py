@@ -1,0 +1,1 @@
+"""Identification: fits a craft's numbers to recorded sessions."""

@@ -1,0 +1,216 @@
+"""Fits a craft's numbers to windows of recorded sessions.
+
+The windows' starts are eliminated from each window's residuals by a projection (variable projection, G. H.
+Golub and V. Pereyra, SIAM J. Numer. Anal. 10, 1973), so that `scipy.optimize.least_squares` sees the craft's
+numbers and the IMU's offsets alone. What is known before, each number's spread, counts as a measurement.
+
+Confidence follows from the Jacobian at the solution. Residuals of a channel are correlated in time, because
+the encoders' errors shake the simulated hull and sensors drift. So each channel's weight is 1/(σ·√τ), where σ
+is the standard deviation of its residuals and τ their integrated autocorrelation: τ samples count as one.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from robot_runtime.contract.craft import Craft
+from robot_runtime.experiments.identification.bodies import CHANNELS, STATES, Floats
+from robot_runtime.experiments.identification.quantities import OFFSET_SPREADS, QUANTITIES, CraftQuantity
+from robot_runtime.experiments.identification.shooting import OFFSETS, START_SPREADS, Shooting
+from robot_runtime.experiments.identification.streams import Windows
+
+ROUNDS = 3
+"""Of a fit; each begins with the weights and starts that the one before has found."""
+STEPS_MAX = 6
+"""Of a round."""
+SEEN = 0.5
+"""A number is seen if its standard deviation is less than this share of that before the fit."""
+FIRST_WEIGHTS = np.array([0.01, 0.1, 0.1, 0.1, 0.2, 0.2, 0.2])
+"""Standard deviations of the residuals with a craft that is not fitted yet: m, rad/s, m/s²."""
+
+Progress = Callable[[float], None]
+"""Called with the share that is done, 0 to 1. What it raises ends the fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class FitSolution:
+    """The solution: scaled numbers of the fitted quantities, and their standard deviations."""
+
+    craft: Craft
+    fitted: tuple[CraftQuantity, ...]
+    scaled: Floats
+    deviations: Floats
+    """Of the scaled numbers; before the fit they are 1."""
+    offsets: Floats
+    """Of each session's IMU, in rad/s and m/s², of shape (sessions, 6)."""
+    offset_deviations: Floats
+    unseen: tuple[CraftQuantity, ...]
+    """Quantities that these windows do not show; they stay as they were."""
+    sigma: Floats
+    """Standard deviation of each channel's residuals."""
+    correlation: Floats
+    """Samples of each channel that count as one."""
+
+
+class Fit:
+    """One fit; `run` does it all."""
+
+    def __init__(self, windows: Windows, start: Craft, progress: Progress = lambda _share: None) -> None:
+        self._shooting = Shooting(windows, start)
+        self._progress = progress
+        self._weights = FIRST_WEIGHTS
+        self._sigma, self._correlation = FIRST_WEIGHTS, np.ones(CHANNELS)
+
+    def run(self) -> FitSolution:
+        """Fits all numbers, and then once more those that are seen. Raises what `progress` raises."""
+        fitted: list[CraftQuantity] = list(QUANTITIES)
+        unseen: list[CraftQuantity] = []
+        numbers = np.zeros(len(fitted) + OFFSETS * self._shooting.sessions)
+        for round_ in range(ROUNDS):
+            numbers = self._solve(fitted, numbers)
+            if round_ != ROUNDS - 2:
+                continue
+            weak = self._find_unseen(fitted, numbers)
+            # They go back to where they were: the last round fits the rest to that.
+            unseen += [fitted[one] for one in weak]
+            numbers = np.delete(numbers, weak)
+            fitted = [one for place, one in enumerate(fitted) if place not in weak]
+        deviations = self._deviations(fitted, numbers)
+        count, spreads = len(fitted), np.array(OFFSET_SPREADS)
+        self._progress(1.0)
+        return FitSolution(
+            craft=self._shooting.craft(fitted, numbers),
+            fitted=tuple(fitted),
+            scaled=numbers[:count],
+            deviations=deviations[:count],
+            offsets=numbers[count:].reshape(-1, OFFSETS) * spreads,
+            offset_deviations=deviations[count:].reshape(-1, OFFSETS) * spreads,
+            unseen=tuple(unseen),
+            sigma=self._sigma,
+            correlation=self._correlation,
+        )
+
+    def _solve(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> Floats:
+        """The best scaled numbers from these on; then moves the windows' starts and sets the weights."""
+        low, high = self._bounds(fitted)
+        solution = least_squares(
+            lambda at: self._project(fitted, at)[0],
+            np.clip(numbers, low + 1e-6, high - 1e-6),
+            jac=lambda at: self._project(fitted, at)[1],
+            bounds=(low, high),
+            max_nfev=STEPS_MAX,
+            xtol=1e-3,
+            ftol=1e-4,
+        )
+        numbers = np.asarray(solution.x)
+        for _ in range(2):
+            self._move_starts(fitted, numbers)
+        self._weigh(fitted, numbers)
+        return numbers
+
+    def _bounds(self, fitted: Sequence[CraftQuantity]) -> tuple[Floats, Floats]:
+        """The craft's ranges as scaled numbers, with room for a number that begins at its limit."""
+        start = self._shooting.start
+        pairs = [one.scaled_limits(start) for one in fitted]
+        pairs += [(-np.inf, np.inf)] * (OFFSETS * self._shooting.sessions)
+        low, high = np.array(pairs).T
+        return low - 1e-5, high + 1e-5
+
+    def _project(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats]:
+        """Residuals and Jacobian without what other starts of the windows explain, and with the priors."""
+        residuals, of_starts, of_numbers = self._weighted(fitted, numbers)
+        basis, _ = np.linalg.qr(of_starts)
+        projected = residuals - np.einsum("wmk,wk->wm", basis, np.einsum("wmk,wm->wk", basis, residuals))
+        cleaned = of_numbers - basis @ (basis.transpose(0, 2, 1) @ of_numbers)
+        return (
+            np.concatenate((projected.ravel(), numbers)),
+            np.concatenate((cleaned.reshape(-1, len(numbers)), np.eye(len(numbers)))),
+        )
+
+    def _weighted(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats, Floats]:
+        """Each window's weighted residuals, and their derivatives by its start and by the numbers.
+
+        The last residuals are the distance of its start from the guess.
+        """
+        shooting = self._shooting
+        errors, slopes = shooting.errors(fitted, numbers)
+        expected = ROUNDS * (STEPS_MAX + 3)
+        self._progress(min(shooting.evaluations / expected, 0.99))
+        windows = len(errors)
+        residuals = (errors / self._weights[:, None]).reshape(windows, -1)
+        slopes = (slopes / self._weights[:, None, None]).reshape(*residuals.shape, -1)
+        away = ((shooting.states - shooting.guess) / START_SPREADS[:, None]).T
+        own = np.zeros((windows, STATES, slopes.shape[2]))
+        own[:, :, :STATES] = np.eye(STATES)
+        residuals, slopes = np.concatenate((residuals, away), axis=1), np.concatenate((slopes, own), axis=1)
+        return residuals, slopes[:, :, :STATES], slopes[:, :, STATES:]
+
+    def _move_starts(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> None:
+        """One step of Gauss and Newton on the windows' starts."""
+        residuals, of_starts, _ = self._weighted(fitted, numbers)
+        basis, upper = np.linalg.qr(of_starts)
+        step = np.linalg.solve(upper, np.einsum("wmk,wm->wk", basis, residuals)[:, :, None])[:, :, 0]
+        self._shooting.states = self._shooting.states - step.T * START_SPREADS[:, None]
+
+    def _weigh(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> None:
+        """Sets the weights by the residuals of each channel."""
+        errors, _ = self._shooting.errors(fitted, numbers)
+        self._sigma = np.sqrt((errors**2).mean(axis=(0, 2)))
+        self._correlation = np.array([integrated_autocorrelation(errors[:, one]) for one in range(CHANNELS)])
+        self._weights = np.maximum(self._sigma * np.sqrt(self._correlation), 1e-9)
+
+    def _deviations(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> Floats:
+        """Standard deviations: the larger of those from the Jacobian and those from the windows' scatter.
+
+        The second is the sandwich estimate with windows as clusters (H. White, Econometrica 48, 1980): the
+        pulls of the windows on a number must cancel, and how far they differ shows errors that no weight
+        knows, such as those of an encoder's zero.
+        """
+        residuals, jacobian = self._project(fitted, numbers)
+        inverse = np.linalg.inv(jacobian.T @ jacobian)
+        windows = len(self._shooting.windows)
+        measured = len(residuals) - len(numbers)
+        shape = windows, measured // windows
+        pulls = np.einsum(
+            "wmp,wm->wp",
+            jacobian[:measured].reshape(*shape, -1),
+            residuals[:measured].reshape(shape),
+        )
+        scatter = inverse @ (pulls.T @ pulls) @ inverse * windows / max(windows - 1, 1)
+        return np.asarray(np.sqrt(np.maximum(np.diag(inverse), np.diag(scatter))))
+
+    def _find_unseen(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> list[int]:
+        """Places of the quantities that the windows do not show, the weakest first.
+
+        Each is taken out before the next is judged: of two that show only together, one may be seen alone.
+        """
+        _, jacobian = self._project(fitted, numbers)
+        information = jacobian.T @ jacobian
+        there = list(range(len(numbers)))
+        weak: list[int] = []
+        while True:
+            deviations = np.sqrt(np.diag(np.linalg.inv(information[np.ix_(there, there)])))
+            judged = [(float(deviations[at]), one) for at, one in enumerate(there) if one < len(fitted)]
+            worst, place = max(judged, default=(0.0, -1))
+            if worst < SEEN:
+                return weak
+            weak.append(place)
+            there.remove(place)
+
+
+def integrated_autocorrelation(errors: Floats) -> float:
+    """τ = 1 + 2·Σρ(k) of rows of samples, up to the first lag at which ρ is not positive; at least 1.
+
+    Its source is A. Sokal, Monte Carlo Methods in Statistical Mechanics, 1996, chapter 3.
+    """
+    length = errors.shape[1]
+    spectrum = np.fft.rfft(errors, 2 * length, axis=1)
+    products = np.fft.irfft(np.abs(spectrum) ** 2, axis=1)[:, :length].sum(axis=0)
+    if products[0] <= 0:
+        return 1.0
+    shares = products / products[0]
+    ends = np.flatnonzero(shares <= 0)
+    last = int(ends[0]) if len(ends) else length
+    return max(float(1 + 2 * shares[1:last].sum()), 1.0)

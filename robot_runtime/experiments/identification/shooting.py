@@ -1,0 +1,87 @@
+"""Compares crafts with the windows of recorded sessions: residuals and their derivatives.
+
+Multiple shooting: each window has a start of its own, so that no error adds up for longer than a window
+(H. G. Bock, Recent Advances in Parameter Identification Techniques for O.D.E., 1983).
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from robot_runtime.contract.craft import Craft
+from robot_runtime.experiments.identification.bodies import CHANNELS, STATES, Bodies, Floats
+from robot_runtime.experiments.identification.quantities import OFFSET_SPREADS, CraftQuantity, put_all
+from robot_runtime.experiments.identification.streams import EVERY, STEP, Windows
+
+START_SPREADS = np.array([0.05, 0.3, 0.3, 0.1, 0.15, 0.15, 0.05, 0.05, 0.05])
+"""Standard deviations of the guessed starts, as `STATES`."""
+OFFSETS = len(OFFSET_SPREADS)
+_SMALL = 1e-4
+"""Step of a difference quotient, in standard deviations."""
+
+
+class Shooting:
+    """The windows, and the craft from which scaled numbers count.
+
+    `numbers` are the scaled numbers of the fitted quantities, then the scaled offsets of each session's IMU.
+    `states` are the windows' starts, which its user moves.
+    """
+
+    def __init__(self, windows: Windows, start: Craft) -> None:
+        self.windows = windows
+        self.start = start
+        self.guess = windows.states
+        self.states = windows.states
+        self.sessions = max(windows.sessions) + 1
+        self.evaluations = 0
+        self._last: tuple[tuple[object, ...], tuple[Floats, Floats]] | None = None
+
+    def craft(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> Craft:
+        """The craft with these scaled numbers."""
+        return put_all(self.start, fitted, numbers[: len(fitted)].tolist())
+
+    def errors(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats]:
+        """Simulated less measured, of shape (windows, CHANNELS, moments), and its derivatives.
+
+        These have one more axis: the scaled starts of the window, then the scaled numbers.
+        """
+        key = (tuple(fitted), numbers.tobytes(), self.states.tobytes())
+        if self._last is None or self._last[0] != key:
+            self._last = key, self._evaluate(fitted, numbers)
+        return self._last[1]
+
+    def _evaluate(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats]:
+        self.evaluations += 1
+        windows, count = self.windows, len(fitted)
+        craft = self.craft(fitted, numbers)
+        crafts, motions, which = [craft] * (1 + STATES), [windows.fins(craft.fin_delay)], [0] * (1 + STATES)
+        for place, quantity in enumerate(fitted):
+            moved = numbers[:count].copy()
+            moved[place] += _SMALL
+            crafts.append(put_all(self.start, fitted, moved.tolist()))
+            which.append(len(motions) if quantity.entry == "fin_delay" else 0)
+            if which[-1]:
+                motions.append(windows.fins(crafts[-1].fin_delay))
+        starts = np.repeat(self.states[:, None, :], len(crafts), axis=1)
+        for state in range(STATES):
+            starts[state, 1 + state] += _SMALL * START_SPREADS[state]
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = Bodies(crafts, motions, which).simulate(starts, STEP, EVERY)
+        offsets = numbers[count:].reshape(-1, OFFSETS) * np.array(OFFSET_SPREADS)
+        base = found[:, :, 0] - windows.measured
+        base[1:] += offsets.T[:, list(windows.sessions)][:, None, :]
+        slopes = (found[:, :, 1:] - found[:, :, :1]) / _SMALL
+        # A craft without sense may move without bounds, and the fit must be able to go back.
+        base, slopes = np.nan_to_num(base, posinf=1e6, neginf=-1e6), np.nan_to_num(slopes)
+        return base.transpose(2, 0, 1), np.concatenate(
+            (slopes.transpose(3, 0, 1, 2), self._of_offsets(base.shape[1])), axis=3
+        )
+
+    def _of_offsets(self, moments: int) -> Floats:
+        """Derivatives of the errors by the sessions' scaled offsets."""
+        windows = self.windows
+        steady = np.zeros((len(windows), CHANNELS, moments, OFFSETS * self.sessions))
+        for window, session in enumerate(windows.sessions):
+            for axis, spread in enumerate(OFFSET_SPREADS):
+                steady[window, 1 + axis, :, session * OFFSETS + axis] = spread
+        return steady

@@ -1,0 +1,181 @@
+"""The recorded streams of a session, cut into windows on a common grid of time."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from robot_runtime.contract.craft import Craft
+from robot_runtime.experiments.identification.bodies import CHANNELS, STATES, FinMotions, Floats
+
+STEP = 0.01
+"""s of the simulation's steps in a fit: five of them in a fin's quickest turn of 0.3 rad."""
+EVERY = 2
+"""Steps between two moments that are compared."""
+WINDOW = 8.0
+"""s. Longer than the hull's memory of its start (1 s), shorter than the time in which errors add up."""
+WINDOWS_MAX = 36
+"""Of a fit: more cost time, and say little more."""
+GAP = 0.1
+"""s without a sample across which no window reaches."""
+COVERED = 0.08
+"""m of the pressure sensor's depth from which the hull is surely under water."""
+DEPTH_LATENCY = 0.0045
+"""s of the pressure sensor's conversion."""
+_TRIMMED = 0.623
+"""Mean of the 90 % smallest squares of a standard normal variable: (0.9 - 2·1.645·φ(1.645)) / 0.9."""
+MEASURED_AGE = 0.0
+"""s by which readings lie behind the fins' angles of the same time stamp: one step of the sensors."""
+
+
+@dataclass(frozen=True, slots=True)
+class SessionStreams:
+    """The measured streams of one session: times in s, SI units, one row for each sample."""
+
+    name: str
+    motor_times: Floats
+    angles: Floats
+    """rad, of the four fins as their encoders measured them."""
+    imu_times: Floats
+    rates: Floats
+    """rad/s."""
+    forces: Floats
+    """m/s²."""
+    attitudes: Floats
+    """Quaternions as the board estimates them; a first guess of roll and pitch."""
+    depth_times: Floats
+    depths: Floats
+    """m, of the pressure sensor below the surface."""
+    pressures: Floats
+    """Pa."""
+
+
+@dataclass(frozen=True, slots=True)
+class Windows:
+    """Windows of one length, of one or more sessions: the last axis counts them."""
+
+    measured: Floats
+    """The channels of shape (CHANNELS, moments, windows)."""
+    splines: tuple[CubicSpline, ...]
+    """Each window's fin angles over time."""
+    starts: tuple[float, ...]
+    """Each window's first moment (s of its session)."""
+    sessions: tuple[int, ...]
+    """Each window's session, counted from 0."""
+    states: Floats
+    """A first guess of each window's state at its start, of shape (STATES, windows)."""
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    def fins(self, delay: float) -> FinMotions:
+        """The fins at every half step, as the water feels them after this delay (s)."""
+        half_steps = 2 * EVERY * (self.measured.shape[1] - 1) + 1
+        grid = np.arange(half_steps) * STEP / 2 - delay
+        angles = [spline(start + grid) for spline, start in zip(self.splines, self.starts, strict=True)]
+        speeds = [spline(start + grid, 1) for spline, start in zip(self.splines, self.starts, strict=True)]
+        return FinMotions(np.stack(angles, axis=2), np.stack(speeds, axis=2))
+
+    def chosen(self, places: Sequence[int]) -> "Windows":
+        """Some of the windows."""
+        return Windows(
+            self.measured[:, :, places],
+            tuple(self.splines[one] for one in places),
+            tuple(self.starts[one] for one in places),
+            tuple(self.sessions[one] for one in places),
+            self.states[:, places],
+        )
+
+
+def cut(sessions: Sequence[SessionStreams], craft: Craft) -> Windows:
+    """The windows of these sessions in which the hull is under water and nothing is missing.
+
+    Of more than `WINDOWS_MAX` an even choice is taken. Raises ValueError where there is none, in words.
+    """
+    found = [
+        (place, spline, start, *_sample(session, start, craft))
+        for place, session in enumerate(sessions)
+        if len(session.motor_times) > 3
+        for spline in [CubicSpline(*_ascending(session.motor_times, np.unwrap(session.angles, axis=0)))]
+        for start in _starts(session)
+    ]
+    if not found:
+        raise ValueError(
+            "No part of these sessions can be used: it takes depth, IMU and fins without a gap for "
+            f"{WINDOW:g} s, with the robot deeper than {100 * COVERED:.0f} cm."
+        )
+    if len(found) > WINDOWS_MAX:
+        found = [found[int(one)] for one in np.linspace(0, len(found) - 1, WINDOWS_MAX).round()]
+    places, splines, starts, measured, states = zip(*found, strict=True)
+    return Windows(np.stack(measured, axis=2), splines, starts, places, np.stack(states, axis=1))
+
+
+def _starts(session: SessionStreams) -> Iterator[float]:
+    """The first moments of windows that follow each other."""
+    streams = (session.motor_times, session.imu_times, session.depth_times)
+    if any(len(times) < 2 for times in streams):
+        return
+    # Time for the interpolation, and for a delay of the fins.
+    first, last = max(times[0] for times in streams) + 0.3, min(times[-1] for times in streams) - 0.1
+    broken = np.concatenate([times[:-1][np.diff(times) > GAP] for times in streams])
+    shallow = session.depth_times[session.depths < COVERED]
+    bad = np.sort(np.concatenate((broken, shallow)))
+    start = float(first)
+    while start + WINDOW <= last:
+        inside = bad[(bad >= start - 0.3) & (bad <= start + WINDOW + 0.1)]
+        if len(inside):
+            start = float(inside[-1]) + 0.31
+        else:
+            yield start
+            start += WINDOW
+
+
+def _sample(session: SessionStreams, start: float, craft: Craft) -> tuple[Floats, Floats]:
+    """The measured channels on the grid, and a guess of the state at its start."""
+    grid = start + np.arange(round(WINDOW / STEP) // EVERY + 1) * STEP * EVERY + MEASURED_AGE
+    measured = np.empty((CHANNELS, len(grid)))
+    measured[0] = np.interp(grid + DEPTH_LATENCY, session.depth_times, session.depths)
+    columns = np.concatenate((session.rates, session.forces), axis=1)
+    for axis in range(6):
+        latency = (craft.gyroscope if axis < 3 else craft.accelerometer).latency
+        measured[1 + axis] = np.interp(grid + latency, session.imu_times, columns[:, axis])
+    attitude = session.attitudes[np.searchsorted(session.imu_times, start)]
+    w, x, y, z = attitude / np.linalg.norm(attitude)
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
+    first = slice(0, 26)
+    sinking = np.polyfit(grid[first] - grid[0], measured[0, first], 1)
+    state = np.zeros(STATES)
+    state[0] = sinking[1] - craft.pressure_position[2]
+    state[3] = sinking[0]
+    state[4:6] = roll, pitch
+    state[6:9] = measured[1:4, :3].mean(axis=1)
+    return measured, state
+
+
+def _ascending(times: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Without samples whose time is not after the one before."""
+    later = np.concatenate(([True], np.diff(np.maximum.accumulate(times)) > 0))
+    return times[later], values[later]
+
+
+def sensor_noise(session: SessionStreams) -> dict[str, float]:
+    """The noise (σ) of pressure (Pa), turn rate (rad/s) and specific force (m/s²), without a model.
+
+    A fourth difference removes what the hull does (less than 0.1 % of a stroke's motion remains at 100 Hz)
+    and leaves white noise √70 times as large. The least of the axes counts, since strokes shake some of them.
+    """
+    columns = {"pressure": session.pressures[:, None], "gyroscope": session.rates}
+    columns["accelerometer"] = session.forces
+    steps = {"pressure": 1.0, "gyroscope": 0.00026632423, "accelerometer": 0.0011971008}
+    found = {}
+    for name, values in columns.items():
+        if len(values) < 100:
+            continue
+        fourth = np.diff(values, 4, axis=0) / np.sqrt(70)
+        # Quieter half: where a fin turns round, the hull jerks.
+        quiet = np.sort(fourth**2, axis=0)[: int(0.9 * len(fourth))]
+        variance = float(np.min(quiet.mean(axis=0))) / _TRIMMED
+        found[name] = float(np.sqrt(max(variance - steps[name] ** 2 / 12, 0.0)))
+    return found

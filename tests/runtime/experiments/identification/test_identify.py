@@ -1,0 +1,147 @@
+"""Crafts that are not the default are found from noisy streams, and what these do not show is said."""
+
+from dataclasses import replace
+from random import Random
+
+import numpy as np
+import pytest
+
+from robot_runtime.contract.craft import Craft
+from robot_runtime.experiments.identification.bodies import CHANNELS
+from robot_runtime.experiments.identification.fit import Fit, integrated_autocorrelation
+from robot_runtime.experiments.identification.identify import Identification, identify
+from robot_runtime.experiments.identification.prediction import predict
+from robot_runtime.experiments.identification.quantities import QUANTITIES
+from robot_runtime.experiments.identification.streams import WINDOW, SessionStreams, cut, sensor_noise
+from tests.runtime.experiments.identification.swimmer import HEAVING, swim
+
+OTHER = Craft(
+    fin_drag=0.19,
+    fin_normal=2.5,
+    damping_quadratic=(7.0, 30.0, 48.0, 0.027, 0.033, 0.066),
+    added_mass=(1.15, 2.1, 3.2, 0.0053, 0.0085, 0.0075),
+    buoyancy=1.0042,
+    buoyancy_forward=-0.0012,
+    buoyancy_right=0.0008,
+    buoyancy_height=0.0066,
+    fin_delay=0.025,
+    gyroscope_offset=(0.05, -0.02, 0.03),
+    accelerometer_offset=(0.2, -0.1, 0.15),
+    accelerometer=replace(Craft().accelerometer, noise=0.03),
+)
+"""Its thrust, damping, inertia, surplus of buoyancy and trim differ from the default's by up to 40 %."""
+START = Craft()
+
+
+@pytest.fixture(scope="module")
+def found() -> Identification:
+    fitted = [swim(OTHER, seed, 50) for seed in (1, 2)]
+    return identify(fitted, swim(OTHER, 3, 26), START)
+
+
+def test_numbers_that_differ_by_up_to_40_percent_are_found_within_5(found: Identification) -> None:
+    """10 % where they are weakly seen."""
+    judged = 0
+    for one in found.results:
+        true = one.quantity.value(OTHER)
+        # Of the buoyancy the surplus over the weight counts.
+        least = 1.0 if one.quantity.name == "buoyancy" else 0.0
+        if one.quantity.entry == "damping_linear":
+            continue
+        error = abs(one.value - true) / abs(true - least)
+        assert one.seen != "no", one.quantity.name
+        assert error < {"well": 0.05, "weakly": 0.10}[one.seen], (one.quantity.name, one.value, true)
+        judged += 1
+    assert judged == len(QUANTITIES) - 6
+
+
+def test_confidence_holds_what_is_true(found: Identification) -> None:
+    """Within three and a half standard deviations, as far as 24 of them may be."""
+    for one in found.results:
+        if one.deviation is not None:
+            distance = abs(one.value - one.quantity.value(OTHER)) / one.deviation
+            assert distance < 3.5, (one.quantity.name, one.value, one.deviation)
+
+
+def test_the_session_that_was_left_out_is_predicted_five_times_better(found: Identification) -> None:
+    check = found.prediction
+    assert check is not None
+    assert check.session == "swim 3"
+    assert check.improvement > 5
+    assert np.all(check.after_rms < check.before_rms)
+    assert check.measured.shape == check.before.shape == check.after.shape
+    assert check.measured.shape[1] == CHANNELS
+
+
+def test_noise_and_offsets_of_the_sensors_are_found(found: Identification) -> None:
+    assert found.noise == pytest.approx({"pressure": 42, "gyroscope": 2e-4, "accelerometer": 0.03}, rel=0.1)
+    # A session draws an offset of its own beside the fixed one.
+    assert found.craft.gyroscope_offset == pytest.approx(OTHER.gyroscope_offset, abs=6e-3)
+    assert found.craft.accelerometer_offset == pytest.approx(OTHER.accelerometer_offset, abs=0.06)
+
+
+def test_what_diving_alone_does_not_show_is_named() -> None:
+    windows = cut([swim(START, 4, 26, HEAVING)], START)
+    fit = Fit(windows, START)
+    numbers = np.zeros(len(QUANTITIES) + 6)
+    weak = {QUANTITIES[one].name for one in fit._find_unseen(QUANTITIES, numbers)}
+    assert {"damping_quadratic_sway", "damping_quadratic_surge", "damping_linear_yaw"} <= weak
+    assert weak.isdisjoint({"thrust", "damping_quadratic_heave", "buoyancy", "fin_delay"})
+
+
+def test_the_true_craft_predicts_to_the_noise() -> None:
+    windows = cut([swim(START, 5, 10)], START)
+    predicted = predict(windows, START)
+    assert predicted.rms[0] < 0.006
+    assert predicted.rms[1:4].max() < 0.02
+    # Strokes are seen 50 times a second only.
+    assert predicted.rms[4:].max() < 0.05
+
+
+def test_windows_leave_out_gaps_and_the_surface() -> None:
+    whole = swim(START, 6, 40)
+    assert cut([whole], START).starts == pytest.approx([0.32 + WINDOW * one for one in range(4)])
+    missing = (whole.depth_times < 10) | (whole.depth_times > 10.2)
+    broken = replace(
+        whole,
+        depth_times=whole.depth_times[missing],
+        depths=whole.depths[missing],
+    )
+    starts = cut([broken], START).starts
+    assert starts[0] == pytest.approx(0.32)
+    assert 10.2 < starts[1] < 10.6
+    with pytest.raises(
+        ValueError, match=r"No part of these sessions can be used: .* 8 s, .* deeper than 8 cm"
+    ):
+        cut([replace(whole, depths=whole.depths * 0)], START)
+
+
+def test_a_session_without_samples_has_no_window() -> None:
+    none, three, four = np.empty(0), np.empty((0, 3)), np.empty((0, 4))
+    empty = SessionStreams("x", none, four, none, three, three, four, none, none, none)
+    with pytest.raises(ValueError, match="No part of these sessions"):
+        cut([empty], START)
+    assert sensor_noise(empty) == {}
+
+
+def test_the_correlation_of_a_filtered_noise_is_that_of_theory() -> None:
+    random, share = Random(1), 0.8
+    rows, value = [], 0.0
+    for _ in range(40):
+        row = []
+        for _ in range(2000):
+            value = share * value + random.gauss(0, 1)
+            row.append(value)
+        rows.append(row)
+    assert integrated_autocorrelation(np.array(rows)) == pytest.approx((1 + share) / (1 - share), rel=0.1)
+    assert integrated_autocorrelation(np.zeros((2, 50))) == 1
+
+
+def test_a_fit_that_is_cancelled_ends() -> None:
+    windows = cut([swim(START, 5, 10)], START)
+
+    def cancel(share: float) -> None:
+        raise KeyboardInterrupt(share)
+
+    with pytest.raises(KeyboardInterrupt):
+        Fit(windows, START, cancel).run()
