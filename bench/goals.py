@@ -112,6 +112,10 @@ GOALS = {
     "latency.sample_to_page_ms_p95": _most(80),
     "hub.latency_ms_p50.50": _most(15, "python"),
     "hub.ratio_to_foxglove": _most(0.5),
+    # In percent of the true number; of the buoyancy, of its surplus over the weight.
+    "identify.error_percent_max": _most(5),
+    "identify.weak_error_percent_max": _most(10),
+    "identify.prediction_gain_min": _least(5),
     "link.table6_min_success": _least(1.0),
     "link.undetected_corruptions": _most(0),
     "page.heap_growth_mb_per_h": _most(2),

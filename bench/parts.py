@@ -31,6 +31,7 @@ PARTS = {
         Part("chip", is_emulated=True),
         Part("hour", is_emulated=True),
         Part("setpoint", is_emulated=True),
+        Part("identify", is_emulated=True),
         Part("tuning", is_emulated=True),
         Part("link", is_emulated=True),
         Part("emulator"),

@@ -17,6 +17,7 @@ COMMANDS = {
     "simulator": "server.features.simulator.command:simulator",
     "scenario": "server.features.scenarios.command:scenario",
     "report": "server.features.comparison.command:report",
+    "identify": "server.features.identification.command:identify",
     "export": "server.features.exports.command:export_session",
     "import": "server.features.exports.command:import_session",
     "sessions": "server.features.sessions.command:sessions",

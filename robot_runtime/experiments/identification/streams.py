@@ -21,12 +21,14 @@ GAP = 0.1
 """s without a sample across which no window reaches."""
 COVERED = 0.08
 """m of the pressure sensor's depth from which the hull is surely under water."""
-DEPTH_LATENCY = 0.0045
-"""s of the pressure sensor's conversion."""
+DEPTH_LATENCY = 0.0145
+"""s from the pressure to its sample: conversion and the board's schedule (measured on the emulated board)."""
 _TRIMMED = 0.623
 """Mean of the 90 % smallest squares of a standard normal variable: (0.9 - 2·1.645·φ(1.645)) / 0.9."""
-MEASURED_AGE = 0.0
-"""s by which readings lie behind the fins' angles of the same time stamp: one step of the sensors."""
+MEAN_AGE = 0.0025
+"""s: specific forces are means over the time since the reading before."""
+MEASURED_AGE = 0.005
+"""s by which readings lie behind the fins' angles of the same time stamp (measured on the emulated board)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +140,7 @@ def _sample(session: SessionStreams, start: float, craft: Craft) -> tuple[Floats
     measured[0] = np.interp(grid + DEPTH_LATENCY, session.depth_times, session.depths)
     columns = np.concatenate((session.rates, session.forces), axis=1)
     for axis in range(6):
-        latency = (craft.gyroscope if axis < 3 else craft.accelerometer).latency
+        latency = craft.gyroscope.latency if axis < 3 else craft.accelerometer.latency + MEAN_AGE
         measured[1 + axis] = np.interp(grid + latency, session.imu_times, columns[:, axis])
     attitude = session.attitudes[np.searchsorted(session.imu_times, start)]
     w, x, y, z = attitude / np.linalg.norm(attitude)

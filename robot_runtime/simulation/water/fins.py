@@ -1,7 +1,7 @@
 """Force and torque of four flapping fins."""
 
 from collections import deque
-from math import cos, sin
+from math import cos, pi, remainder, sin
 
 from robot_runtime.simulation.water.parameters import SimulationParameters, Six, Vector
 
@@ -90,10 +90,13 @@ class FinDelay:
         while len(self._motions) > 1 and self._motions[0][0] < moment:
             self._motions.popleft()
         time, angles, speeds = self._motions[0]
-        a, b, c, d = delayed = _turned(angles, speeds, moment - time)
-        e, f, g, h = self._before
+        delayed = _turned(angles, speeds, moment - time)
+        # Encoders begin anew after a turn.
+        e, f, g, h = (
+            remainder(now - old, 2 * pi) / period for now, old in zip(delayed, self._before, strict=True)
+        )
         self._before = delayed
-        return delayed, ((a - e) / period, (b - f) / period, (c - g) / period, (d - h) / period)
+        return delayed, (e, f, g, h)
 
 
 def _turned(angles: Four, speeds: Four, seconds: float) -> Four:

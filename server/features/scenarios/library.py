@@ -14,7 +14,7 @@ from server.platform.disk_space import explain_write_error
 
 log = logging.getLogger(__name__)
 
-SHIPPED = ("figure_14", "hover_in_a_current", "beacon_approach", "sensor_failure", "lost_link")
+SHIPPED = ("figure_14", "hover_in_a_current", "beacon_approach", "sensor_failure", "lost_link", "sea_trial")
 """The shipped scenarios, the thesis's own first."""
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from robot_runtime.contract.craft import Craft
 from robot_runtime.experiments.identification.quantities import QUANTITIES
-from robot_runtime.experiments.identification.streams import SessionStreams
+from robot_runtime.experiments.identification.streams import DEPTH_LATENCY, MEASURED_AGE, SessionStreams
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 from robot_runtime.simulation.water.surroundings import Basin, StartPose
@@ -69,12 +69,23 @@ def swim(
         reading = simulator.advance(_PERIOD, FinMotion.of(fins))
         if step % 2:
             continue
-        imu.append((time, *_rounded(reading.rate, 0.00026632423), *_rounded(reading.force, 0.0011971008)))
+        imu.append(
+            (
+                time + MEASURED_AGE,
+                *_rounded(reading.rate, 0.00026632423),
+                *_rounded(reading.force, 0.0011971008),
+            )
+        )
         attitudes.append(simulator.truth().attitude)
         if step % 4:
-            # The pressure sensor has converted when the board reads it.
             head = reading.pressure - 101325
-            depth.append((time + 0.0045, *_rounded((head / 9810,), 0.001), round(reading.pressure)))
+            depth.append(
+                (
+                    time + MEASURED_AGE + DEPTH_LATENCY,
+                    *_rounded((head / 9810,), 0.001),
+                    round(reading.pressure),
+                )
+            )
         else:
             seen = [
                 one + zero + noise.gauss(0, craft.encoder.noise)

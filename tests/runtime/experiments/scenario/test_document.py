@@ -102,9 +102,9 @@ def shipped() -> dict[str, str]:
     return {file.name: file.read_text(encoding="utf-8") for file in folder.iterdir()}
 
 
-def test_the_five_shipped_scenarios_are_valid() -> None:
+def test_the_six_shipped_scenarios_are_valid() -> None:
     read = {name: read_scenario(text) for name, text in shipped().items()}
-    assert len(read) == 5
+    assert len(read) == 6
     assert {name: f"{scenario.name}.toml" for name, scenario in read.items()} == {name: name for name in read}
     assert all(any(one.do == "arm" for one in scenario.events) for scenario in read.values())
 

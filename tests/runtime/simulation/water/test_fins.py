@@ -155,3 +155,11 @@ def test_the_water_answers_a_delayed_fin_later() -> None:
     assert [angles[0] for angles, _ in answered] == pytest.approx(expected)
     # In the third period it begins to turn after 0.002 s.
     assert [speeds[0] for _, speeds in answered] == pytest.approx([0.0, 0.0, 0.18, *[0.3] * 5])
+
+
+def test_a_delayed_fin_turns_on_where_its_encoder_begins_anew() -> None:
+    delay = FinDelay(0.0125)
+    angles = [(3.0 + 10 * 0.005 * step + pi) % (2 * pi) - pi for step in range(1, 21)]
+    assert min(angles) < -3 < 3 < max(angles)
+    speeds = [delay.delay(0.005, (angle,) * 4, (10.0,) * 4)[1][2] for angle in angles]
+    assert speeds[4:] == pytest.approx([10.0] * 16)

@@ -1,0 +1,1 @@
+"""Identification: fits the craft to recorded sessions, shows the result, adopts it."""

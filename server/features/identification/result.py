@@ -1,0 +1,174 @@
+"""The result of a fit as the page, the report and the craft file have it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from datetime import UTC, datetime
+from math import isfinite, log10
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from robot_runtime.contract.craft import TITLE_MAX, Craft, SensorQuality, craft_table
+from robot_runtime.control.craft_gains import craft_gains
+from robot_runtime.experiments.identification.identify import (
+    CHANNEL_NAMES,
+    Identification,
+    Prediction,
+    QuantityResult,
+)
+from server.features.identification.schemas import (
+    CheckedSession,
+    FittedSession,
+    IdentificationResult,
+    IdentifiedNumber,
+    PredictedChannel,
+)
+from server.features.metrics.series import Floats
+
+DIGITS = 5
+"""Significant digits of a number in a craft file: more than any fit knows."""
+SHOWN_WINDOWS = 6
+"""Of the session that was left out, in charts."""
+SHOWN_EVERY = 2
+"""Moments of 20 ms between two that charts show."""
+
+
+def describe(
+    found: Identification, sessions: Mapping[int, str], left_out: int | None, start: Craft
+) -> IdentificationResult:
+    """The result of a fit of `start` to the sessions, given with their names."""
+    craft = _rounded(found.craft, start)
+    return IdentificationResult(
+        sessions=[
+            FittedSession(id=one, name=name, windows=windows, offsets=_numbers(offsets))
+            for (one, name), windows, offsets in zip(
+                sessions.items(), found.windows, found.offsets, strict=True
+            )
+        ],
+        numbers=[_describe_number(one) for one in found.results],
+        noise={name: _significant(sigma, 3) for name, sigma in found.noise.items()},
+        check=None if found.prediction is None else _describe_check(found.prediction, left_out or 0),
+        missing=_missing(found.results),
+        affected=describe_effect(start, craft),
+        craft=write_craft(craft, list(sessions.values()), found.prediction),
+    )
+
+
+def write_craft(craft: Craft, names: Sequence[str], check: Prediction | None) -> str:
+    """The craft file."""
+    day = f"{datetime.now(UTC):%Y-%m-%d}"
+    origin = f"Fitted to {', '.join(names)} on {day}."
+    if check is not None:
+        origin += f" {check.session} is predicted {check.improvement:.1f} times better than before."
+    title = f"Fitted to {', '.join(names)}"
+    document = {"title": title[:TITLE_MAX], "origin": origin[:2000], "craft": craft_table(craft)}
+    return tomli_w.dumps(document)
+
+
+def describe_effect(before: Craft, after: Craft) -> list[str]:
+    """The effects of another craft, in words."""
+    if before == after:
+        return ["Nothing: it is the craft in force."]
+    changed = [
+        one.name.replace("_", " ")
+        for one in fields(Craft)
+        if getattr(before, one.name) != getattr(after, one.name)
+    ]
+    old, new = craft_gains(before), craft_gains(after)
+    return [
+        f"The simulated robot swims with other numbers: {', '.join(changed)}.",
+        'Scenarios with craft = "robot" take them.',
+        f"The model-based controller's thrust is {new['thrust']:.3g} m/s² instead of {old['thrust']:.3g}, "
+        f"its drag {new['drag']:.3g} 1/m instead of {old['drag']:.3g}, unless robot.toml sets them.",
+    ]
+
+
+def _describe_number(one: QuantityResult) -> IdentifiedNumber:
+    quantity = one.quantity
+    if one.deviation is None:
+        words = f"not seen in these sessions: it needs {quantity.motion}"
+    else:
+        words = f"± {_significant(one.deviation, 2):g} {quantity.unit}".rstrip()
+        if one.seen == "weakly":
+            words += "; weakly seen"
+    return IdentifiedNumber(
+        name=quantity.name,
+        title=quantity.title,
+        unit=quantity.unit,
+        before=_significant(one.before, DIGITS),
+        value=_significant(one.value, DIGITS),
+        deviation=one.deviation,
+        seen=one.seen,
+        words=words,
+    )
+
+
+def _missing(results: Sequence[QuantityResult]) -> list[str]:
+    """The missing motions, each with the numbers that stay unknown without it."""
+    motions: dict[str, list[str]] = {}
+    for one in results:
+        if one.seen == "no":
+            title = one.quantity.title
+            motions.setdefault(one.quantity.motion, []).append(title[0].lower() + title[1:])
+    return [f"{motion[0].upper()}{motion[1:]}: {', '.join(names)}" for motion, names in motions.items()]
+
+
+def _describe_check(check: Prediction, session: int) -> CheckedSession:
+    times: list[float | None] = []
+    for row in check.times[:SHOWN_WINDOWS]:
+        times += [round(float(one), 3) for one in row[::SHOWN_EVERY]] + [None]
+    return CheckedSession(
+        id=session,
+        name=check.session,
+        before_error=_significant(check.before_error, 3),
+        after_error=_significant(check.after_error, 3),
+        improvement=_significant(check.improvement, 3),
+        times=times,
+        channels=[
+            PredictedChannel(
+                name=name,
+                unit=unit,
+                before_rms=_significant(float(check.before_rms[place]), 3),
+                after_rms=_significant(float(check.after_rms[place]), 3),
+                measured=_line(check.measured[:, place]),
+                before=_line(check.before[:, place]),
+                after=_line(check.after[:, place]),
+            )
+            for place, (name, unit) in enumerate(CHANNEL_NAMES)
+        ],
+    )
+
+
+def _line(windows: Floats) -> list[float | None]:
+    """The windows one after the other, with a break after each."""
+    line: list[float | None] = []
+    for row in windows[:SHOWN_WINDOWS]:
+        line += [_significant(float(one), 4) for one in row[::SHOWN_EVERY]] + [None]
+    return line
+
+
+def _numbers(values: Floats) -> list[float] | None:
+    return None if np.isnan(values).any() else [_significant(one, 3) for one in values.tolist()]
+
+
+def _rounded(craft: Craft, start: Craft) -> Craft:
+    """The craft, with numbers that differ from `start` to the digits of a file."""
+    pairs = {one.name: (getattr(craft, one.name), getattr(start, one.name)) for one in fields(Craft)}
+    return replace(craft, **{name: _round(new, old) for name, (new, old) in pairs.items()})
+
+
+def _round(new: Any, old: Any) -> Any:
+    if new == old:
+        return old
+    if isinstance(new, tuple):
+        return tuple(_round(one, before) for one, before in zip(new, old, strict=True))
+    if isinstance(new, SensorQuality):
+        return replace(new, noise=_significant(new.noise, DIGITS))
+    return _significant(new, DIGITS)
+
+
+def _significant(value: float, digits: int) -> float:
+    if value == 0 or not isfinite(value):
+        return value
+    return round(value, digits - 1 - int(np.floor(log10(abs(value)))))
