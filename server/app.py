@@ -13,6 +13,7 @@ from server.features.backup import routes as backup
 from server.features.comm_tests import routes as comm_tests
 from server.features.comparison import routes as compare
 from server.features.exports import routes as exports
+from server.features.identification import routes as identification
 from server.features.layouts import routes as layouts
 from server.features.lease import routes as control
 from server.features.lease.admission import admit
@@ -41,7 +42,7 @@ from server.processes.supervisor import ProcessCommand
 
 ROUTES = (
     *(access, audit, backup, comm_tests, compare, control, exports, layouts, live, panels),
-    *(parameters, robot, scenarios, sessions, simulator, tuning, vision),
+    *(identification, parameters, robot, scenarios, sessions, simulator, tuning, vision),
 )
 
 

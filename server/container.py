@@ -20,6 +20,8 @@ from server.features.comm_tests.shipped import import_samples
 from server.features.comparison.worker import ComparisonWorker
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
+from server.features.identification.adoption import CraftAdoption
+from server.features.identification.runner import IdentificationRunner
 from server.features.layouts.library import Layouts
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.sync import LeaseSync
@@ -83,6 +85,7 @@ class Container:
         self._add_comm_tests()
         self._add_tuning()
         self._add_scenarios()
+        self._add_identification()
         self.heavy_requests = HeavyRequests()
         self.downloads = DatabaseDownloads(settings.data)
         self.layouts = Layouts(self.store)
@@ -143,6 +146,10 @@ class Container:
         simulated = SimulatedExecutor(self.settings, self.store, self.notices)
         self.scenarios = ScenarioRunner(self._live, simulated, self.hub.notify)
         self.bridge.on_stop = self.scenarios.see_stop
+
+    def _add_identification(self) -> None:
+        self.craft_adoption = CraftAdoption(self.settings, self.monitor, self.processes, self.changes)
+        self.identification = IdentificationRunner(self.settings, self.craft_adoption)
 
     def _add_tuning(self) -> None:
         self.tuning = TuningRunner(
@@ -211,6 +218,7 @@ class Container:
             await self.scenarios.close()
             await self.comm_tests.close()
             await self.comparison.close()
+            await self.identification.close()
             await self.processes.stop()
             await self.arming.close()
             await self._end_session()

@@ -56,6 +56,10 @@ export type TuningStart = Schemas['StepStart'] | Schemas['RelayStart'];
 export type ActiveTuning = Schemas['ActiveTuning'];
 export type Proposal = Schemas['Proposal'];
 export type LimitCycle = Schemas['MeasuredLimitCycle'];
+export type IdentificationState = Schemas['IdentificationState'];
+export type IdentificationResult = Schemas['IdentificationResult'];
+export type IdentificationStart = Schemas['IdentificationStart'];
+export type CraftChange = Schemas['CraftChange'];
 export type LoopName = TuningRun['loop'];
 export type ParameterChange = Schemas['Change'];
 export type Profile = Schemas['Profile'];
@@ -208,6 +212,11 @@ export const api = {
   ownPanels: () => request<OwnPanel[]>('GET', '/panels'),
   ownPanel: (name: OwnPanel['name']) =>
     request<Schemas['OwnPanelScript']>('GET', `/panels/own/${encodeURIComponent(name)}`),
+  identification: () => request<IdentificationState>('GET', '/identification'),
+  startIdentification: (wanted: IdentificationStart) => order('POST', '/identification', wanted),
+  cancelIdentification: () => order('POST', '/identification/cancel'),
+  adoptCraft: () => request<CraftChange>('POST', '/identification/adopt'),
+  undoCraft: () => request<CraftChange>('POST', '/identification/undo'),
   tuningRuns: (loop: LoopName) => request<TuningRuns>('GET', `/tuning/runs?loop=${loop}`),
   tuningRun: (id: TuningRun['id']) => request<TuningRunDetail>('GET', `/tuning/runs/${id}`),
   startTuning: (wanted: TuningStart) => order('POST', '/tuning/runs', wanted),

@@ -96,6 +96,8 @@ class DataFolder:
         """Your own scenarios."""
         self.craft = path / ADOPTED_CRAFT
         """The adopted craft (docs/use/identify.md)."""
+        self.craft_before = path / "craft-before.toml"
+        """The craft before the last adoption; empty if there was none."""
         self.panels = path / "panels"
         """Your own panels for the page (docs/use/panels.md)."""
 

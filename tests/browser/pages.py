@@ -27,6 +27,7 @@ PAGES = (
     View("tune-response", "tune/response", "Tune"),
     View("tune-relay", "tune/relay", "Tune"),
     View("tune-parameters", "tune/parameters", "Tune"),
+    View("tune-craft", "tune/craft", "Tune"),
     View("tune-vision", "tune/vision", "Tune"),
     View("scenarios", "scenarios", "New run"),
     View("comm-tests", "comm-tests", "Runs"),

@@ -144,6 +144,18 @@ PROBES: dict[tuple[str, str], Probe] = {
         422, {"text": "?", "place": "simulated"}, words="TOML", because=STARTS
     ),
     ("POST", "/api/scenarios/cancel"): Probe(204),
+    ("POST", "/api/identification"): Probe(
+        409, {"sessions": [1], "left_out": 1}, words="both fitted and left out", because=STARTS
+    ),
+    ("POST", "/api/identification/cancel"): Probe(
+        409, words="No fit is running", because="There would have to be one."
+    ),
+    ("POST", "/api/identification/adopt"): Probe(
+        409, words="no fitted craft", because="It would need a fit of a minute."
+    ),
+    ("POST", "/api/identification/undo"): Probe(
+        409, words="no adoption to undo", because="It would need a fit of a minute."
+    ),
     ("POST", "/api/layouts"): Probe(
         201, {"name": "pool", "document": {"format": "mucat-layout", "version": 1, "panels": []}}
     ),

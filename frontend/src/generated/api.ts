@@ -655,6 +655,90 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/identification": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Return the running fit, or the last one with its result, and the craft in force
+         * @description Return the running fit, or the last one with its result, and the craft in force.
+         */
+        get: operations["getIdentification"];
+        put?: never;
+        /**
+         * Fit the craft in force to sessions; one fit runs at a time
+         * @description Fit the craft in force to sessions; one fit runs at a time.
+         */
+        post: operations["startIdentification"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/identification/adopt": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Adopt the craft of the last fit: write its file, restart the simulator, set the controller's gains
+         * @description Adopt the craft of the last fit: write its file, restart the simulator, set the controller's gains.
+         */
+        post: operations["adoptCraft"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/identification/cancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Cancel the running fit
+         * @description Cancel the running fit.
+         */
+        post: operations["cancelIdentification"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/identification/undo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore the craft before the last adoption
+         * @description Restore the craft before the last adoption.
+         */
+        post: operations["undoCraft"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/imports": {
         parameters: {
             query?: never;
@@ -1823,6 +1907,23 @@ export interface components {
          */
         AcknowledgeCommand: Record<string, never>;
         /**
+         * ActiveIdentification
+         * @description A fit that runs.
+         */
+        ActiveIdentification: {
+            /** Left Out */
+            left_out: number | null;
+            /**
+             * Progress
+             * @description 0 to 1
+             */
+            progress: number;
+            /** Run */
+            run: number;
+            /** Sessions */
+            sessions: number[];
+        };
+        /**
          * ActiveRun
          * @description The active run; times in s of the scenario.
          */
@@ -1898,6 +1999,34 @@ export interface components {
              * @description s, steady clock, when its phase began
              */
             since: number;
+        };
+        /**
+         * AdoptedCraft
+         * @description The craft in force.
+         */
+        AdoptedCraft: {
+            /**
+             * Can Undo
+             * @description whether the craft before the last adoption can be restored
+             */
+            can_undo: boolean;
+            /**
+             * File
+             * @description its file; empty for the default craft
+             */
+            file: string;
+            /** Origin */
+            origin: string;
+            /**
+             * Problem
+             * @description why no craft can be adopted now; empty if one can
+             */
+            problem: string;
+            /**
+             * Title
+             * @description empty for the default craft
+             */
+            title: string;
         };
         /**
          * Alarm
@@ -2185,6 +2314,35 @@ export interface components {
          * @description Arms for some seconds and moves each fin. An event says which fins followed; then it disarms.
          */
         CheckFinsCommand: Record<string, never>;
+        /**
+         * CheckedSession
+         * @description The check on the session that was left out.
+         */
+        CheckedSession: {
+            /** After Error */
+            after_error: number;
+            /**
+             * Before Error
+             * @description share of the measured signals' own variation, before the fit
+             */
+            before_error: number;
+            /** Channels */
+            channels: components["schemas"]["PredictedChannel"][];
+            /** Id */
+            id: number;
+            /**
+             * Improvement
+             * @description error before over error after
+             */
+            improvement: number;
+            /** Name */
+            name: string;
+            /**
+             * Times
+             * @description s since the session's start
+             */
+            times: number[];
+        };
         /**
          * CheckedTest
          * @description A test of a document that can be run; `seconds` is about how long its cells take in the test's time.
@@ -2540,6 +2698,14 @@ export interface components {
             title: string;
         };
         /**
+         * CraftChange
+         * @description The answer to an adoption, or to its undoing.
+         */
+        CraftChange: {
+            /** Affected */
+            affected: string[];
+        };
+        /**
          * DeviceChanges
          * @description Changes of a device; null leaves a field unchanged.
          */
@@ -2691,6 +2857,24 @@ export interface components {
             too_old: number;
         };
         /**
+         * EndedIdentification
+         * @description The last fit.
+         */
+        EndedIdentification: {
+            /** Left Out */
+            left_out: number | null;
+            /**
+             * Problem
+             * @description why it has no result; empty if it has one
+             */
+            problem: string;
+            result: components["schemas"]["IdentificationResult"] | null;
+            /** Run */
+            run: number;
+            /** Sessions */
+            sessions: number[];
+        };
+        /**
          * EndedRun
          * @description The run that ended last; `session` is null if it recorded nothing.
          */
@@ -2831,6 +3015,26 @@ export interface components {
             unit: string;
         };
         /**
+         * FittedSession
+         * @description A session of a fit.
+         */
+        FittedSession: {
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Offsets
+             * @description of its IMU: turn rate (rad/s), then specific force (m/s²); null without a window
+             */
+            offsets: number[] | null;
+            /**
+             * Windows
+             * @description number of windows of 8 s that could be used
+             */
+            windows: number;
+        };
+        /**
          * Gain
          * @description One number of a controller that may be tuned.
          */
@@ -2877,6 +3081,100 @@ export interface components {
             client: number;
             /** Name */
             name: string;
+        };
+        /**
+         * IdentificationResult
+         * @description The result of a fit.
+         */
+        IdentificationResult: {
+            /**
+             * Affected
+             * @description what changes if the craft is adopted, in words
+             */
+            affected: string[];
+            check: components["schemas"]["CheckedSession"] | null;
+            /**
+             * Craft
+             * @description the craft file
+             */
+            craft: string;
+            /**
+             * Missing
+             * @description the motions that these sessions do not show, in words
+             */
+            missing: string[];
+            /**
+             * Noise
+             * @description σ by sensor: pressure (Pa), gyroscope, accelerometer
+             */
+            noise: {
+                [key: string]: number;
+            };
+            /** Numbers */
+            numbers: components["schemas"]["IdentifiedNumber"][];
+            /** Sessions */
+            sessions: components["schemas"]["FittedSession"][];
+        };
+        /**
+         * IdentificationStart
+         * @description The sessions of a fit, and the one that checks it.
+         */
+        IdentificationStart: {
+            /**
+             * Left Out
+             * @description the session that checks the prediction; null: none
+             */
+            left_out?: number | null;
+            /** Sessions */
+            sessions: number[];
+        };
+        /**
+         * IdentificationStarted
+         * @description The number of a fit.
+         */
+        IdentificationStarted: {
+            /** Run */
+            run: number;
+        };
+        /**
+         * IdentificationState
+         * @description The running fit, the last one, and the craft in force.
+         */
+        IdentificationState: {
+            active: components["schemas"]["ActiveIdentification"] | null;
+            craft: components["schemas"]["AdoptedCraft"];
+            last: components["schemas"]["EndedIdentification"] | null;
+        };
+        /**
+         * IdentifiedNumber
+         * @description A number of the craft before and after a fit.
+         */
+        IdentifiedNumber: {
+            /** Before */
+            before: number;
+            /**
+             * Deviation
+             * @description standard deviation; null if the sessions do not show it
+             */
+            deviation: number | null;
+            /** Name */
+            name: string;
+            /**
+             * Seen
+             * @enum {string}
+             */
+            seen: "well" | "weakly" | "no";
+            /** Title */
+            title: string;
+            /** Unit */
+            unit: string;
+            /** Value */
+            value: number;
+            /**
+             * Words
+             * @description the confidence, or the motion that is missing
+             */
+            words: string;
         };
         /**
          * Identity
@@ -3519,6 +3817,29 @@ export interface components {
             x: number;
             /** Y */
             y: number;
+        };
+        /**
+         * PredictedChannel
+         * @description A measured signal of the session that was left out, and its prediction; null breaks the lines.
+         */
+        PredictedChannel: {
+            /** After */
+            after: (number | null)[];
+            /** After Rms */
+            after_rms: number;
+            /** Before */
+            before: (number | null)[];
+            /**
+             * Before Rms
+             * @description error of the prediction by the craft before the fit
+             */
+            before_rms: number;
+            /** Measured */
+            measured: (number | null)[];
+            /** Name */
+            name: string;
+            /** Unit */
+            unit: string;
         };
         /**
          * Problem
@@ -6628,6 +6949,234 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Health"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getIdentification: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["IdentificationState"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    startIdentification: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["IdentificationStart"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["IdentificationStarted"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    adoptCraft: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CraftChange"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    cancelIdentification: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    undoCraft: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CraftChange"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Something that the server needs does not work */

@@ -5,6 +5,7 @@ export const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Reco
   operate: 'use/operate/',
   tune: 'use/tune/',
   'tune/parameters': 'use/tune/#change-parameters',
+  'tune/craft': 'use/identify/',
   'tune/vision': 'use/vision/',
   scenarios: 'use/scenarios/',
   'comm-tests': 'use/comm-tests/',

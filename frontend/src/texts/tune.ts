@@ -3,7 +3,7 @@ import { pages } from './pages';
 
 export const tune = {
   title: pages.tune,
-  views: { label: 'Tuning views', response: 'Step response', relay: 'Automatic tuning', parameters: 'Parameters', vision: 'Vision' },
+  views: { label: 'Tuning views', response: 'Step response', relay: 'Automatic tuning', parameters: 'Parameters', craft: 'Craft', vision: 'Vision' },
   loops: { depth: 'Depth', heading: 'Heading', pitch: 'Pitch', roll: 'Roll' },
   response: {
     form: 'Step',

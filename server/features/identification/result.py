@@ -10,13 +10,13 @@ import numpy as np
 import tomli_w
 
 from robot_runtime.contract.craft import TITLE_MAX, Craft, SensorQuality, craft_table
-from robot_runtime.control.craft_gains import craft_gains
 from robot_runtime.experiments.identification.identify import (
     CHANNEL_NAMES,
     Identification,
     Prediction,
     QuantityResult,
 )
+from server.features.identification.effect import describe_effect
 from server.features.identification.schemas import (
     CheckedSession,
     FittedSession,
@@ -32,6 +32,8 @@ SHOWN_WINDOWS = 6
 """Of the session that was left out, in charts."""
 SHOWN_EVERY = 2
 """Moments of 20 ms between two that charts show."""
+BREAK = 0.005
+"""s after a window's last moment at which its lines break."""
 
 
 def describe(
@@ -66,24 +68,6 @@ def write_craft(craft: Craft, names: Sequence[str], check: Prediction | None) ->
     return tomli_w.dumps(document)
 
 
-def describe_effect(before: Craft, after: Craft) -> list[str]:
-    """The effects of another craft, in words."""
-    if before == after:
-        return ["Nothing: it is the craft in force."]
-    changed = [
-        one.name.replace("_", " ")
-        for one in fields(Craft)
-        if getattr(before, one.name) != getattr(after, one.name)
-    ]
-    old, new = craft_gains(before), craft_gains(after)
-    return [
-        f"The simulated robot swims with other numbers: {', '.join(changed)}.",
-        'Scenarios with craft = "robot" take them.',
-        f"The model-based controller's thrust is {new['thrust']:.3g} m/s² instead of {old['thrust']:.3g}, "
-        f"its drag {new['drag']:.3g} 1/m instead of {old['drag']:.3g}, unless robot.toml sets them.",
-    ]
-
-
 def _describe_number(one: QuantityResult) -> IdentifiedNumber:
     quantity = one.quantity
     if one.deviation is None:
@@ -115,9 +99,10 @@ def _missing(results: Sequence[QuantityResult]) -> list[str]:
 
 
 def _describe_check(check: Prediction, session: int) -> CheckedSession:
-    times: list[float | None] = []
+    times: list[float] = []
     for row in check.times[:SHOWN_WINDOWS]:
-        times += [round(float(one), 3) for one in row[::SHOWN_EVERY]] + [None]
+        shown = [round(float(one), 3) for one in row[::SHOWN_EVERY]]
+        times += [*shown, round(shown[-1] + BREAK, 3)]
     return CheckedSession(
         id=session,
         name=check.session,

@@ -65,7 +65,7 @@ class CheckedSession(BaseModel):
     before_error: float = Field(description="share of the measured signals' own variation, before the fit")
     after_error: float
     improvement: float = Field(description="error before over error after")
-    times: list[float | None] = Field(description="s since the session's start")
+    times: list[float] = Field(description="s since the session's start")
     channels: list[PredictedChannel]
 
 
@@ -79,6 +79,12 @@ class IdentificationResult(BaseModel):
     missing: list[str] = Field(description="the motions that these sessions do not show, in words")
     affected: list[str] = Field(description="what changes if the craft is adopted, in words")
     craft: str = Field(description="the craft file")
+
+
+class IdentificationStarted(BaseModel):
+    """The number of a fit."""
+
+    run: int
 
 
 class ActiveIdentification(BaseModel):

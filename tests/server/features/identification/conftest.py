@@ -1,5 +1,7 @@
 """Two short sessions of the sea trial on a craft that is not the default, and a fit that is quickly done."""
 
+import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,8 +30,13 @@ class RecordedTrials:
 
 
 @pytest.fixture(scope="session")
-def trials(tmp_path_factory: pytest.TempPathFactory) -> RecordedTrials:
-    folder = tmp_path_factory.mktemp("trials")
+def trials() -> Iterator[RecordedTrials]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+        yield record(Path(name))
+
+
+def record(folder: Path) -> RecordedTrials:
+    """Swim both sessions into the data folder there."""
     (folder / "other.toml").write_text(CRAFT)
     (folder / "swum.toml").write_text('[craft]\nfile = "other.toml"\n')
     (folder / "robot.toml").write_text("")

@@ -1,0 +1,128 @@
+"""Runs fits for the page, each in a process of its own, one at a time."""
+
+import asyncio
+import json
+import os
+import sys
+from asyncio.subprocess import PIPE, Process
+from contextlib import suppress
+
+from robot_runtime.errors import RefusedError
+from server.features.identification.adoption import CraftAdoption
+from server.features.identification.run import check_choice
+from server.features.identification.schemas import (
+    ActiveIdentification,
+    EndedIdentification,
+    IdentificationResult,
+    IdentificationStart,
+    IdentificationState,
+)
+from server.platform.settings import Settings
+from server.processes.process import describe_status
+
+LINE_BYTES_MAX = 16_000_000
+SECONDS_MAX = 1800.0
+"""Time that a fit may take: a minute on a desktop computer, half an hour on a Raspberry Pi."""
+CANCELLED = "It was cancelled."
+
+
+class IdentificationRunner:
+    """The running fit and the last one; `adoption` adopts its craft."""
+
+    def __init__(self, settings: Settings, adoption: CraftAdoption) -> None:
+        self._settings = settings
+        self._adoption = adoption
+        self._active: ActiveIdentification | None = None
+        self._last: EndedIdentification | None = None
+        self._task: asyncio.Task[None] | None = None
+        self._count = 0
+
+    def state(self) -> IdentificationState:
+        """The running fit, or the last one with its result, and the craft in force."""
+        last = self._last if self._active is None else None
+        return IdentificationState(active=self._active, last=last, craft=self._adoption.describe())
+
+    def start(self, choice: IdentificationStart) -> int:
+        """Start a fit, and return its number. Raises RefusedError."""
+        if self._active is not None:
+            raise RefusedError("A fit is running. Wait for its end, or cancel it.")
+        check_choice(choice.sessions, choice.left_out)
+        self._count += 1
+        self._active = ActiveIdentification(
+            run=self._count, sessions=choice.sessions, left_out=choice.left_out, progress=0.0
+        )
+        self._task = asyncio.create_task(self._perform(choice))
+        return self._count
+
+    def cancel(self) -> None:
+        """End the running fit; the last result stays away. Raises RefusedError if none runs."""
+        if self._task is None or self._active is None:
+            raise RefusedError("No fit is running.")
+        self._task.cancel()
+
+    async def adopt(self, who: str) -> list[str]:
+        """Adopt the last fit's craft; returns the effects in words. Raises RefusedError."""
+        if self._active is not None or self._last is None or self._last.result is None:
+            raise RefusedError("There is no fitted craft to adopt. Fit sessions first.")
+        return await self._adoption.adopt(self._last.result.craft, who)
+
+    async def close(self) -> None:
+        """End the running fit."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+
+    async def _perform(self, choice: IdentificationStart) -> None:
+        problem, result = CANCELLED, None
+        try:
+            async with asyncio.timeout(SECONDS_MAX):
+                problem, result = await self._fit(choice)
+        except TimeoutError:
+            problem = f"It was given up after {SECONDS_MAX / 60:.0f} min. Choose fewer sessions."
+        except OSError as error:
+            problem = f"No process can be started for it ({error.strerror})."
+        finally:
+            self._last = EndedIdentification(
+                run=self._count,
+                sessions=choice.sessions,
+                left_out=choice.left_out,
+                problem=problem,
+                result=result,
+            )
+            self._active = None
+
+    async def _fit(self, choice: IdentificationStart) -> tuple[str, IdentificationResult | None]:
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            "server.features.identification",
+            str(self._settings.data.database),
+            str(self._settings.craft_file),
+            choice.model_dump_json(),
+            stdout=PIPE,
+            limit=LINE_BYTES_MAX,
+            # One core at most: control, recording and the page need the others.
+            env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+        )
+        try:
+            return await self._follow(process)
+        finally:
+            if process.returncode is None:
+                with suppress(ProcessLookupError):
+                    process.kill()
+                await process.wait()
+
+    async def _follow(self, process: Process) -> tuple[str, IdentificationResult | None]:
+        """Problem and result of the process; one of them is empty."""
+        assert process.stdout is not None
+        async for line in process.stdout:
+            message = json.loads(line)
+            if "progress" in message:
+                assert self._active is not None
+                self._active = self._active.model_copy(update={"progress": message["progress"]})
+            elif "result" in message:
+                return "", IdentificationResult.model_validate(message["result"])
+            else:
+                return str(message["problem"]), None
+        status = await process.wait()
+        return f"The process of the fit {describe_status(status)}. The computer may lack memory.", None
