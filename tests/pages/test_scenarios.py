@@ -9,7 +9,7 @@ from tests.browser.scenarios import open_scenarios
 
 def test_the_shipped_scenarios_are_shown_with_their_events(any_page: Page) -> None:
     open_scenarios(any_page)
-    expect(any_page.get_by_role("radio")).to_have_count(7)
+    expect(any_page.get_by_role("radio")).to_have_count(8)
     expect(any_page.get_by_role("radio", name="In simulation")).to_be_checked()
     expect(any_page.get_by_role("radio", name=re.compile("Figure 14"))).to_be_checked()
     happens = any_page.get_by_role("list", name="Events").get_by_role("listitem")
