@@ -36,7 +36,7 @@ START = Craft()
 @pytest.fixture(scope="module")
 def found() -> Identification:
     fitted = [swim(OTHER, seed, 50) for seed in (1, 2)]
-    return identify(fitted, swim(OTHER, 3, 26), START)
+    return identify(fitted, swim(OTHER, 3, 18), START)
 
 
 def test_numbers_that_differ_by_up_to_40_percent_are_found_within_5(found: Identification) -> None:

@@ -10,6 +10,7 @@ import pytest
 from robot_runtime.contract.craft import load_craft
 from server.features.identification import runner
 from server.platform.settings import Settings
+from tests.server.blocks import state_block
 from tests.server.features.identification.conftest import RecordedTrials
 from tests.server.serving import Served, play
 from tests.server.waiting import until
@@ -135,3 +136,22 @@ def test_a_craft_that_robot_toml_names_is_not_replaced(settings: Settings, tmp_p
         assert craft["problem"].startswith(f"robot.toml names the craft file {named}.")
 
     play(replace(settings, craft=named), scenario)
+
+
+def test_no_craft_is_changed_while_the_robot_is_armed(settings: Settings) -> None:
+    settings.data.craft_before.write_text('title = "Before"\n')
+
+    async def scenario(served: Served) -> None:
+        served.container._deliver([state_block(0, armed=True)])
+        refused = await served.api.post("/identification/undo")
+        assert (refused.status_code, refused.json()["detail"]) == (
+            409,
+            "The robot is armed. Disarm it first.",
+        )
+        assert (await state(served))["craft"]["problem"] == "The robot is armed. Disarm it first."
+        assert not settings.data.craft.exists()
+        served.container._deliver([state_block(1, armed=False)])
+        assert (await served.api.post("/identification/undo")).status_code == 200
+        assert load_craft(settings.data.craft).title == "Before"
+
+    play(settings, scenario)
