@@ -129,7 +129,7 @@ def query(stack: Stack, question: str) -> list[Any]:
 def test_the_shipped_scenarios_are_listed_and_valid(stack: Stack) -> None:
     found = stack.api.get("/scenarios").json()
     assert found[0]["name"] == "figure_14"
-    assert len(found) == 5
+    assert len(found) == 6
     for one in found:
         checked = stack.api.post("/scenarios/check", json={"text": one["text"]}).json()
         assert checked == {"problems": [], "summary": one["summary"]}
