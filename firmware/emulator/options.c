@@ -20,6 +20,7 @@ static const char usage[] =
     "  --speed X         emulated seconds in a real one, 1 by default; 0: as fast as possible\n"
     "  --paused          time passes only by the command `run`\n"
     "  --eeprom FILE     store the EEPROM in this file\n"
+    "  --uncalibrated    begin without a calibration in the EEPROM, if it keeps none\n"
     "  --reset-on-open   opening the serial port resets the board\n"
     "  --with-parent     end when the parent process ends\n"
     "  --server-lock FILE  end when no server has held this file's lock ...\n"
@@ -33,6 +34,7 @@ enum choice {
   SPEED,
   PAUSED,
   EEPROM,
+  UNCALIBRATED,
   RESET_ON_OPEN,
   WITH_PARENT,
   SERVER_LOCK,
@@ -48,6 +50,7 @@ static const struct option long_options[] = {
     {"speed", required_argument, NULL, SPEED},
     {"paused", no_argument, NULL, PAUSED},
     {"eeprom", required_argument, NULL, EEPROM},
+    {"uncalibrated", no_argument, NULL, UNCALIBRATED},
     {"reset-on-open", no_argument, NULL, RESET_ON_OPEN},
     {"with-parent", no_argument, NULL, WITH_PARENT},
     {"server-lock", required_argument, NULL, SERVER_LOCK},
@@ -92,6 +95,9 @@ static void take(struct options *options, int option) {
       break;
     case EEPROM:
       options->eeprom = optarg;
+      break;
+    case UNCALIBRATED:
+      options->uncalibrated = true;
       break;
     case RESET_ON_OPEN:
       options->reset_on_open = true;

@@ -13,6 +13,7 @@ struct options {
   const char *eeprom;  // NULL: it is lost at the end
   double speed;        // emulated seconds in a real one; 0: as fast as it goes
   bool paused;         // time passes only by the command `run`
+  bool uncalibrated;
   bool reset_on_open;
   bool with_parent;
   const char *server_lock;  // NULL: no server is needed

@@ -60,6 +60,9 @@ bool service_create(struct service *service, const struct options *options, char
            chip_load_bootloader(&board->chip, options->bootloader, reason, reason_size)) &&
           (!options->elf || chip_load(&board->chip, options->elf, reason, reason_size)) &&
           (!options->eeprom || eeprom_open(&board->eeprom, options->eeprom, reason, reason_size));
+  if (ready && !options->uncalibrated) {
+    eeprom_calibrate(&board->eeprom);
+  }
   if (!ready) {
     service_remove(service);
     return false;

@@ -21,6 +21,7 @@ def main() -> int:
     only_check = parser.parse_args().check
     files = {
         "firmware/src/packets.gen.h": cpp.header(),
+        "firmware/emulator/calibration.gen.h": cpp.calibration(),
         "firmware/src/parameters.gen.h": cpp.parameters(),
         "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),

@@ -2,6 +2,9 @@
 #include "board.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "calibration.gen.h"
 
 namespace mucat {
 namespace host {
@@ -20,7 +23,10 @@ double seconds(const void* owner) { return static_cast<const Board*>(owner)->now
 
 }  // namespace
 
-Board::Board() { devices_create(&parts, {seconds, this}); }
+Board::Board() {
+  devices_create(&parts, {seconds, this});
+  memcpy(kept, calibration_record, sizeof calibration_record);
+}
 
 void Board::reset(ResetCause why) {
   current = this;
@@ -139,6 +145,10 @@ uint16_t next_epoch() {
   if (++current->epoch == 0) current->epoch = 1;
   return current->epoch;
 }
+
+void read_kept(void* bytes, uint8_t size) { memcpy(bytes, current->kept, size); }
+
+void write_kept(uint8_t index, uint8_t byte) { current->kept[index] = byte; }
 
 RetainedMemory& retained_memory() { return current->retained; }
 
