@@ -32,7 +32,7 @@ bool possible(const Calibration& calibration) {
 FlashText describe_step(uint8_t steps) {
   if (steps & static_cast<uint8_t>(CalibrationStep::kFins)) return FLASH_TEXT("fins");
   if (steps & static_cast<uint8_t>(CalibrationStep::kMotors)) return FLASH_TEXT("motors");
-  if (steps & static_cast<uint8_t>(CalibrationStep::kAxes)) return FLASH_TEXT("IMU's axes");
+  if (steps & static_cast<uint8_t>(CalibrationStep::kAxes)) return FLASH_TEXT("IMU axes");
   if (steps & static_cast<uint8_t>(CalibrationStep::kGyro)) return FLASH_TEXT("gyroscope");
   if (steps & static_cast<uint8_t>(CalibrationStep::kPressure)) return FLASH_TEXT("pressure");
   if (steps & static_cast<uint8_t>(CalibrationStep::kBattery)) return FLASH_TEXT("battery");
