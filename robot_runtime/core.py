@@ -166,8 +166,8 @@ class Core:
         self.bus.publish_document("state", self.state())
         self.bus.publish_document("experiment", experiment)
 
-    def _tell_calibration(self, text: str) -> None:
-        event = Event(time=self.clock.now(), kind="calibration", severity="info", text=text)
+    def _tell_calibration(self, text: str, severity: Severity) -> None:
+        event = Event(time=self.clock.now(), kind="calibration", severity=severity, text=text)
         self.publish_event(event)
 
     def announce(self) -> None:

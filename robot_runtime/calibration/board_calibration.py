@@ -13,8 +13,8 @@ from robot_runtime.parameters.board import Send
 
 _RETRY_SECONDS = 1.0
 """Until the board is asked again: the link loses nothing, but a board may restart before it answers."""
-_STORE_SECONDS = 2.0
-"""In which a board has written and read its calibration; it writes for 0.3 s."""
+_STORE_SECONDS = 1.2
+"""In which a board has written and read its calibration; it writes for 0.3 s. The server waits for 2 s."""
 _BYTES = 2 * Calibration.layout.size + 128
 """On the line for a calibration and its answer, and what may be queued before them."""
 

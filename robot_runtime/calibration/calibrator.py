@@ -1,14 +1,15 @@
 """What people do about the calibration: store it, measure the gyroscope, say where the surface is."""
 
+import threading
 from collections.abc import Callable
 from dataclasses import replace
 from math import degrees
 
 from robot_runtime.calibration.board_calibration import BoardCalibration
-from robot_runtime.calibration.gyro import GyroMeasurement
+from robot_runtime.calibration.gyro import GyroMeasurement, Rate
 from robot_runtime.clock import Clock
 from robot_runtime.contract.calibration import GYRO_BIAS, STEPS, CalibrationValues
-from robot_runtime.contract.documents import CalibrationKept
+from robot_runtime.contract.documents import CalibrationKept, Severity
 from robot_runtime.contract.packets import ZeroDepth
 from robot_runtime.errors import RefusedError
 from robot_runtime.parameters.board import Send
@@ -17,7 +18,7 @@ from robot_runtime.parameters.board import Send
 class Calibrator:
     """Changes what `board` keeps. `armed` says whether the board is; `tell` publishes a sentence.
 
-    `store` and `measure_gyro` take seconds. All raise RefusedError with the reason.
+    All raise RefusedError with the reason.
     """
 
     def __init__(
@@ -27,7 +28,7 @@ class Calibrator:
         baud: int,
         *,
         armed: Callable[[], bool],
-        tell: Callable[[str], None],
+        tell: Callable[[str, Severity], None],
         publish: Callable[[CalibrationKept], None],
     ) -> None:
         self.board = BoardCalibration(clock, send, baud, self.publish)
@@ -55,16 +56,23 @@ class Calibrator:
         self.board.store(values)
 
     def measure_gyro(self) -> None:
-        """Measures the gyroscope's offset at rest, and stores it."""
+        """Begins to measure the gyroscope's offset at rest; some seconds later an event tells the result."""
         self._require_disarmed("The gyroscope is measured at rest, so not while the robot is armed.")
         kept = self.board.require()
         if self._gyro is not None:
             raise RefusedError("The gyroscope is being measured already.")
-        self._gyro = GyroMeasurement()
+        self._gyro = gyro = GyroMeasurement()
+        threading.Thread(target=self._complete_gyro, args=(gyro, kept), name="gyro", daemon=True).start()
+
+    def _complete_gyro(self, gyro: GyroMeasurement, kept: CalibrationValues) -> None:
         try:
-            measured = self._gyro.result()
+            self._tell(self._keep_gyro(gyro.result(), kept), "info")
+        except RefusedError as problem:
+            self._tell(f"The gyroscope was not measured. {problem}", "caution")
         finally:
             self._gyro = None
+
+    def _keep_gyro(self, measured: Rate, kept: CalibrationValues) -> str:
         # The board has taken away what it keeps as the offset.
         forward, right, down = (old + new for old, new in zip(kept.gyro_bias, measured, strict=True))
         if max(map(abs, (forward, right, down))) > GYRO_BIAS.maximum:
@@ -74,14 +82,14 @@ class Calibrator:
             )
         done = tuple(name for name in STEPS if name in kept.done or name == "gyro")
         self.store(replace(kept, gyro_bias=(forward, right, down), done=done))
-        self._tell(f"The gyroscope's offset is {_in_degrees(forward, right, down)}; the board keeps it.")
+        return f"The gyroscope's offset is {_in_degrees(forward, right, down)}; the board keeps it."
 
     def zero_depth(self) -> None:
         """Has the board take the pressure now for the surface's."""
         self._require_disarmed("The surface is measured only while the robot is disarmed.")
         if not self._send(ZeroDepth()):
             raise RefusedError("There is no connection to the board.")
-        self._tell("The pressure now is taken for the surface's.")
+        self._tell("The pressure now is taken for the surface's.", "info")
 
     def _require_disarmed(self, otherwise: str) -> None:
         if self._armed():

@@ -255,7 +255,7 @@ class CalibrateCommand(RobotCommand):
 
 @command("measure_gyro", Need.CONTROL)
 class MeasureGyroCommand(RobotCommand):
-    """Measures the gyroscope's offset for three seconds at rest, and stores it in the board."""
+    """Measures the gyroscope's offset for three seconds at rest, and stores it. An event tells the result."""
 
 
 @command("zero_depth", Need.CONTROL, words="The depth is zero")

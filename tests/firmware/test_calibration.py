@@ -224,8 +224,8 @@ def test_directions_and_zeros_of_the_fins_are_applied(robot: Robot) -> None:
     robot.greet()
     robot.run(50)
     before = robot.last(Motor).angle
-    zeros = tuple((zero + 256) % 1024 for zero in EMULATED.fin_zeros)
-    store(robot, replace(KEPT, fin_zeros=zeros))
+    one, two, three, four = ((zero + 256) % 1024 for zero in EMULATED.fin_zeros)
+    store(robot, replace(KEPT, fin_zeros=(one, two, three, four)))
     robot.run(50)
     turn = [now - then for now, then in zip(robot.last(Motor).angle, before, strict=True)]
     # A quarter of a turn; the counts of the right fins fall as their tips go down.

@@ -48,7 +48,7 @@ export interface CalibrateCommand {
   values: CalibrationValues;
 }
 
-/** Measures the gyroscope's offset for three seconds at rest, and stores it in the board. */
+/** Measures the gyroscope's offset for three seconds at rest, and stores it. An event tells the result. */
 export type MeasureGyroCommand = Record<string, never>;
 
 /** Takes the pressure now for the surface's. It is refused while the robot is armed. */
