@@ -1,4 +1,4 @@
-"""What the board keeps as its calibration: asked for after each greeting, and stored on request."""
+"""The calibration that the board keeps: asked for after each greeting, and stored on request."""
 
 import threading
 from collections.abc import Callable
@@ -27,7 +27,7 @@ class BoardCalibration:
         self._send = send
         self._patience = 2 * airtime(_BYTES, baud)
         self._on_change = on_change
-        self._kept: CalibrationValues | None = None
+        self._stored: CalibrationValues | None = None
         self._problem = ""
         self._answers = 0
         self._asked_at = float("-inf")
@@ -36,21 +36,21 @@ class BoardCalibration:
     @property
     def values(self) -> CalibrationValues | None:
         """The calibration that the board keeps; None until it has told."""
-        return self._kept
+        return self._stored
 
     def forget(self) -> None:
         """The board was greeted: it may be another one."""
         with self._changed:
-            self._kept, self._problem = None, ""
+            self._stored, self._problem = None, ""
             self._asked_at = float("-inf")
 
     def see(self, packet: Calibration) -> None:
         """Takes the board's answer."""
         with self._changed:
             try:
-                self._kept, self._problem = CalibrationValues.from_packet(packet), ""
+                self._stored, self._problem = CalibrationValues.from_packet(packet), ""
             except ConfigError as problem:
-                self._kept, self._problem = None, str(problem)
+                self._stored, self._problem = None, str(problem)
             self._answers += 1
             self._changed.notify_all()
         self._on_change()
@@ -59,7 +59,7 @@ class BoardCalibration:
         """Asks the board again when that is due; called several times a second."""
         with self._changed:
             due = self._clock.now() - self._asked_at >= _RETRY_SECONDS + self._patience
-            if self._kept is None and due and self._send(RequestCalibration()):
+            if self._stored is None and due and self._send(RequestCalibration()):
                 self._asked_at = self._clock.now()
 
     def refusals(self) -> list[str]:
@@ -67,33 +67,33 @@ class BoardCalibration:
         with self._changed:
             if self._problem:
                 return [f"The board's calibration cannot be used: {self._problem}. Calibrate it again."]
-            if self._kept is None:
+            if self._stored is None:
                 return ["The board has not told its calibration yet. Wait a moment."]
-            missing = [STEPS[name] for name in self._kept.missing]
+            missing = [STEPS[name] for name in self._stored.missing]
             return [f"The board is not calibrated. Missing: {'; '.join(missing)}."] if missing else []
 
     def require(self) -> CalibrationValues:
         """The calibration that the board keeps. Raises RefusedError until it has told."""
-        kept = self._kept
-        if kept is None:
+        stored = self._stored
+        if stored is None:
             raise RefusedError("The board has not told its calibration. Check the connection.")
-        return kept
+        return stored
 
     def store(self, values: CalibrationValues) -> None:
         """Stores it in the board, and waits until the board has said that it keeps it.
 
         Raises RefusedError where it does not: there is no connection, it is armed, or its EEPROM fails.
         """
-        wanted = values.packet()
+        requested = values.packet()
         with self._changed:
             before = self._answers
-            if not self._send(wanted):
+            if not self._send(requested):
                 raise RefusedError("There is no connection to the board, so nothing was stored.")
             self._changed.wait_for(lambda: self._answers > before, _STORE_SECONDS + self._patience)
             if self._answers == before:
                 raise RefusedError("The board did not answer. Look at what it keeps before you go on.")
-            kept = self._kept
-        if kept is None or kept.packet().to_bytes() != wanted.to_bytes():
+            stored = self._stored
+        if stored is None or stored.packet().to_bytes() != requested.to_bytes():
             raise RefusedError(
                 "The board did not store it: it is in the loop or armed, or its EEPROM fails. It keeps what "
                 "the page shows."

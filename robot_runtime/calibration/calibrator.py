@@ -1,4 +1,4 @@
-"""What people do about the calibration: store it, measure the gyroscope, say where the surface is."""
+"""People's part in the calibration: they store it, measure the gyroscope, say where the surface is."""
 
 import threading
 from collections.abc import Callable
@@ -41,9 +41,9 @@ class Calibrator:
 
     def publish(self) -> None:
         """Publishes what the board keeps."""
-        kept = self.board.values
-        missing = [STEPS[name] for name in kept.missing] if kept else []
-        self._publish(CalibrationKept(time=self._clock.now(), values=kept, missing=missing))
+        stored = self.board.values
+        missing = [STEPS[name] for name in stored.missing] if stored else []
+        self._publish(CalibrationKept(time=self._clock.now(), values=stored, missing=missing))
 
     def see_imu(self, _topic: str, time: float, record: bytes) -> None:
         """Takes a reading of the IMU at `time` (s)."""
@@ -58,30 +58,30 @@ class Calibrator:
     def measure_gyro(self) -> None:
         """Begins to measure the gyroscope's offset at rest; some seconds later an event tells the result."""
         self._require_disarmed("The gyroscope is measured at rest, so not while the robot is armed.")
-        kept = self.board.require()
+        stored = self.board.require()
         if self._gyro is not None:
             raise RefusedError("The gyroscope is being measured already.")
         self._gyro = gyro = GyroMeasurement()
-        threading.Thread(target=self._complete_gyro, args=(gyro, kept), name="gyro", daemon=True).start()
+        threading.Thread(target=self._complete_gyro, args=(gyro, stored), name="gyro", daemon=True).start()
 
-    def _complete_gyro(self, gyro: GyroMeasurement, kept: CalibrationValues) -> None:
+    def _complete_gyro(self, gyro: GyroMeasurement, stored: CalibrationValues) -> None:
         try:
-            self._tell(self._keep_gyro(gyro.result(), kept), "info")
+            self._tell(self._keep_gyro(gyro.result(), stored), "info")
         except RefusedError as problem:
             self._tell(f"The gyroscope was not measured. {problem}", "caution")
         finally:
             self._gyro = None
 
-    def _keep_gyro(self, measured: Rate, kept: CalibrationValues) -> str:
+    def _keep_gyro(self, measured: Rate, stored: CalibrationValues) -> str:
         # The board has taken away what it keeps as the offset.
-        forward, right, down = (old + new for old, new in zip(kept.gyro_bias, measured, strict=True))
+        forward, right, down = (old + new for old, new in zip(stored.gyro_bias, measured, strict=True))
         if max(map(abs, (forward, right, down))) > GYRO_BIAS.maximum:
             raise RefusedError(
                 f"The turn rate at rest is {_in_degrees(forward, right, down)}. No sound gyroscope shows so "
                 "much: check the IMU."
             )
-        done = tuple(name for name in STEPS if name in kept.done or name == "gyro")
-        self.store(replace(kept, gyro_bias=(forward, right, down), done=done))
+        done = tuple(name for name in STEPS if name in stored.done or name == "gyro")
+        self.store(replace(stored, gyro_bias=(forward, right, down), done=done))
         return f"The gyroscope's offset is {_in_degrees(forward, right, down)}; the board keeps it."
 
     def zero_depth(self) -> None:

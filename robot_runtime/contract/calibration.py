@@ -43,7 +43,7 @@ BatteryFactor = Annotated[float, Range(0.8, 1.25)]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibrationValues:
-    """What a board keeps of its robot. Fin order: front right, back right, back left, front left."""
+    """A robot's calibration as its board keeps it. Fins: front right, back right, back left, front left."""
 
     done: tuple[StepName, ...] = field(metadata={"description": "the steps that are done"})
     fin_zeros: tuple[FinZero, FinZero, FinZero, FinZero] = field(
@@ -98,7 +98,7 @@ class CalibrationValues:
 
     @classmethod
     def from_packet(cls, packet: Calibration) -> "CalibrationValues":
-        """What a board says it keeps. Raises ConfigError where its axes are impossible."""
+        """The calibration of a board's answer. Raises ConfigError where its axes are impossible."""
         if not all(1 <= abs(number) <= 3 for number in packet.axes):
             raise ConfigError(f"the board keeps impossible axes: {packet.axes}")
         forward, right, down = map(_axis, packet.axes)

@@ -88,10 +88,10 @@ def parameters() -> str:
 
 def calibration() -> str:
     """The whole text of the emulator's calibration.gen.h."""
-    kept = record(EMULATED.packet())
-    rows = [kept[start : start + 12] for start in range(0, len(kept), 12)]
+    stored = record(EMULATED.packet())
+    rows = [stored[start : start + 12] for start in range(0, len(stored), 12)]
     text = "".join("    " + " ".join(f"0x{byte:02x}," for byte in row) + "\n" for row in rows)
-    return _CALIBRATION % (RECORD_ADDRESS, len(kept), text)
+    return _CALIBRATION % (RECORD_ADDRESS, len(stored), text)
 
 
 def header() -> str:

@@ -34,7 +34,7 @@ def answers(robot: Robot) -> list[Calibration]:
 
 
 def kept(robot: Robot) -> Calibration:
-    """What the board says it keeps."""
+    """The calibration of the board's answer."""
     before = len(answers(robot))
     robot.say(RequestCalibration())
     robot.run(50)
@@ -50,7 +50,7 @@ def store(robot: Robot, calibration: Calibration) -> Calibration:
 
 
 def start(robot: Robot) -> bool:
-    """Whether the board arms, or refuses in a line."""
+    """True if the board arms; else it says a line."""
     robot.say(Start(epoch=robot.epoch))
     robot.run(30)
     return bool(robot.status().flags & StatusFlag.ARMED)

@@ -633,7 +633,7 @@ export interface VisionInForce {
   settings: VisionSettings;
 }
 
-/** What a board keeps of its robot. Fin order: front right, back right, back left, front left. */
+/** A robot's calibration as its board keeps it. Fins: front right, back right, back left, front left. */
 export interface CalibrationValues {
   done: 'fins' | 'motors' | 'axes' | 'gyro' | 'pressure' | 'battery' | 'beacons'[];
   fin_zeros: [number, number, number, number];
