@@ -4,8 +4,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from robot_runtime.generate import cpp, json_schema, reference, typescript
+from robot_runtime.generate import cpp, hardware, json_schema, reference, typescript
 from robot_runtime.generate.configuration import configuration_page
+from robot_runtime.generate.wiring_picture import wiring_picture
 
 SOURCES = Path(__file__).resolve().parents[2]
 ROOT = SOURCES
@@ -34,6 +35,9 @@ def main() -> int:
         "docs/reference/packets.md": reference.packets_page(),
         "docs/reference/parameters.md": reference.parameters_page(),
         "docs/reference/topics.md": reference.topics_page(),
+        "docs/run/hardware/parts.md": hardware.parts_page(),
+        "docs/run/hardware/wiring.md": hardware.wiring_page(),
+        "docs/pictures/wiring.svg": wiring_picture(),
     }
     old = [name for name, text in files.items() if _read(ROOT / name) != text]
     for name in old:
