@@ -54,7 +54,7 @@ Switch everything off before you change a wire. Colours of wires are free; keep 
 
 [![The wiring; the tables below say the same](../../pictures/wiring.svg)](../../pictures/wiring.svg)
 
-Press the drawing to see it alone, and larger. A name in a coloured field is a supply: all fields of one name
+Press the drawing to see it alone. A name in a coloured field is a supply: all fields of one name
 are joined. GND of all parts meets at the battery's minus; the H-bridges' ground has a wire of its own to that
 point.
 

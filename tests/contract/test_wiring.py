@@ -1,5 +1,6 @@
 """The wiring's table: no wire damages a part, and nothing is forgotten."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -55,6 +56,13 @@ def test_a_bus_is_checked_at_both_ends() -> None:
     (wire,) = [one for one in WIRES if (one.source_pin, one.sink_pin) == ("A4", "HV1")]
     faults = list(find_wiring_faults([replace(wire, level=3.3)]))
     assert "3.3 V at board A4: it reads high from 3.5 V on" in faults
+
+
+@pytest.mark.parametrize(("sink", "pin", "source_volts"), [("pi", "10", 5.0), ("board", "A2", BATTERY_MAX)])
+def test_the_resistors_of_a_divider_give_its_level(sink: str, pin: str, source_volts: float) -> None:
+    (wire,) = [one for one in WIRES if (one.sink, one.sink_pin) == (sink, pin)]
+    series, shunt = (float(ohms) for ohms in re.findall(r"([\d.]+) kΩ", wire.through))
+    assert wire.level == pytest.approx(source_volts * shunt / (series + shunt), abs=0.01)
 
 
 def test_the_page_refuses_a_wiring_that_damages_a_part(monkeypatch: pytest.MonkeyPatch) -> None:
