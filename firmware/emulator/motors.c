@@ -2,12 +2,24 @@
 #include "motors.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#define TIME_CONSTANT 30e-3   // s
-#define SPEED_PER_STEP 0.315  // rad/s for each step of the bridge's voltage: 12.6 rad/s at 40
+// A gear motor of the size that fits: at 6 V 220 rpm without load and 0.235 N m stalled (Pololu's 150:1 HP).
+// Its 12.3 rad/s at the 3.2 V of a drive of 40 are about what is taken for the robot.
+#define SPEED_PER_STEP 0.315  // rad/s without load, for each step of the bridge's voltage: 12.6 rad/s at 40
+#define TORQUE_SLOPE 0.0102   // N m for each rad/s by which it is slower than without load
 #define FRICTION_STEPS 2      // below this drive a motor stands still
-#define STANDSTILL 0.02       // rad/s at which friction holds it
+#define FRICTION (FRICTION_STEPS * SPEED_PER_STEP * TORQUE_SLOPE)
+// Motor and fin, with the water that moves along. A plate of this size has pi/4 * 1000 * chord^2 * R^3 / 3 =
+// 4.7e-4 kg m^2 at most; this makes a time constant of 30 ms.
+#define INERTIA (TORQUE_SLOPE * 30e-3)
+// The water resists each strip of a fin with half * rho * C_N * chord * (r * speed)^2 at its distance r from
+// the shaft. Over the fin's length R, with chord = S / R, the torque is half * rho * C_N * S * R^3 / 4 *
+// speed^2. S and R are published, C_N is that of a flat plate, as in the simulated water.
+#define FIN_AREA 0.0045   // m^2
+#define FIN_LENGTH 0.088  // m
+#define FIN_NORMAL 2.0
+#define WATER_DENSITY 1000.0  // kg/m^3
+#define WATER_DRAG (0.5 * WATER_DENSITY * FIN_NORMAL * FIN_AREA * FIN_LENGTH * FIN_LENGTH * FIN_LENGTH / 4)
 #define ENCODER_SIGN (-1)
 
 static const double encoder_zero[FIN_COUNT] = {188, 161, 726, 356};
@@ -15,12 +27,25 @@ static const int rotation_sign[FIN_COUNT] = {1, 1, -1, -1};
 // Fin angles at power-on, never exactly in place; rad.
 static const double first_angle[FIN_COUNT] = {0.05, -0.04, 0.03, -0.06};
 
-static void turn(struct motors *motors, unsigned fin, double driven) {
-  double decay = exp(-MOTORS_PERIOD / TIME_CONSTANT);
-  double behind = motors->speed[fin] - driven;
-  motors->shaft[fin] += driven * MOTORS_PERIOD + behind * TIME_CONSTANT * (1 - decay);
-  double speed = driven + behind * decay;
-  motors->speed[fin] = driven == 0 && fabs(speed) < STANDSTILL ? 0 : speed;
+// The speed after a step: implicit where torque grows with the speed, so that no step is too long. Friction
+// only ever stops.
+static double speed_after(double speed, int drive, bool coasts) {
+  double step = MOTORS_PERIOD / INERTIA;
+  double slope = coasts ? 0 : TORQUE_SLOPE;
+  double ideal = SPEED_PER_STEP * (drive + (drive > 0 ? FRICTION_STEPS : drive < 0 ? -FRICTION_STEPS : 0));
+  double pushed = speed + step * slope * ideal;
+  double stopped = step * FRICTION;
+  if (fabs(pushed) <= stopped) {
+    return 0;
+  }
+  return (pushed - copysign(stopped, pushed)) / (1 + step * (slope + WATER_DRAG * fabs(speed)));
+}
+
+static void turn(struct motors *motors, unsigned fin) {
+  const struct drv8830 *bridge = &motors->bridges[fin];
+  double before = motors->speed[fin];
+  motors->speed[fin] = speed_after(before, drv8830_drive(bridge), drv8830_coasts(bridge));
+  motors->shaft[fin] += MOTORS_PERIOD * (before + motors->speed[fin]) / 2;
 }
 
 static void show(struct motors *motors, unsigned fin) {
@@ -34,9 +59,7 @@ static void show(struct motors *motors, unsigned fin) {
 
 void motors_step(struct motors *motors) {
   for (unsigned fin = 0; fin < FIN_COUNT; fin++) {
-    int drive = drv8830_drive(&motors->bridges[fin]);
-    double driven = abs(drive) < FRICTION_STEPS ? 0 : SPEED_PER_STEP * drive;
-    turn(motors, fin, driven);
+    turn(motors, fin);
     show(motors, fin);
   }
 }

@@ -23,6 +23,10 @@ PRESSURE = 0x76
 BRIDGES = (0x64, 0x60, 0x61, 0x63)
 MOTOR_POWER, LED = 1 << 3, 1 << 1
 GRAVITY = 9.80665
+NO_LOAD, SLOPE, INERTIA = 0.315, 0.0102, 3.06e-4
+"""A motor's rad/s for each step of drive, N m for each rad/s below that, and kg m² with its fin."""
+DRAG = 0.5 * 1000 * 2.0 * 0.0045 * 0.088**3 / 4
+"""N m s², of the water on a fin: ½ρ·C_N·S·R³/4."""
 
 
 @pytest.fixture
@@ -247,26 +251,54 @@ def drive(monitor: Monitor, fin: int, steps: int) -> int:
     return monitor.transfer(BRIDGES[fin], bytes([0, abs(steps) << 2 | direction]))[0]
 
 
-def test_a_motor_turns_its_fin_as_it_is_driven(rig: Rig, monitor: Monitor) -> None:
+def steady_speed(steps: float) -> float:
+    """rad/s at which the water takes all the torque that a motor has at this drive."""
+    return (math.sqrt(SLOPE**2 + 4 * DRAG * SLOPE * NO_LOAD * steps) - SLOPE) / (2 * DRAG)
+
+
+def test_a_motor_turns_its_fin_in_the_water_as_it_is_driven(rig: Rig, monitor: Monitor) -> None:
     monitor.outputs(MOTOR_POWER)
-    for fin, steps in enumerate((40, -40, 40, 1)):
+    for fin, steps in enumerate((40, -40, 20, 1)):
         assert drive(monitor, fin, steps) == ACKNOWLEDGED_DATA
     rig.board.run(0.3)
     before = rig.board.fins()
-    assert before.drives == (40, -40, 40, 0)
-    assert before.speeds == pytest.approx((12.6, -12.6, -12.6, 0), abs=0.01)
+    full, half = steady_speed(40), steady_speed(20)
+    assert full == pytest.approx(7.9, abs=0.01)
+    assert before.drives == (40, -40, 20, 0)
+    assert before.speeds == pytest.approx((full, -full, -half, 0), rel=0.001)
     rig.board.run(0.1)
     after = rig.board.fins()
     turned = [math.remainder(b - a, math.tau) for a, b in zip(before.angles, after.angles, strict=True)]
-    assert turned == pytest.approx((1.26, -1.26, -1.26, 0), abs=0.02)
+    assert turned == pytest.approx((0.1 * full, -0.1 * full, -0.1 * half, 0), abs=0.01)
 
 
-def test_a_motor_follows_with_its_time_constant(rig: Rig, monitor: Monitor) -> None:
+def test_a_motor_speeds_up_against_inertia_and_water(rig: Rig, monitor: Monitor) -> None:
     monitor.outputs(MOTOR_POWER)
     rig.port.write(b"T" + bytes([BRIDGES[0], 2, 0, 40 << 2 | 1, 0]))
     rig.run_until(lambda: rig.board.fins().drives[0] == 40, step=1e-4, limit=0.01)
-    rig.board.run(0.030)
-    assert rig.board.fins().speeds[0] == pytest.approx(12.6 * (1 - math.exp(-1)), rel=0.04)
+    rig.board.run(0.020)
+    # From rest, of J dw/dt = slope (w0 - w) - drag w^2 with the roots `end` and `-end - slope / drag`.
+    end = steady_speed(40)
+    other = end + SLOPE / DRAG
+    decay = math.exp(-DRAG * (end + other) / INERTIA * 0.020)
+    assert rig.board.fins().speeds[0] == pytest.approx(
+        end * (1 - decay) / (1 + end / other * decay), rel=0.04
+    )
+
+
+def test_a_bridge_coasts_at_00_and_brakes_at_11(rig: Rig, monitor: Monitor) -> None:
+    monitor.outputs(MOTOR_POWER)
+    drive(monitor, 0, 40)
+    drive(monitor, 1, 40)
+    rig.board.run(0.3)
+    monitor.transfer(BRIDGES[0], b"\0\0")
+    monitor.transfer(BRIDGES[1], b"\0\xa3")
+    rig.board.run(0.04)
+    coasting, braking, *_ = rig.board.fins().speeds
+    assert coasting > 1.8
+    assert braking < 0.7
+    rig.board.run(0.2)
+    assert rig.board.fins().speeds == (0, 0, 0, 0)
 
 
 def test_without_power_no_motor_turns_and_the_bridges_are_dead(rig: Rig, monitor: Monitor) -> None:
