@@ -25,7 +25,6 @@ int drv8830_drive(const struct drv8830 *bridge) {
   if (idle(bridge) || steps < VSET_MIN) {
     return 0;
   }
-  steps = bridge->fault == FAULT_REVERSED ? -steps : steps;
   switch (bridge->control & (CONTROL_IN1 | CONTROL_IN2)) {
     case CONTROL_IN1:
       return steps;

@@ -7,20 +7,30 @@
 
 #include "as5040.h"
 #include "drv8830.h"
+#include "wiring.h"
 
-#define FIN_COUNT 4
 #define MOTORS_PERIOD 1e-3  // s
 
 struct motors {
   const struct drv8830 *bridges;
   struct as5040 *encoders;
   const struct surroundings *surroundings;
-  double shaft[FIN_COUNT];  // rad, growing with positive drive
+  const struct wiring *wiring;
+  double rotor[FIN_COUNT];  // rad, of the gear's side to the motor, growing with positive drive
+  double rotor_speed[FIN_COUNT];
+  double shaft[FIN_COUNT];  // rad, of its side to the fin
   double speed[FIN_COUNT];  // rad/s
+  double current;           // A, from the battery
+  unsigned steps;           // since power-on
+  uint32_t noise;
 };
 
 void motors_create(struct motors *motors, const struct drv8830 bridges[FIN_COUNT],
-                   struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings);
+                   struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings,
+                   const struct wiring *wiring);
+
+// V, of the battery with the motors as its load.
+double motors_battery(const struct motors *motors);
 
 // Call it every MOTORS_PERIOD.
 void motors_step(struct motors *motors);

@@ -67,6 +67,7 @@ bool service_create(struct service *service, const struct options *options, char
     service_remove(service);
     return false;
   }
+  board_set_wiring(board, &options->wiring);
   water_create(&service->water, board, &service->clients, paced(service) ? WATER_TIMEOUT : INFINITY);
   chip_reset(&board->chip, CHIP_POWER_ON);
   pace_start(&service->pace, options->speed, pace_clock(), chip_now(&board->chip));

@@ -108,6 +108,8 @@ class Settings:
     """The origin that people open, where a reverse proxy stands before the server."""
     trusted_proxies: tuple[Network, ...] = ()
     """The networks whose X-Forwarded-For is believed."""
+    mistakes: tuple[str, ...] = ()
+    """Of the emulated board; see robot_runtime/simulation/boards/mistakes.py."""
     build: Path = Path(__file__).parents[2] / "build"
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"

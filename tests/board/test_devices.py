@@ -23,6 +23,8 @@ PRESSURE = 0x76
 BRIDGES = (0x64, 0x60, 0x61, 0x63)
 MOTOR_POWER, LED = 1 << 3, 1 << 1
 GRAVITY = 9.80665
+GYRO_START = 0.03
+"""s."""
 NO_LOAD, SLOPE, INERTIA = 0.315, 0.0102, 3.06e-4
 """A motor's rad/s for each step of drive, N m for each rad/s below that, and kg m² with its fin."""
 DRAG = 0.5 * 1000 * 2.0 * 0.0045 * 0.088**3 / 4
@@ -38,6 +40,7 @@ def rig(make_rig: Make) -> Rig:
 def monitor(rig: Rig) -> Monitor:
     monitor = Monitor(rig)
     monitor.boot()
+    rig.board.run(0.05)  # for the encoders
     return monitor
 
 
@@ -95,9 +98,31 @@ def test_the_imu_applies_its_configured_ranges(rig: Rig, monitor: Monitor, scale
 
 def test_the_imu_saturates(rig: Rig, monitor: Monitor) -> None:
     monitor.transfer(IMU, b"\x6b\0")
+    rig.board.run(GYRO_START)
     rig.board.sense(STILL_WATER._replace(force=(1000.0, -1000.0, 0.0), rate=(100.0, -100.0, 0.0)))
     x, y, _, _, p, q, _ = imu_counts(monitor)
     assert (x, y, p, q) == (32767, -32768, 32767, -32768)
+
+
+def test_the_gyroscope_starts_30_ms_after_the_accelerometer(rig: Rig, monitor: Monitor) -> None:
+    rig.board.sense(STILL_WATER._replace(rate=(0.5, 0.5, 0.5)))
+    wake = b"T" + bytes([IMU, 2, 0x6B, 0, 0])
+    read = b"T" + bytes([IMU, 1, 0x3B, 14])
+    counts = struct.unpack(">7h", rig.exchange(wake + read, 0.025)[-14:])
+    assert counts[2] != 0
+    assert counts[4:] == (0, 0, 0)
+    rig.board.run(0.006)
+    assert min(imu_counts(monitor)[4:]) > 0
+
+
+def test_the_imu_repeats_a_reading_until_its_next_sample(rig: Rig, monitor: Monitor) -> None:
+    monitor.transfer(IMU, bytes([0x6B, 0]))
+    monitor.transfer(IMU, bytes([0x19, 99, 3]))  # 1 kHz by the filter, and every 100th of it
+    before = imu_counts(monitor)
+    rig.board.sense(STILL_WATER._replace(force=(0.0, 0.0, 5.0)))
+    assert imu_counts(monitor)[2] == before[2]
+    rig.board.run(0.1)
+    assert imu_counts(monitor)[2] > 0
 
 
 # The pressure sensor
@@ -194,6 +219,15 @@ def test_an_encoder_shows_the_fins_angle_with_parity(rig: Rig, monitor: Monitor)
         assert word & 0b111110 == 0b100000
         assert word.bit_count() % 2 == 0
         assert 24 * 16 / CLOCK < duration < 24 * 16 / CLOCK + 6e-6
+
+
+def test_an_encoder_is_ready_50_ms_after_power_on(rig: Rig) -> None:
+    monitor = Monitor(rig)
+    monitor.boot()
+    offset_compensated = 1 << 5
+    assert not monitor.encoder(0)[1] & offset_compensated
+    rig.board.run(0.05)
+    assert monitor.encoder(0)[1] & offset_compensated
 
 
 def test_an_encoder_has_the_offset_that_the_water_sets(rig: Rig, monitor: Monitor) -> None:
@@ -431,7 +465,7 @@ def test_a_stuck_encoder_and_a_stuck_bridge(rig: Rig, monitor: Monitor) -> None:
         ("imu", "broken"),
         ("encoder4", "none"),
         ("", ""),
-        ("imu", "reversed"),
+        ("imu", "weak"),
         ("pressure", "dip"),
         ("encoder0", "tripped"),
         ("bridge0", "weak"),

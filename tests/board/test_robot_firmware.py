@@ -25,6 +25,7 @@ from robot_runtime.contract.packets import (
     StatusFlag,
 )
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER
+from robot_runtime.simulation.boards.mistakes import FINS
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.host import Robot, all_of, last, start
@@ -285,10 +286,12 @@ def test_an_absent_device_shows_and_heals(robot: Robot, device: str, fault: Devi
     assert last(robot.listen(0.6), Status).faults == 0
 
 
-@pytest.mark.parametrize("device", [f"{part}{fin}" for part in ("bridge", "encoder") for fin in range(4)])
-def test_a_fin_with_swapped_leads_or_encoder_is_stopped_within_300_ms(robot: Robot, device: str) -> None:
-    fin = int(device[-1])
-    robot.board.fault(device, "reversed")
+@pytest.mark.parametrize("fin", range(4))
+@pytest.mark.parametrize("mistake", ["leads-reversed", "encoder-reversed"])
+def test_a_fin_with_swapped_leads_or_encoder_is_stopped_within_300_ms(
+    robot: Robot, mistake: str, fin: int
+) -> None:
+    robot.board.mistake(f"{mistake}:{FINS[fin]}")
     robot.arm()
     motors = all_of(robot.converse(1.5, DOWN), Motor)
     driven = [one.time for one in motors if one.drive[fin]]

@@ -19,7 +19,7 @@ ANSWER_TIMEOUT = 60.0
 """s of real time for an answer; a `run` of many emulated seconds takes a while."""
 
 Water = Callable[[FinMotion], Reading]
-FaultKind = Literal["none", "absent", "stuck", "reversed", "weak", "tripped", "dip", "refused", "stretched"]
+FaultKind = Literal["none", "absent", "stuck", "weak", "tripped", "dip", "refused", "stretched"]
 """Not every device has each; see docs/reference/emulator.md."""
 LineDirection = Literal["to_board", "from_board"]
 LineFault = Literal["bit_errors", "drop", "double", "insert"]
@@ -103,6 +103,10 @@ class EmulatorClient:
     def fault(self, device: str, kind: FaultKind) -> None:
         """Sets or clears the fault of a device (imu, pressure, encoder0-3, bridge0-3). Raises BoardError."""
         self.command(f"fault {device} {kind}")
+
+    def mistake(self, text: str) -> None:
+        """Adds a mistake of `mistakes.MISTAKES`, or removes all by `none`. Raises BoardError."""
+        self.command(f"mistake {text}")
 
     def disturb_line(self, direction: LineDirection, kind: LineFault, rate: float) -> None:
         """Sets the probability of a fault for each bit (bit_errors) or character. Raises BoardError."""

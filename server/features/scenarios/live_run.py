@@ -207,6 +207,8 @@ class LiveExecutor:
             reasons.append("It disturbs the serial line, which needs an emulated board.")
         if scenario.robot != SimulationParameters():
             reasons.append("It changes the hull's parameters, which needs simulated time.")
+        if scenario.mistakes:
+            reasons.append("Its board has mistakes, which needs simulated time.")
         state = self._monitor.state() or {}
         rate = state.get("control_rate", scenario.control.rate)
         if rate != scenario.control.rate:
