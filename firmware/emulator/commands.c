@@ -72,6 +72,16 @@ static void reset(struct service *service, struct client *client, char *nothing)
   send_ok(service, client);
 }
 
+static void brown_out(struct service *service, struct client *client, char *lost) {
+  double share = number(lost);
+  if (!(share >= 0 && share <= 1)) {
+    refuse(service, client, "brownout takes the share of the memory that is lost, 0 to 1");
+    return;
+  }
+  chip_brown_out(&service->board.chip, share);
+  send_ok(service, client);
+}
+
 static void power(struct service *service, struct client *client, char *nothing) {
   (void)nothing;
   if (service->runner) {
@@ -156,7 +166,7 @@ static void fault(struct service *service, struct client *client, char *argument
   }
   refuse(service, client,
          "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck; weak for encoders, "
-         "tripped for bridges, dip for the imu; or i2c, and none, stuck, refused or stretched");
+         "tripped for bridges, dip for the imu; or i2c, and none, stuck, refused, stretched or contested");
 }
 
 static void mistake(struct service *service, struct client *client, char *text) {
@@ -230,9 +240,9 @@ static void quit(struct service *service, struct client *client, char *nothing) 
 }
 
 static const struct command commands[] = {
-    {"attach", attach}, {"sense", sense}, {"fins", fins},       {"reset", reset}, {"power", power},
-    {"load", load},     {"run", run},     {"stats", stats},     {"fault", fault}, {"line", line},
-    {"seed", seed},     {"quit", quit},   {"mistake", mistake},
+    {"attach", attach}, {"sense", sense}, {"fins", fins},       {"reset", reset},        {"power", power},
+    {"load", load},     {"run", run},     {"stats", stats},     {"fault", fault},        {"line", line},
+    {"seed", seed},     {"quit", quit},   {"mistake", mistake}, {"brownout", brown_out},
 };
 
 void commands_run(void *owner, struct client *client, char *line) {

@@ -18,6 +18,7 @@ enum status {
   ADDRESS_WRITE_NACK = 0x20,
   DATA_WRITE_ACK = 0x28,
   DATA_WRITE_NACK = 0x30,
+  ARBITRATION_LOST = 0x38,
 };
 
 static void answer(struct twi *twi, uint8_t condition, uint8_t data) {
@@ -31,7 +32,8 @@ static bool select_devices(struct twi *twi, uint8_t address) {
   twi->index = 0;
   for (unsigned i = 0; i < twi->device_count; i++) {
     const struct i2c_device *device = twi->devices[i];
-    twi->selected[i] = device->address == address && device->start(device->device);
+    twi->selected[i] =
+        twi->fault != TWI_FAULT_CONTESTED && device->address == address && device->start(device->device);
     any |= twi->selected[i];
   }
   return any;
@@ -102,6 +104,9 @@ static avr_cycle_count_t bit_cycles(const struct twi *twi) {
 static uint8_t corrected_status(struct twi *twi, uint8_t status) {
   bool address = twi->addressed;
   twi->addressed = false;
+  if (twi->fault == TWI_FAULT_CONTESTED && status != START && status != REPEATED_START) {
+    return ARBITRATION_LOST;
+  }
   if (address && status == DATA_WRITE_ACK) {
     return ADDRESS_WRITE_ACK;
   }
@@ -169,7 +174,8 @@ bool twi_set_fault(struct twi *twi, const char *fault) {
   static const char *const faults[] = {[TWI_FAULT_NONE] = "none",
                                        [TWI_FAULT_STUCK] = "stuck",
                                        [TWI_FAULT_REFUSED] = "refused",
-                                       [TWI_FAULT_STRETCHED] = "stretched"};
+                                       [TWI_FAULT_STRETCHED] = "stretched",
+                                       [TWI_FAULT_CONTESTED] = "contested"};
   for (unsigned i = 0; i < sizeof faults / sizeof *faults; i++) {
     if (!strcmp(fault, faults[i])) {
       twi->fault = (enum twi_fault)i;

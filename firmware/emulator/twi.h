@@ -14,8 +14,15 @@
 #define TWI_DEVICES_MAX 8
 
 // Of the bus: a device holds SDA low until it has got nine clocks in a row; one refuses every byte of data;
-// one stretches the clock of every character.
-enum twi_fault { TWI_FAULT_NONE, TWI_FAULT_STUCK, TWI_FAULT_REFUSED, TWI_FAULT_STRETCHED };
+// one stretches the clock of every character; something pulls SDA down within every character that the chip
+// sends, so that it loses the arbitration.
+enum twi_fault {
+  TWI_FAULT_NONE,
+  TWI_FAULT_STUCK,
+  TWI_FAULT_REFUSED,
+  TWI_FAULT_STRETCHED,
+  TWI_FAULT_CONTESTED
+};
 
 struct twi {
   struct chip *chip;
@@ -37,7 +44,7 @@ struct twi {
 void twi_create(struct twi *twi, struct chip *chip);
 void twi_attach(struct twi *twi, const struct i2c_device *device);
 void twi_reset(struct twi *twi);
-// Sets the bus's fault: none, stuck, refused or stretched. False for other words.
+// Sets the bus's fault: none, stuck, refused, stretched or contested. False for other words.
 bool twi_set_fault(struct twi *twi, const char *fault);
 
 #endif

@@ -10,6 +10,7 @@ from tests.board.conftest import Make
 from tests.board.monitor import (
     ACKNOWLEDGED_ADDRESS,
     ACKNOWLEDGED_DATA,
+    ARBITRATION_LOST,
     LAST_DATA,
     REFUSED_ADDRESS,
     REFUSED_DATA,
@@ -413,6 +414,14 @@ def test_a_bus_that_refuses_data(rig: Rig, monitor: Monitor) -> None:
     assert monitor.transfer(IMU, b"\x6b\0")[0] == REFUSED_DATA
     rig.board.fault("i2c", "none")
     assert monitor.transfer(IMU, b"\x6b\0")[0] == ACKNOWLEDGED_DATA
+
+
+def test_a_bus_whose_arbitration_is_lost(rig: Rig, monitor: Monitor) -> None:
+    rig.board.fault("i2c", "contested")
+    assert monitor.transfer(IMU, b"\x6b\0")[0] == ARBITRATION_LOST
+    assert monitor.transfer(IMU, count=1)[0] == ARBITRATION_LOST
+    rig.board.fault("i2c", "none")
+    assert monitor.transfer(IMU, b"\x6b", 1)[2] == b"\x40"  # nothing was written
 
 
 def test_a_bus_that_stretches_its_clock(rig: Rig, monitor: Monitor) -> None:
