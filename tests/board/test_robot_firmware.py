@@ -313,6 +313,19 @@ def test_no_sound_fin_is_stopped_by_any_command(robot: Robot, gain: float, frequ
         assert robot.status().faults == 0
 
 
+def test_no_sound_fin_with_imperfect_parts_is_stopped(robot: Robot) -> None:
+    numbers = {one.name: number for number, one in enumerate(CHIP_PARAMETERS)}
+    for mistake in ("encoder-noise:3", "backlash:0.1", "pack-resistance:0.5"):
+        robot.board.mistake(mistake)
+    robot.arm()
+    for gain, frequency in ((0.3, 0.3), (1.2, 2.0)):
+        for name, value in (("fins.gain", gain), ("fins.frequency", frequency)):
+            robot.send(Parameter(number=numbers[name], value=value))
+        for command in COMMANDS[:6]:
+            robot.converse(0.7, command)
+            assert robot.status().faults == 0
+
+
 def test_an_absent_bridge_shows_while_it_has_power(robot: Robot) -> None:
     robot.arm()
     robot.board.fault("bridge2", "absent")
