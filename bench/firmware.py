@@ -1,4 +1,4 @@
-"""The firmware's use of memory, and its timing while the line is full both ways."""
+"""The firmware's stack and timing in ten minutes while the line is full both ways."""
 
 import subprocess
 import tempfile
@@ -11,11 +11,14 @@ from robot_runtime.link.session import NO_BOOT, LinkSession
 from tests.board.host import FIRMWARE
 from tests.board.rig import Rig
 
-_RAM_BYTES = 2048
+RAM_BYTES = 2048
+"""Of the chip."""
 _SECTIONS_IN_RAM = (".data", ".bss", ".noinit")
 _SECTIONS_IN_FLASH = (".text", ".data")
 
-_BAUD = 250_000
+GUARDED_RECURSION = ("4Link5flushEv",)
+"""Link::flush adds an acknowledgement, and what adds may flush: but that one is added only where it fits."""
+BAUD = 250_000
 _FASTEST_BAUD = 500_000
 _SECONDS = 600.0
 _STEP = 0.002
@@ -30,7 +33,7 @@ _BITS_PER_BYTE = 10
 
 
 def measure() -> dict[str, float]:
-    """Bytes by the linker; stack and loop from ten emulated minutes of swimming under full load.
+    """Stack and loop from ten emulated minutes of swimming under full load.
 
     At the default baud and, where the name ends in it, at the fastest. The robot is armed and swims. It says
     all it can: its telemetry, and a frame of text at every tick, since there is always a START of another
@@ -39,16 +42,13 @@ def measure() -> dict[str, float]:
     else may. `line_to_board` and `line_to_host` are the shares of the line that this took; `bytes_lost` are
     those that the chip had no room for, and which the link sent again.
     """
-    size = _sections()
-    static = sum(size.get(name, 0) for name in _SECTIONS_IN_RAM)
-    figures = _load(FIRMWARE / "robot.elf", _BAUD)
-    stack_free = figures.pop("stack_free")
+    elf = FIRMWARE / "robot.elf"
+    figures = _load(elf, BAUD)
+    room = RAM_BYTES - count_static(elf)
+    figures["stack_high_water_bytes"] = room - figures.pop("stack_free")
     fastest = _load(build_for(_FASTEST_BAUD, "robot"), _FASTEST_BAUD)
     del fastest["stack_free"]
     return {
-        "firmware.flash_bytes": sum(size.get(name, 0) for name in _SECTIONS_IN_FLASH),
-        "firmware.ram_static_bytes": static,
-        "firmware.stack_high_water_bytes": _RAM_BYTES - static - stack_free,
         **{f"firmware.{name}": value for name, value in figures.items()},
         **{f"firmware.{name}.{_FASTEST_BAUD}": value for name, value in fastest.items()},
     }
@@ -56,7 +56,7 @@ def measure() -> dict[str, float]:
 
 def _load(elf: Path, baud: int) -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder, Rig(elf, Path(folder), baud=baud) as rig:
-        host = _Host(rig, baud)
+        host = FloodHost(rig, baud)
         host.arm()
         host.flood(1.0)
         host.worst = 0
@@ -76,7 +76,7 @@ def _load(elf: Path, baud: int) -> dict[str, float]:
         }
 
 
-class _Host:
+class FloodHost:
     """The product's own session at the port of a paused board."""
 
     def __init__(self, rig: Rig, baud: int) -> None:
@@ -141,8 +141,20 @@ class _Host:
                 self.worst = max(self.worst, self.status.loop_worst)
 
 
-def _sections() -> dict[str, int]:
-    command = ["avr-size", "-A", str(FIRMWARE / "robot.elf")]
+def count_static(elf: Path) -> int:
+    """Returns the bytes of memory that a program has for itself; the stack gets the rest."""
+    size = _sections(elf)
+    return sum(size.get(name, 0) for name in _SECTIONS_IN_RAM)
+
+
+def count_flash(elf: Path) -> int:
+    """Returns the bytes of a program in the flash memory."""
+    size = _sections(elf)
+    return sum(size.get(name, 0) for name in _SECTIONS_IN_FLASH)
+
+
+def _sections(elf: Path) -> dict[str, int]:
+    command = ["avr-size", "-A", str(elf)]
     lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
     words = [line.split() for line in lines if line.startswith(".")]
     return {name: int(size) for name, size, *_ in words}

@@ -22,9 +22,10 @@ PARTS = {
     part.name: part
     for part in (
         # The longest first, so that no core waits for one at the end.
-        Part("firmware", is_emulated=True, is_long=True, prefix="firmware."),
+        Part("firmware", is_emulated=True, is_long=True, prefix="firmware.missed_ticks"),
         Part("comm_test", is_emulated=True, is_long=True, prefix="link.table6"),
         Part("heap", is_emulated=True),
+        Part("hostile", is_emulated=True),
         Part("control", is_emulated=True),
         Part("fault", is_emulated=True),
         Part("corruption", is_emulated=True),

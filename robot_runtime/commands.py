@@ -8,6 +8,7 @@ from robot_runtime.contract.commands import (
     COMMANDS,
     AcknowledgeCommand,
     ArmCommand,
+    CalibrateCommand,
     CardCommand,
     CheckFinsCommand,
     ControllerCommand,
@@ -15,6 +16,7 @@ from robot_runtime.contract.commands import (
     ExperimentCommand,
     LeaseCommand,
     LoopCommand,
+    MeasureGyroCommand,
     ModeCommand,
     ParametersCommand,
     RelayExperimentCommand,
@@ -26,6 +28,7 @@ from robot_runtime.contract.commands import (
     VisionCommand,
     VisionSettingsBase,
     VisionSettingsCommand,
+    ZeroDepthCommand,
 )
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import parse
@@ -53,6 +56,9 @@ class Commands:
             ControllerCommand: self._controller,
             LoopCommand: self._loop,
             ParametersCommand: self._parameters,
+            CalibrateCommand: self._calibrate,
+            MeasureGyroCommand: self._measure_gyro,
+            ZeroDepthCommand: self._zero_depth,
             SteeringCommand: self._steering,
             CardCommand: self._card,
             VisionCommand: self._vision,
@@ -133,6 +139,15 @@ class Commands:
             control.set_point_default if command.default is None else command.default,
             control.set_point_detected if command.detected is None else command.detected,
         )
+
+    def _calibrate(self, command: CalibrateCommand) -> None:
+        self._robot.calibrator.store(command.values)
+
+    def _measure_gyro(self, _: MeasureGyroCommand) -> None:
+        self._robot.calibrator.measure_gyro()
+
+    def _zero_depth(self, _: ZeroDepthCommand) -> None:
+        self._robot.calibrator.zero_depth()
 
     def _steering(self, command: SteeringCommand) -> None:
         self._robot.control.steer(command.by)

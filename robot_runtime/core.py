@@ -13,6 +13,7 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
+from robot_runtime.calibration.calibrator import Calibrator
 from robot_runtime.clock import Clock
 from robot_runtime.config import Config
 from robot_runtime.contract.documents import (
@@ -30,6 +31,7 @@ from robot_runtime.contract.documents import (
     VisionInForce,
 )
 from robot_runtime.contract.packets import (
+    Calibration,
     Debug,
     Depth,
     Hello,
@@ -68,6 +70,7 @@ _STATE_EVERY = 1.0
 _STATISTICS_EVERY = 1.0
 _VISION_EVERY = 10.0
 _PARAMETERS_EVERY = 10.0
+_CALIBRATION_EVERY = 10.0
 
 
 class Core:
@@ -107,6 +110,14 @@ class Core:
             for packet, period in periods(config.link.baud).items()
         ]
         self.board_parameters = BoardParameters(clock, line.send, config.link.baud)
+        self.calibrator = Calibrator(
+            clock,
+            line.send,
+            config.link.baud,
+            armed=lambda: self.supervisor.armed or self.supervisor.board_armed,
+            tell=self._tell_calibration,
+            publish=partial(self.bus.publish_document, "calibration"),
+        )
         self.supervisor = Supervisor(
             clock,
             self.line,
@@ -114,7 +125,7 @@ class Core:
             hil,
             heartbeat,
             on_mode=lambda mode: self.control.change_mode(mode),
-            arming_obstacles=self.board_parameters.refusals,
+            arming_obstacles=self._arming_obstacles,
         )
         self.control = ControlNode(self.bus, clock, line.send, self.supervisor.pilot)
         self.experiments = Experiments(clock, self._publish_experiment)
@@ -133,6 +144,7 @@ class Core:
             (_STATE_EVERY, self.announce),
             (_STATISTICS_EVERY, self._publish_statistics),
             (_VISION_EVERY, self._publish_vision),
+            (_CALIBRATION_EVERY, self.calibrator.publish),
         ]
         self._due = [clock.now()] * len(self._every)
         self._configure()
@@ -153,6 +165,10 @@ class Core:
         # The state first: a receiver of the end then has the restored loop already.
         self.bus.publish_document("state", self.state())
         self.bus.publish_document("experiment", experiment)
+
+    def _tell_calibration(self, text: str, severity: Severity) -> None:
+        event = Event(time=self.clock.now(), kind="calibration", severity=severity, text=text)
+        self.publish_event(event)
 
     def announce(self) -> None:
         """Requests publication of the state."""
@@ -211,6 +227,7 @@ class Core:
         # Here too, because the control loop may be slower.
         self.check_faults()
         self.board_parameters.tick()
+        self.calibrator.board.tick()
         now = self.clock.now()
         for index, (seconds, action) in enumerate(self._every):
             if now >= self._due[index]:
@@ -300,6 +317,7 @@ class Core:
 
     def _join(self) -> None:
         self.bus.on_row("motor", self._check_motor)
+        self.bus.on_row("imu", self.calibrator.see_imu)
         for topic in TOPICS:
             if topic.kind is Kind.ROWS:
                 self.bus.on_row(topic.name, self.outbox.add_row)
@@ -319,6 +337,9 @@ class Core:
         ):
             self._parameters_published = now
             self.bus.publish_document("parameters", now)
+
+    def _arming_obstacles(self) -> list[str]:
+        return self.calibrator.board.refusals() or self.board_parameters.refusals()
 
     def _publish_statistics(self) -> None:
         self.bus.publish_row("link", self.clock.now(), self.line.statistics().to_bytes())
@@ -351,9 +372,12 @@ class Core:
                 self.supervisor.see_status(Status.from_bytes(message.payload))
             elif message.type == Hello.type:
                 self.board_parameters.forget_confirmations()
+                self.calibrator.board.forget()
             elif message.type == Parameter.type:
                 if self.board_parameters.confirm(Parameter.from_bytes(message.payload)):
                     self.announce()
+            elif message.type == Calibration.type:
+                self.calibrator.board.see(Calibration.from_bytes(message.payload))
             elif message.type == Debug.type:
                 debug = Debug.from_bytes(message.payload)
                 line = DebugLine(time=message.time, level=debug.level, text=debug.text)
@@ -362,6 +386,7 @@ class Core:
             # Only the newest of a batch, since decoding a hundred a second costs a Pi CPU time.
             detector.see_imu(Imu.from_bytes(attitude))
         self.board_parameters.tick()
+        self.calibrator.board.tick()
         self.check_faults()
         self.outbox.flush()
 

@@ -2,10 +2,12 @@
 
 import signal
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
 
+from robot_runtime.simulation.boards.mistakes import check_mistake, write_list
 from server.platform.command_line import CommandError, with_settings
 from server.platform.folder_lock import claim
 from server.platform.settings import Settings, SetupError
@@ -16,12 +18,32 @@ if TYPE_CHECKING:
     from server.platform.certificate import Certificate
 
 
-@click.command()
+def _read_mistakes(_: click.Context, __: click.Parameter, texts: tuple[str, ...]) -> tuple[str, ...]:
+    try:
+        for text in texts:
+            check_mistake(text)
+    except ValueError as problem:
+        raise click.BadParameter(str(problem)) from problem
+    return texts
+
+
+@click.command(epilog="\n".join(["\b", "Mistakes:", *(f"  {line}" for line in write_list())]))
 @click.option("--port", type=int, help="Default: server.port in robot.toml, or 8000.")
 @click.option("--host", help="Address to listen on. Default: server.host in robot.toml, or 127.0.0.1.")
+@click.option(
+    "--mistake",
+    "mistakes",
+    multiple=True,
+    callback=_read_mistakes,
+    metavar="NAME",
+    help="A mistake that the emulated board has, from the list below. Can be repeated.",
+)
 @with_settings
-def run(settings: Settings) -> int:
+def run(settings: Settings, mistakes: tuple[str, ...]) -> int:
     """Start everything and serve the page."""
+    if mistakes and not settings.emulated_board:
+        raise SetupError("--mistake is for the emulated board; robot.toml has a real one (robot.mode).")
+    settings = replace(settings, mistakes=mistakes)
     with claim(settings.data):
         return _serve(settings)
 

@@ -3,19 +3,18 @@
 
 #include <math.h>
 
-#define STATUS_READY 0x10   // OCF: the offset compensation has finished; none of the other status bits
+#define STATUS_READY 0x10   // OCF: the offset compensation has finished
 #define STATUS_YELLOW 0x03  // MagINC and MagDEC
 #define STATUS_BITS 5
 
 void as5040_turn(struct as5040 *encoder, double ticks) {
   if (encoder->fault != FAULT_STUCK) {
-    long turned = lround(encoder->fault == FAULT_REVERSED ? -ticks : ticks);
-    encoder->position = (unsigned)(turned & (AS5040_TICKS - 1));
+    encoder->position = (unsigned)(lround(ticks) & (AS5040_TICKS - 1));
   }
 }
 
 static uint32_t word(const struct as5040 *encoder) {
-  unsigned status = STATUS_READY | (encoder->fault == FAULT_WEAK ? STATUS_YELLOW : 0);
+  unsigned status = (encoder->ready ? STATUS_READY : 0) | (encoder->fault == FAULT_WEAK ? STATUS_YELLOW : 0);
   uint32_t bits = encoder->position << STATUS_BITS | status;
   return bits << 1 | (uint32_t)__builtin_parity(bits);
 }

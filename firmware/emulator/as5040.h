@@ -18,6 +18,7 @@ struct as5040 {
   uint32_t shift;     // bits still to send, the uppermost first
   bool selected;
   bool begun;  // a byte was exchanged since the select
+  bool ready;  // it has compensated its offsets since power-on
   enum fault fault;
 };
 

@@ -20,6 +20,7 @@ static void on_motors_due(void *owner) {
   struct board *board = owner;
   chip_timer_start(&board->motors_due, board->motors_due.when + chip_cycles(MOTORS_PERIOD));
   motors_step(&board->devices.motors);
+  pins_update_battery(&board->pins);
 }
 
 bool board_create(struct board *board, struct pty *pty) {
@@ -37,7 +38,7 @@ bool board_create(struct board *board, struct pty *pty) {
   chip_timer_add(&board->chip, &board->motors_due, on_motors_due, board);
   chip_timer_start(&board->motors_due, chip_now(&board->chip) + chip_cycles(MOTORS_PERIOD));
   for (unsigned i = 0; i < I2C_DEVICES; i++) {
-    twi_attach(&board->twi, board->devices.i2c[i]);
+    twi_attach(&board->twi, &board->devices.i2c[i]);
   }
   return true;
 }
@@ -50,11 +51,17 @@ bool board_power_cycle(struct board *board) {
   chip_copy_flash(&board->chip, &before.chip);
   eeprom_copy(&board->eeprom, &before.eeprom);
   chip_remove(&before.chip);
+  board_set_wiring(board, &before.devices.wiring);
   board_set_surroundings(board, &before.devices.surroundings);
   return true;
 }
 
 void board_set_surroundings(struct board *board, const struct surroundings *surroundings) {
   board->devices.surroundings = *surroundings;
+  pins_update_inputs(&board->pins);
+}
+
+void board_set_wiring(struct board *board, const struct wiring *wiring) {
+  devices_set_wiring(&board->devices, wiring);
   pins_update_inputs(&board->pins);
 }

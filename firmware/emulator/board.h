@@ -29,9 +29,11 @@ struct board {
 bool board_create(struct board *board, struct pty *pty);
 
 // Switches the power off and on. Everything is as after `board_create`, the chip's time too, except flash
-// memory, EEPROM and surroundings. The caller resets the chip and restarts what uses the chip's timers.
+// memory, EEPROM, wiring and surroundings. The caller resets the chip and restarts what uses the chip's
+// timers.
 bool board_power_cycle(struct board *board);
 
 void board_set_surroundings(struct board *board, const struct surroundings *surroundings);
+void board_set_wiring(struct board *board, const struct wiring *wiring);
 
 #endif

@@ -91,14 +91,20 @@ static void add_phase_correct_pwm(avr_t *avr) {
   }
 }
 
-// Memory at power-on is neither zero nor what it was, and the same at each start of a board.
-static void scramble_memory(avr_t *avr) {
-  uint32_t word = 0x2545F491;
+static uint32_t next_random(struct chip *chip) {
+  chip->random ^= chip->random << 13;
+  chip->random ^= chip->random >> 17;
+  chip->random ^= chip->random << 5;
+  return chip->random;
+}
+
+// Memory without power is neither zero nor what it was, and the same at each start of a board.
+static void scramble_memory(struct chip *chip, double lost) {
+  avr_t *avr = chip->avr;
   for (avr_io_addr_t at = avr->ioend + 1; at <= avr->ramend; at++) {
-    word ^= word << 13;
-    word ^= word >> 17;
-    word ^= word << 5;
-    avr->data[at] = (uint8_t)word;
+    if (next_random(chip) <= lost * UINT32_MAX) {
+      avr->data[at] = (uint8_t)next_random(chip);
+    }
   }
 }
 
@@ -112,9 +118,10 @@ bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owne
   avr->vcc = avr->avcc = avr->aref = 5000;
   avr->sleep = sleep_without_waiting;
   add_phase_correct_pwm(avr);
-  scramble_memory(avr);
   avr->custom.data = chip;
   chip->avr = avr;
+  chip->random = 0x2545F491;
+  scramble_memory(chip, 1);
   chip->core_reset = avr->reset;
   avr->reset = on_reset;
   chip->after_reset = after_reset;
@@ -203,8 +210,15 @@ bool chip_load_bootloader(struct chip *chip, const char *hex_path, char *reason,
 void chip_reset(struct chip *chip, enum chip_reset_cause cause) {
   avr_t *avr = chip->avr;
   avr_reset(avr);
-  avr_regbit_set(avr, cause == CHIP_POWER_ON ? avr->reset_flags.porf : avr->reset_flags.extrf);
+  avr_regbit_set(avr, cause == CHIP_POWER_ON    ? avr->reset_flags.porf
+                      : cause == CHIP_BROWN_OUT ? avr->reset_flags.borf
+                                                : avr->reset_flags.extrf);
   finish_reset(chip);
+}
+
+void chip_brown_out(struct chip *chip, double lost) {
+  scramble_memory(chip, lost);
+  chip_reset(chip, CHIP_BROWN_OUT);
 }
 
 // Only a reset wakes a chip that sleeps with interrupts off or has crashed, and the watchdog may still cause

@@ -12,7 +12,7 @@
 
 #define CHIP_FREQUENCY 16000000u
 
-enum chip_reset_cause { CHIP_POWER_ON, CHIP_RESET_PIN };
+enum chip_reset_cause { CHIP_POWER_ON, CHIP_RESET_PIN, CHIP_BROWN_OUT };
 
 struct chip_timer {
   struct chip *chip;
@@ -40,6 +40,7 @@ struct chip {
   struct chip_timer run_end;
   bool was_reset;
   bool interrupted;
+  uint32_t random;
   unsigned long resets;
   unsigned long watchdog_resets;
   unsigned long crashes;
@@ -63,6 +64,9 @@ bool chip_load(struct chip *chip, const char *elf_path, char *reason, size_t rea
 bool chip_load_bootloader(struct chip *chip, const char *hex_path, char *reason, size_t reason_size);
 
 void chip_reset(struct chip *chip, enum chip_reset_cause cause);
+
+// A brown-out: a reset after which this share of the memory's bytes, 0 to 1, is random.
+void chip_brown_out(struct chip *chip, double lost);
 
 // Runs to this cycle (to within one instruction), or until a timer calls `chip_interrupt`.
 void chip_run(struct chip *chip, avr_cycle_count_t until);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mistakes.h"
 #include "service.h"
 
 #define RUN_MAX 86400.0   // s
@@ -68,6 +69,16 @@ static void fins(struct service *service, struct client *client, char *nothing) 
 static void reset(struct service *service, struct client *client, char *nothing) {
   (void)nothing;
   chip_reset(&service->board.chip, CHIP_RESET_PIN);
+  send_ok(service, client);
+}
+
+static void brown_out(struct service *service, struct client *client, char *lost) {
+  double share = number(lost);
+  if (!(share >= 0 && share <= 1)) {
+    refuse(service, client, "brownout takes the share of the memory that is lost, 0 to 1");
+    return;
+  }
+  chip_brown_out(&service->board.chip, share);
   send_ok(service, client);
 }
 
@@ -154,9 +165,21 @@ static void fault(struct service *service, struct client *client, char *argument
     return;
   }
   refuse(service, client,
-         "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck; reversed for the "
-         "last eight, weak for encoders, tripped for bridges, dip for the imu; or i2c, and none, stuck, "
-         "refused or stretched");
+         "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck; weak for encoders, "
+         "tripped for bridges, dip for the imu; or i2c, and none, stuck, refused, stretched or contested");
+}
+
+static void mistake(struct service *service, struct client *client, char *text) {
+  struct wiring wiring = service->board.devices.wiring;
+  bool none = !strcmp(text, "none");
+  if (none) {
+    wiring = (struct wiring)RIGHT_WIRING;
+  } else if (!mistakes_add(&wiring, text)) {
+    refuse(service, client, "there is no such mistake; `board --help` lists them");
+    return;
+  }
+  board_set_wiring(&service->board, &wiring);
+  send_ok(service, client);
 }
 
 static bool disturb(struct host_port *port, enum direction direction, const char *kind, const char *value) {
@@ -217,9 +240,9 @@ static void quit(struct service *service, struct client *client, char *nothing) 
 }
 
 static const struct command commands[] = {
-    {"attach", attach}, {"sense", sense}, {"fins", fins}, {"reset", reset},
-    {"power", power},   {"load", load},   {"run", run},   {"stats", stats},
-    {"fault", fault},   {"line", line},   {"seed", seed}, {"quit", quit},
+    {"attach", attach}, {"sense", sense}, {"fins", fins},       {"reset", reset},        {"power", power},
+    {"load", load},     {"run", run},     {"stats", stats},     {"fault", fault},        {"line", line},
+    {"seed", seed},     {"quit", quit},   {"mistake", mistake}, {"brownout", brown_out},
 };
 
 void commands_run(void *owner, struct client *client, char *line) {

@@ -1,27 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "devices.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-#define IMU_ADDRESS 0x69
-#define PRESSURE_ADDRESS 0x76
-static const uint8_t bridge_addresses[FIN_COUNT] = {0x64, 0x60, 0x61, 0x63};
+static void find_addresses(struct devices *devices) {
+  for (unsigned i = 0; i < FIN_COUNT; i++) {
+    devices->i2c[i].address = devices->wiring.bridge_address[i];
+  }
+  devices->i2c[FIN_COUNT].address = devices->wiring.imu_address;
+  devices->i2c[FIN_COUNT + 1].address = devices->wiring.pressure_address;
+}
 
 void devices_create(struct devices *devices, struct device_clock clock) {
-  *devices = (struct devices){.surroundings = STILL_WATER};
-  mpu6050_create(&devices->imu, &devices->surroundings);
+  *devices = (struct devices){.surroundings = STILL_WATER, .wiring = RIGHT_WIRING};
+  mpu6050_create(&devices->imu, clock, &devices->surroundings, &devices->wiring);
   ms5837_create(&devices->pressure, clock, &devices->surroundings);
-  motors_create(&devices->motors, devices->bridges, devices->encoders, &devices->surroundings);
+  motors_create(&devices->motors, devices->bridges, devices->encoders, &devices->surroundings,
+                &devices->wiring);
   for (unsigned i = 0; i < FIN_COUNT; i++) {
     devices->bridges[i].powered = &devices->motor_power;
-    devices->i2c[i] = (struct i2c_device){bridge_addresses[i], &devices->bridges[i], drv8830_start,
-                                          drv8830_write, drv8830_read};
+    devices->i2c[i] = (struct i2c_device){
+        .device = &devices->bridges[i], .start = drv8830_start, .write = drv8830_write, .read = drv8830_read};
   }
-  devices->i2c[FIN_COUNT] =
-      (struct i2c_device){IMU_ADDRESS, &devices->imu, mpu6050_start, mpu6050_write, mpu6050_read};
-  devices->i2c[FIN_COUNT + 1] =
-      (struct i2c_device){PRESSURE_ADDRESS, &devices->pressure, ms5837_start, ms5837_write, ms5837_read};
+  devices->i2c[FIN_COUNT] = (struct i2c_device){
+      .device = &devices->imu, .start = mpu6050_start, .write = mpu6050_write, .read = mpu6050_read};
+  devices->i2c[FIN_COUNT + 1] = (struct i2c_device){
+      .device = &devices->pressure, .start = ms5837_start, .write = ms5837_write, .read = ms5837_read};
+  find_addresses(devices);
+}
+
+void devices_set_wiring(struct devices *devices, const struct wiring *wiring) {
+  devices->wiring = *wiring;
+  find_addresses(devices);
+}
+
+void devices_beacons(const struct devices *devices, bool levels[2]) {
+  const struct wiring *wiring = &devices->wiring;
+  bool heard[2] = {devices->surroundings.beacon_right, devices->surroundings.beacon_left};
+  for (unsigned side = 0; side < 2; side++) {
+    unsigned detector = wiring->beacons_swapped ? 1 - side : side;
+    levels[side] = wiring->beacon_connected[side] && heard[detector] != wiring->beacons_inverted;
+  }
+}
+
+double devices_battery(const struct devices *devices) {
+  const struct wiring *wiring = &devices->wiring;
+  return fmin(motors_battery(&devices->motors) / wiring->divider / wiring->reference, 1);
 }
 
 void devices_set_motor_power(struct devices *devices, bool on) {
@@ -34,7 +60,7 @@ void devices_set_motor_power(struct devices *devices, bool on) {
 uint8_t devices_exchange_spi(struct devices *devices, bool mode_0) {
   uint8_t received = 0xff;
   for (unsigned i = 0; i < FIN_COUNT; i++) {
-    if (devices->encoders[i].selected) {
+    if (devices->encoders[i].selected && devices->wiring.shaft[i] != NOT_CONNECTED) {
       received &= as5040_exchange(&devices->encoders[i], mode_0);
     }
   }
@@ -50,7 +76,6 @@ static const struct {
     [FAULT_NONE] = {"none", IMU | PRESSURE | ENCODER | BRIDGE},
     [FAULT_ABSENT] = {"absent", IMU | PRESSURE | ENCODER | BRIDGE},
     [FAULT_STUCK] = {"stuck", IMU | PRESSURE | ENCODER | BRIDGE},
-    [FAULT_REVERSED] = {"reversed", ENCODER | BRIDGE},
     [FAULT_WEAK] = {"weak", ENCODER},
     [FAULT_TRIPPED] = {"tripped", BRIDGE},
 };

@@ -10,22 +10,28 @@
 #define FAULT_BITS 0x03  // any fault, overcurrent
 #define FAULT_CLEAR 0x80
 
+static bool idle(const struct drv8830 *bridge) {
+  return !*bridge->powered || bridge->fault == FAULT_ABSENT || bridge->fault == FAULT_TRIPPED;
+}
+
+bool drv8830_coasts(const struct drv8830 *bridge) {
+  unsigned inputs = bridge->control & (CONTROL_IN1 | CONTROL_IN2);
+  bool brakes = inputs == (CONTROL_IN1 | CONTROL_IN2);
+  return idle(bridge) || !(brakes || drv8830_drive(bridge));
+}
+
 int drv8830_drive(const struct drv8830 *bridge) {
-  if (!*bridge->powered || bridge->fault == FAULT_ABSENT) {
-    return 0;
-  }
   int steps = bridge->control >> VSET_SHIFT;
-  if (steps < VSET_MIN || bridge->fault == FAULT_TRIPPED) {
+  if (idle(bridge) || steps < VSET_MIN) {
     return 0;
   }
-  steps = bridge->fault == FAULT_REVERSED ? -steps : steps;
   switch (bridge->control & (CONTROL_IN1 | CONTROL_IN2)) {
     case CONTROL_IN1:
       return steps;
     case CONTROL_IN2:
       return -steps;
     default:
-      return 0;  // coasting or braking
+      return 0;
   }
 }
 

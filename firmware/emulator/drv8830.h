@@ -4,6 +4,7 @@
 #ifndef DRV8830_H
 #define DRV8830_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "surroundings.h"
@@ -17,6 +18,9 @@ struct drv8830 {
 
 // Signed steps of voltage, -63 to 63; positive is IN1.
 int drv8830_drive(const struct drv8830 *bridge);
+
+// True if its outputs are open. At drive 0 it brakes otherwise: both inputs are 1 and short the motor.
+bool drv8830_coasts(const struct drv8830 *bridge);
 
 bool drv8830_start(void *bridge);
 void drv8830_write(void *bridge, unsigned index, uint8_t byte);

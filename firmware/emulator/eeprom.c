@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "calibration.gen.h"
 #include "registers.h"
 
 #define WRITE_SECONDS 3.4e-3
@@ -79,4 +80,14 @@ bool eeprom_open(struct eeprom *eeprom, const char *path, char *reason, size_t r
     close(file);
   }
   return memory != MAP_FAILED;
+}
+
+void eeprom_calibrate(struct eeprom *eeprom) {
+  uint8_t *kept = eeprom->module->eeprom + CALIBRATION_ADDRESS;
+  for (unsigned i = 0; i < CALIBRATION_BYTES; i++) {
+    if (kept[i] != 0xff) {
+      return;
+    }
+  }
+  memcpy(kept, calibration_record, CALIBRATION_BYTES);
 }

@@ -19,6 +19,9 @@ void eeprom_create(struct eeprom *eeprom, struct chip *chip);
 // Stores the contents in this file from now on; a new file begins erased. False with a reason on failure.
 bool eeprom_open(struct eeprom *eeprom, const char *path, char *reason, size_t reason_size);
 
+// Keeps the emulated robot's calibration in it, unless it keeps something there.
+void eeprom_calibrate(struct eeprom *eeprom);
+
 // Copies the other's contents and file.
 void eeprom_copy(struct eeprom *eeprom, const struct eeprom *other);
 

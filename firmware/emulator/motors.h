@@ -1,25 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The four gear motors with their fins and encoders: a motor's speed follows its H-bridge's voltage like a
-// first-order system, and a fin turns with its motor's shaft.
+// The four gear motors with their fins and encoders. A motor's torque falls with its speed; friction and the
+// water, which resists the fin with the square of its speed, act against it. A fin turns with its motor's
+// shaft.
 #ifndef MOTORS_H
 #define MOTORS_H
 
 #include "as5040.h"
 #include "drv8830.h"
+#include "wiring.h"
 
-#define FIN_COUNT 4
 #define MOTORS_PERIOD 1e-3  // s
 
 struct motors {
   const struct drv8830 *bridges;
   struct as5040 *encoders;
   const struct surroundings *surroundings;
-  double shaft[FIN_COUNT];  // rad, growing with positive drive
+  const struct wiring *wiring;
+  double rotor[FIN_COUNT];  // rad, of the gear's side to the motor, growing with positive drive
+  double rotor_speed[FIN_COUNT];
+  double shaft[FIN_COUNT];  // rad, of its side to the fin
   double speed[FIN_COUNT];  // rad/s
+  double current;           // A, from the battery
+  unsigned steps;           // since power-on
+  uint32_t noise;
 };
 
 void motors_create(struct motors *motors, const struct drv8830 bridges[FIN_COUNT],
-                   struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings);
+                   struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings,
+                   const struct wiring *wiring);
+
+// V, of the battery with the motors as its load.
+double motors_battery(const struct motors *motors);
 
 // Call it every MOTORS_PERIOD.
 void motors_step(struct motors *motors);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#define REGISTER_RATE_DIVIDER 0x19
+#define REGISTER_CONFIG 0x1a
 #define REGISTER_GYRO_CONFIG 0x1b
 #define REGISTER_ACCEL_CONFIG 0x1c
 #define REGISTER_FORCE 0x3b
@@ -14,8 +16,13 @@
 
 #define POWER_RESET 0x80
 #define POWER_SLEEP 0x40
-#define WHO_AM_I 0x68
+#define FILTER_MASK 7
 #define RANGE_SHIFT 3
+
+// The data sheet's, of waking; and of samples, without and with the filter.
+#define GYRO_START 30e-3    // s
+#define FAST_PERIOD 125e-6  // s
+#define SLOW_PERIOD 1e-3    // s
 
 #define GRAVITY 9.80665
 #define DEGREE (M_PI / 180)
@@ -29,7 +36,7 @@
 static void reset(struct mpu6050 *imu) {
   memset(imu->registers, 0, sizeof imu->registers);
   imu->registers[REGISTER_POWER] = POWER_SLEEP;
-  imu->registers[REGISTER_WHO_AM_I] = WHO_AM_I;
+  imu->sample = -1;
 }
 
 static void put(struct mpu6050 *imu, unsigned address, double counts) {
@@ -42,25 +49,42 @@ static double range(const struct mpu6050 *imu, unsigned address) {
   return 1 << (imu->registers[address] >> RANGE_SHIFT & 3);
 }
 
-static void sample(struct mpu6050 *imu) {
-  const struct surroundings *now = imu->surroundings;
+static double now(const struct mpu6050 *imu) { return imu->clock.seconds(imu->clock.owner); }
+
+static void measure(struct mpu6050 *imu) {
+  const struct surroundings *around = imu->surroundings;
+  bool turning = now(imu) - imu->woken >= GYRO_START;
   double force_counts = FORCE_COUNTS / range(imu, REGISTER_ACCEL_CONFIG) / GRAVITY;
   double rate_counts = RATE_COUNTS / range(imu, REGISTER_GYRO_CONFIG) / DEGREE;
-  for (unsigned axis = 0; axis < 3; axis++) {
-    put(imu, REGISTER_FORCE + 2 * axis, now->force[axis] * force_counts);
-    put(imu, REGISTER_RATE + 2 * axis, now->rate[axis] * rate_counts);
+  for (unsigned i = 0; i < 3; i++) {
+    struct chip_axis axis = imu->wiring->imu_axes[i];
+    double rate = axis.sign * around->rate[axis.body] + imu->wiring->gyro_offset[i];
+    put(imu, REGISTER_FORCE + 2 * i, axis.sign * around->force[axis.body] * force_counts);
+    put(imu, REGISTER_RATE + 2 * i, turning ? rate * rate_counts : 0);
   }
-  put(imu, REGISTER_TEMPERATURE, (now->temperature - TEMPERATURE_ZERO) * TEMPERATURE_COUNTS);
+  put(imu, REGISTER_TEMPERATURE, (around->temperature - TEMPERATURE_ZERO) * TEMPERATURE_COUNTS);
 }
 
-void mpu6050_create(struct mpu6050 *imu, const struct surroundings *surroundings) {
-  *imu = (struct mpu6050){.surroundings = surroundings};
+// Measures if a sample is due since the last transfer.
+static void sample(struct mpu6050 *imu) {
+  unsigned filter = imu->registers[REGISTER_CONFIG] & FILTER_MASK;
+  double clock = filter == 0 || filter == FILTER_MASK ? FAST_PERIOD : SLOW_PERIOD;
+  double number = floor((now(imu) - imu->woken) / (clock * (1 + imu->registers[REGISTER_RATE_DIVIDER])));
+  if (number != imu->sample) {
+    imu->sample = number;
+    measure(imu);
+  }
+}
+
+void mpu6050_create(struct mpu6050 *imu, struct device_clock clock, const struct surroundings *surroundings,
+                    const struct wiring *wiring) {
+  *imu = (struct mpu6050){.clock = clock, .surroundings = surroundings, .wiring = wiring};
   reset(imu);
 }
 
 void mpu6050_dip(struct mpu6050 *imu) { reset(imu); }
 
-// A transfer reads one complete sample.
+// A transfer reads one whole sample.
 bool mpu6050_start(void *device) {
   struct mpu6050 *imu = device;
   bool awake = !(imu->registers[REGISTER_POWER] & POWER_SLEEP);
@@ -80,7 +104,12 @@ void mpu6050_write(void *device, unsigned index, uint8_t byte) {
     imu->pointer = byte % MPU6050_REGISTERS;
     return;
   }
-  if (imu->pointer == REGISTER_POWER && byte & POWER_RESET) {
+  bool power = imu->pointer == REGISTER_POWER;
+  if (power && imu->registers[REGISTER_POWER] & ~byte & POWER_SLEEP) {
+    imu->woken = now(imu);
+    imu->sample = -1;
+  }
+  if (power && byte & POWER_RESET) {
     reset(imu);
   } else if (writable(imu->pointer)) {
     imu->registers[imu->pointer] = byte;
@@ -90,7 +119,8 @@ void mpu6050_write(void *device, unsigned index, uint8_t byte) {
 
 uint8_t mpu6050_read(void *device) {
   struct mpu6050 *imu = device;
-  uint8_t byte = imu->registers[imu->pointer];
+  bool identity = imu->pointer == REGISTER_WHO_AM_I;
+  uint8_t byte = identity ? imu->wiring->imu_identity : imu->registers[imu->pointer];
   imu->pointer = (imu->pointer + 1) % MPU6050_REGISTERS;
   return byte;
 }

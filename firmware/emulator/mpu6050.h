@@ -1,22 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// InvenSense MPU-6050: turn rate and specific force, on I2C. Its axes are the body's.
+// InvenSense MPU-6050: turn rate and specific force, on I2C. It measures at its own
+// rate. The filter that CONFIG sets is that of the simulated water.
 #ifndef MPU6050_H
 #define MPU6050_H
 
 #include <stdint.h>
 
+#include "device_clock.h"
 #include "surroundings.h"
+#include "wiring.h"
 
 #define MPU6050_REGISTERS 128
 
 struct mpu6050 {
+  struct device_clock clock;
   const struct surroundings *surroundings;
+  const struct wiring *wiring;
+  double woken;   // s, end of its sleep
+  double sample;  // number since then; -1: none
   uint8_t registers[MPU6050_REGISTERS];
   uint8_t pointer;
   enum fault fault;
 };
 
-void mpu6050_create(struct mpu6050 *imu, const struct surroundings *surroundings);
+void mpu6050_create(struct mpu6050 *imu, struct device_clock clock, const struct surroundings *surroundings,
+                    const struct wiring *wiring);
 // A dip of the supply: the chip sleeps with its settings lost.
 void mpu6050_dip(struct mpu6050 *imu);
 

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "mistakes.h"
+
 #define SPEED_MAX 1000.0
 #define LINGER_MAX 86400.0
 #define USAGE_ERROR 2
@@ -20,10 +22,15 @@ static const char usage[] =
     "  --speed X         emulated seconds in a real one, 1 by default; 0: as fast as possible\n"
     "  --paused          time passes only by the command `run`\n"
     "  --eeprom FILE     store the EEPROM in this file\n"
+    "  --uncalibrated    begin without a calibration in the EEPROM, if it keeps none\n"
+    "  --mistake NAME    a mistake of wiring or an imperfection of a part, from the list below; can be "
+    "repeated\n"
     "  --reset-on-open   opening the serial port resets the board\n"
     "  --with-parent     end when the parent process ends\n"
     "  --server-lock FILE  end when no server has held this file's lock ...\n"
-    "  --linger SECONDS    ... for that time, 30 by default\n";
+    "  --linger SECONDS    ... for that time, 30 by default\n"
+    "\n"
+    "Mistakes:\n";
 
 enum choice {
   ELF,
@@ -33,6 +40,8 @@ enum choice {
   SPEED,
   PAUSED,
   EEPROM,
+  UNCALIBRATED,
+  MISTAKE,
   RESET_ON_OPEN,
   WITH_PARENT,
   SERVER_LOCK,
@@ -48,6 +57,8 @@ static const struct option long_options[] = {
     {"speed", required_argument, NULL, SPEED},
     {"paused", no_argument, NULL, PAUSED},
     {"eeprom", required_argument, NULL, EEPROM},
+    {"uncalibrated", no_argument, NULL, UNCALIBRATED},
+    {"mistake", required_argument, NULL, MISTAKE},
     {"reset-on-open", no_argument, NULL, RESET_ON_OPEN},
     {"with-parent", no_argument, NULL, WITH_PARENT},
     {"server-lock", required_argument, NULL, SERVER_LOCK},
@@ -68,6 +79,14 @@ static double read_number(const char *text, double maximum, const char *refusal)
     refuse(refusal);
   }
   return number;
+}
+
+static void add_mistake(struct options *options, const char *text) {
+  if (!mistakes_add(&options->wiring, text)) {
+    char refusal[128];
+    snprintf(refusal, sizeof refusal, "there is no mistake '%s'", text);
+    refuse(refusal);
+  }
 }
 
 static void take(struct options *options, int option) {
@@ -93,6 +112,12 @@ static void take(struct options *options, int option) {
     case EEPROM:
       options->eeprom = optarg;
       break;
+    case UNCALIBRATED:
+      options->uncalibrated = true;
+      break;
+    case MISTAKE:
+      add_mistake(options, optarg);
+      break;
     case RESET_ON_OPEN:
       options->reset_on_open = true;
       break;
@@ -107,6 +132,7 @@ static void take(struct options *options, int option) {
       break;
     case HELP:
       fputs(usage, stdout);
+      fputs(mistakes_usage, stdout);
       exit(0);
     default:
       exit(USAGE_ERROR);  // getopt has printed the reason
@@ -114,7 +140,7 @@ static void take(struct options *options, int option) {
 }
 
 struct options options_read(int count, char **arguments) {
-  struct options options = {.speed = 1, .linger = 30};
+  struct options options = {.speed = 1, .linger = 30, .wiring = RIGHT_WIRING};
   for (int option; (option = getopt_long(count, arguments, "", long_options, NULL)) != -1;) {
     take(&options, option);
   }

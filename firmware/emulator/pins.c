@@ -5,7 +5,7 @@
 #include <avr_ioport.h>
 #include <math.h>
 
-#define BATTERY_DIVIDER 2  // two equal resistors
+#define FULL_SCALE 5000  // mV; libsimavr's converter has no other reference here
 
 struct pin {
   char port;
@@ -77,12 +77,16 @@ void pins_reset(struct pins *pins) {
 }
 
 void pins_update_inputs(struct pins *pins) {
-  const struct surroundings *surroundings = &pins->devices->surroundings;
-  bool right = surroundings->beacon_right, left = surroundings->beacon_left;
-  uint8_t beacons = (uint8_t)(right << beacon_right_pin.bit | left << beacon_left_pin.bit);
+  bool levels[2];
+  devices_beacons(pins->devices, levels);
+  uint8_t beacons = (uint8_t)(levels[0] << beacon_right_pin.bit | levels[1] << beacon_left_pin.bit);
   uint8_t select = 1 << select_pins[0].bit;
   pull(pins, 'D', (uint8_t)(1 << beacon_right_pin.bit | 1 << beacon_left_pin.bit | select), beacons | select);
-  avr_raise_irq(pins->beacon_right, right);
-  avr_raise_irq(pins->beacon_left, left);
-  avr_raise_irq(pins->battery, (uint32_t)lround(surroundings->battery * 1000 / BATTERY_DIVIDER));
+  avr_raise_irq(pins->beacon_right, levels[0]);
+  avr_raise_irq(pins->beacon_left, levels[1]);
+  pins_update_battery(pins);
+}
+
+void pins_update_battery(struct pins *pins) {
+  avr_raise_irq(pins->battery, (uint32_t)lround(FULL_SCALE * devices_battery(pins->devices)));
 }

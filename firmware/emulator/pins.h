@@ -20,5 +20,6 @@ void pins_reset(struct pins *pins);
 
 // Puts the values of detectors and battery onto the chip's inputs.
 void pins_update_inputs(struct pins *pins);
+void pins_update_battery(struct pins *pins);
 
 #endif

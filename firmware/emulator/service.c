@@ -60,10 +60,14 @@ bool service_create(struct service *service, const struct options *options, char
            chip_load_bootloader(&board->chip, options->bootloader, reason, reason_size)) &&
           (!options->elf || chip_load(&board->chip, options->elf, reason, reason_size)) &&
           (!options->eeprom || eeprom_open(&board->eeprom, options->eeprom, reason, reason_size));
+  if (ready && !options->uncalibrated) {
+    eeprom_calibrate(&board->eeprom);
+  }
   if (!ready) {
     service_remove(service);
     return false;
   }
+  board_set_wiring(board, &options->wiring);
   water_create(&service->water, board, &service->clients, paced(service) ? WATER_TIMEOUT : INFINITY);
   chip_reset(&board->chip, CHIP_POWER_ON);
   pace_start(&service->pace, options->speed, pace_clock(), chip_now(&board->chip));

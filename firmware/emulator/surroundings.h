@@ -26,6 +26,6 @@ struct surroundings {
 bool surroundings_read(struct surroundings *surroundings, const double numbers[SURROUNDINGS_NUMBERS]);
 
 // Fault of a device: it does not answer, or it repeats its last reading.
-enum fault { FAULT_NONE, FAULT_ABSENT, FAULT_STUCK, FAULT_REVERSED, FAULT_WEAK, FAULT_TRIPPED };
+enum fault { FAULT_NONE, FAULT_ABSENT, FAULT_STUCK, FAULT_WEAK, FAULT_TRIPPED };
 
 #endif

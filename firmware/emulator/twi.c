@@ -18,21 +18,55 @@ enum status {
   ADDRESS_WRITE_NACK = 0x20,
   DATA_WRITE_ACK = 0x28,
   DATA_WRITE_NACK = 0x30,
+  ARBITRATION_LOST = 0x38,
 };
 
 static void answer(struct twi *twi, uint8_t condition, uint8_t data) {
-  uint8_t address = twi->selected->address;
-  avr_raise_irq(twi->module->io.irq + TWI_IRQ_INPUT, avr_twi_irq_msg(condition, address, data));
+  avr_raise_irq(twi->module->io.irq + TWI_IRQ_INPUT, avr_twi_irq_msg(condition, twi->address, data));
 }
 
-static void select_device(struct twi *twi, uint8_t address) {
-  twi->selected = NULL;
+// True if any device acknowledges the address.
+static bool select_devices(struct twi *twi, uint8_t address) {
+  bool any = false;
+  twi->address = address;
   twi->index = 0;
   for (unsigned i = 0; i < twi->device_count; i++) {
-    struct i2c_device *device = &twi->devices[i];
-    if (device->address == address && device->start(device->device)) {
-      twi->selected = device;
+    const struct i2c_device *device = twi->devices[i];
+    twi->selected[i] =
+        twi->fault != TWI_FAULT_CONTESTED && device->address == address && device->start(device->device);
+    any |= twi->selected[i];
+  }
+  return any;
+}
+
+static void deselect_devices(struct twi *twi) { memset(twi->selected, 0, sizeof twi->selected); }
+
+static void write_devices(struct twi *twi, uint8_t byte) {
+  bool any = false;
+  for (unsigned i = 0; i < twi->device_count; i++) {
+    if (twi->selected[i]) {
+      twi->devices[i]->write(twi->devices[i]->device, twi->index, byte);
+      any = true;
     }
+  }
+  twi->index++;
+  if (any) {
+    answer(twi, TWI_COND_ACK, 1);
+  }
+}
+
+// On an open-drain line every device that sends a 0 wins.
+static void read_devices(struct twi *twi) {
+  uint8_t byte = 0xff;
+  bool any = false;
+  for (unsigned i = 0; i < twi->device_count; i++) {
+    if (twi->selected[i]) {
+      byte &= twi->devices[i]->read(twi->devices[i]->device);
+      any = true;
+    }
+  }
+  if (any) {
+    answer(twi, TWI_COND_READ, byte);
   }
 }
 
@@ -43,28 +77,22 @@ static void on_bus(avr_irq_t *irq, uint32_t value, void *param) {
   uint8_t condition = message.u.twi.msg;
   if (condition & TWI_COND_START) {
     twi->addressed = true;
-    select_device(twi, message.u.twi.addr >> 1);
-    if (twi->selected) {
+    if (select_devices(twi, message.u.twi.addr >> 1)) {
       answer(twi, TWI_COND_ACK, 1);
     }
-    return;
-  }
-  struct i2c_device *device = twi->selected;
-  if (!device) {
     return;
   }
   if (condition & TWI_COND_WRITE) {
     if (twi->fault == TWI_FAULT_REFUSED) {
       return;
     }
-    device->write(device->device, twi->index++, message.u.twi.data);
-    answer(twi, TWI_COND_ACK, 1);
+    write_devices(twi, message.u.twi.data);
   }
   if (condition & TWI_COND_READ) {
-    answer(twi, TWI_COND_READ, device->read(device->device));
+    read_devices(twi);
   }
   if (condition & TWI_COND_STOP) {
-    twi->selected = NULL;
+    deselect_devices(twi);
   }
 }
 
@@ -76,6 +104,9 @@ static avr_cycle_count_t bit_cycles(const struct twi *twi) {
 static uint8_t corrected_status(struct twi *twi, uint8_t status) {
   bool address = twi->addressed;
   twi->addressed = false;
+  if (twi->fault == TWI_FAULT_CONTESTED && status != START && status != REPEATED_START) {
+    return ARBITRATION_LOST;
+  }
   if (address && status == DATA_WRITE_ACK) {
     return ADDRESS_WRITE_ACK;
   }
@@ -128,14 +159,14 @@ void twi_create(struct twi *twi, struct chip *chip) {
   avr_irq_register_notify(twi->module->io.irq + TWI_IRQ_OUTPUT, on_bus, twi);
 }
 
-void twi_attach(struct twi *twi, struct i2c_device device) {
+void twi_attach(struct twi *twi, const struct i2c_device *device) {
   if (twi->device_count < TWI_DEVICES_MAX) {
     twi->devices[twi->device_count++] = device;
   }
 }
 
 void twi_reset(struct twi *twi) {
-  twi->selected = NULL;
+  deselect_devices(twi);
   twi->addressed = false;
 }
 
@@ -143,7 +174,8 @@ bool twi_set_fault(struct twi *twi, const char *fault) {
   static const char *const faults[] = {[TWI_FAULT_NONE] = "none",
                                        [TWI_FAULT_STUCK] = "stuck",
                                        [TWI_FAULT_REFUSED] = "refused",
-                                       [TWI_FAULT_STRETCHED] = "stretched"};
+                                       [TWI_FAULT_STRETCHED] = "stretched",
+                                       [TWI_FAULT_CONTESTED] = "contested"};
   for (unsigned i = 0; i < sizeof faults / sizeof *faults; i++) {
     if (!strcmp(fault, faults[i])) {
       twi->fault = (enum twi_fault)i;

@@ -3,7 +3,6 @@
 // constant.
 #include <math.h>
 
-#include "fins/calibration.h"
 #include "fins/fin_law.h"
 #include "sensors/as5040.h"
 #include "sensors/drv8830.h"
@@ -42,9 +41,7 @@ MagneticField read_encoder_counts(uint8_t fin, int16_t* counts) {
   shaft.angle =
       wrap_angle(shaft.angle + driven * kTickSeconds + behind * kTimeConstant * (1 - kDecayPerTick));
   shaft.speed = driven + behind * kDecayPerTick;
-  const FinCalibration& fin_at = kFinCalibration[fin];
-  const int16_t turned = lroundf(shaft.angle * kCountsPerRadian);
-  *counts = (fin_at.zero + fin_at.encoder_sign * turned) & (kCountsPerTurn - 1);
+  *counts = lroundf(shaft.angle * kCountsPerRadian) & (kCountsPerTurn - 1);
   return MagneticField::kGreen;
 }
 

@@ -1,5 +1,8 @@
 #include "board.h"
 
+#include <string.h>
+
+#include "../emulator/calibration.gen.h"
 #include "link/baud.h"
 
 namespace mucat {
@@ -14,6 +17,11 @@ constexpr uint32_t kLineBytes = 255;
 constexpr uint64_t kByteUs = 10 * 1000000ULL / kBaud;
 
 }  // namespace
+
+Board::Board() {
+  memset(kept, 0xFF, sizeof kept);
+  memcpy(kept, calibration_record, sizeof calibration_record);
+}
 
 void advance(uint32_t us) {
   Board& board = the_board;
@@ -103,6 +111,10 @@ void set_led(bool on) { the_board.led = on; }
 void set_motor_power(bool on) { the_board.motor_power = on; }
 
 uint16_t next_epoch() { return ++the_board.epoch; }
+
+void read_kept(void* bytes, uint8_t size) { memcpy(bytes, the_board.kept, size); }
+
+void write_kept(uint8_t index, uint8_t byte) { the_board.kept[index] = byte; }
 
 RetainedMemory& retained_memory() { return the_board.retained; }
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "board.h"
+#include "calibration.h"
 #include "fins/fin_law.h"
 #include "fins/mixer.h"
 #include "fins/position_loop.h"
@@ -17,6 +18,17 @@
 #include "sensors/ms5837.h"
 
 using namespace mucat;
+
+namespace {
+
+// The emulated board's.
+Calibration calibrated() {
+  CalibrationStore store;
+  store.start();
+  return store.value();
+}
+
+}  // namespace
 
 extern "C" {
 
@@ -116,19 +128,19 @@ float law_step(FinLaw* law, float direction, float amplitude, uint16_t phase) {
 }
 bool law_flapping(const FinLaw* law) { return law->flapping(); }
 uint16_t law_phase_per_tick() { return phase_per_tick(Parameters().value(kFinsFrequency)); }
-uint16_t law_fin_phase(uint8_t fin) { return kFinPhase[fin]; }
+uint16_t law_fin_phase(uint8_t fin) { return fin_phase(fin); }
 
 int16_t firmware_wrap_counts(int16_t counts) { return wrap_counts(counts); }
 int16_t firmware_counts_from_angle(uint8_t fin, float angle) {
-  return counts_from_angle(kFinCalibration[fin], angle);
+  return counts_from_angle(fin_calibration(calibrated(), fin), angle);
 }
 float firmware_angle_from_counts(uint8_t fin, int16_t counts) {
-  return angle_from_counts(kFinCalibration[fin], counts);
+  return angle_from_counts(fin_calibration(calibrated(), fin), counts);
 }
 PositionLoop* loop_create() { return new PositionLoop; }
 void loop_destroy(PositionLoop* loop) { delete loop; }
 int8_t loop_step(PositionLoop* loop, uint8_t fin, int16_t set_point, int16_t measured) {
-  return loop->step(kFinCalibration[fin], set_point, measured,
+  return loop->step(fin_calibration(calibrated(), fin), set_point, measured,
                     gain_from_thousandths(Parameters()[kFinsGain]));
 }
 
@@ -161,7 +173,9 @@ void attitude_update(Attitude* attitude, const float* rate, const float* force, 
   memcpy(quaternion, attitude->quaternion(), 4 * sizeof(float));
 }
 
-uint16_t firmware_battery_millivolts(uint16_t counts) { return battery_millivolts(counts); }
+uint16_t firmware_battery_millivolts(uint16_t counts, uint16_t factor) {
+  return battery_millivolts(counts, factor);
+}
 
 // ---- the whole robot on the board in memory ----
 
@@ -172,6 +186,9 @@ void board_set_beacons(bool right, bool left) {
   host::the_board.right = right;
   host::the_board.left = left;
 }
+// The EEPROM as the factory delivers it.
+void board_erase_kept() { memset(host::the_board.kept, 0xFF, sizeof host::the_board.kept); }
+void board_flip_kept(uint8_t index) { host::the_board.kept[index] ^= 0x10; }
 uint16_t board_epoch() { return host::the_board.epoch; }
 bool board_led() { return host::the_board.led; }
 bool board_motor_power() { return host::the_board.motor_power; }

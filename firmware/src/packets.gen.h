@@ -4,10 +4,12 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0xcbf539b7UL;
+constexpr uint32_t kDefinitionsHash = 0x742c62b8UL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
+// Of the record in EEPROM; another one's layout is another.
+constexpr uint8_t kCalibrationVersion = 155;
 
 enum class DebugLevel : uint8_t {
   kDebug = 0,
@@ -50,6 +52,16 @@ enum class ResetCause : uint8_t {
   kExternal = 2,
   kBrownOut = 3,
   kWatchdog = 4,
+};
+
+enum class CalibrationStep : uint8_t {
+  kFins = 1,
+  kMotors = 2,
+  kAxes = 4,
+  kGyro = 8,
+  kPressure = 16,
+  kBattery = 32,
+  kBeacons = 64,
 };
 
 // Host to board: disarm at once. Always accepted, also outside a session and repeatedly.
@@ -213,6 +225,35 @@ struct __attribute__((packed)) Parameter {
 };
 static_assert(sizeof(Parameter) == 3, "Parameter has another size");
 
+// Host to board: the calibration to keep. Board to host, in answer: the one that it keeps in EEPROM.
+//
+// A board arms only when every step is done. While it is armed it keeps what it has.
+struct __attribute__((packed)) Calibration {
+  static constexpr uint8_t kType = 0x13;
+  uint8_t done;  // see CalibrationStep
+  uint16_t fin_zeros[4];  // encoder counts, 1024 a turn, where the fin points along its mount
+  uint8_t encoders_reversed;  // bit n: fin n's counts fall as its tip goes down
+  uint8_t motors_reversed;  // bit n: fin n's counts fall at positive drive
+  int8_t axes[3];  // the chip's axes, 1 to 3, that point forward, right, down; -: away
+  int16_t gyro_bias[3];  // turn rate measured at rest, body axes; x 0.00026632423 rad/s
+  int16_t pressure_offset;  // what the sensor shows too much; Pa
+  uint16_t battery_factor;  // true battery voltage over measured; x 0.0001
+  uint8_t beacons_inverted;  // 1: a detector's pin is low while it sees the beacon
+};
+static_assert(sizeof(Calibration) == 25, "Calibration has another size");
+
+// Host to board: asks for the calibration that it keeps.
+struct __attribute__((packed)) RequestCalibration {
+  static constexpr uint8_t kType = 0x14;
+};
+static_assert(sizeof(RequestCalibration) == 1, "RequestCalibration has another size");
+
+// Host to board: the pressure now is the surface's. Ignored while armed.
+struct __attribute__((packed)) ZeroDepth {
+  static constexpr uint8_t kType = 0x15;
+};
+static_assert(sizeof(ZeroDepth) == 1, "ZeroDepth has another size");
+
 // Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.
 inline int8_t payload_bytes(uint8_t type) {
   switch (type) {
@@ -232,11 +273,14 @@ inline int8_t payload_bytes(uint8_t type) {
     case TestResult::kType: return 10;
     case Sense::kType: return 22;
     case Parameter::kType: return 3;
+    case Calibration::kType: return 25;
+    case RequestCalibration::kType: return 0;
+    case ZeroDepth::kType: return 0;
     default: return -1;
   }
 }
 
 // Whether a packet of this type is repeated until it is acknowledged.
-constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType || type == Parameter::kType; }
+constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType || type == Parameter::kType || type == Calibration::kType || type == RequestCalibration::kType || type == ZeroDepth::kType; }
 
 }  // namespace mucat

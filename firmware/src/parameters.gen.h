@@ -12,8 +12,9 @@ enum ParameterNumber : uint8_t {
   kFinsTurnRate,  // how fast the direction of a fin turns; rad/s
   kFinsGain,  // drive of a fin, in steps for each count of its error; a ratio
   kBatteryAlarm,  // below it for 20 s the robot is stopped; V
+  kWaterDensity,  // 1 for fresh water, 1.025 for the sea; kg/L
 };
-constexpr uint8_t kParameterCount = 5;
+constexpr uint8_t kParameterCount = 6;
 
 // In thousandths of the unit.
 struct ParameterLimits {
@@ -29,6 +30,7 @@ const ParameterLimits kParameterLimits[kParameterCount] PROGMEM = {
     {4909, 2500, 4909, true},
     {625, 300, 1200, true},
     {6200, 6200, 7400, false},
+    {1000, 990, 1050, false},
 };
 
 }  // namespace mucat

@@ -22,6 +22,7 @@ constexpr uint8_t bit(Enum flag, bool on) {
 
 void Robot::start() {
   board::start();
+  calibration_.start();
   fins_.start();
   epoch_ = board::next_epoch();
   arming_.begin(epoch_);
@@ -72,6 +73,20 @@ void Robot::handle(const Message& message) {
       // With other definitions its number may mean another parameter.
       if (!arming_.definitions_differ()) parameters_.request(unpack<Parameter>(message), armed());
       break;
+    case Calibration::kType:
+      if (arming_.definitions_differ()) break;
+      if (armed()) {
+        calibration_.request();
+      } else {
+        calibration_.store(unpack<Calibration>(message));
+      }
+      break;
+    case RequestCalibration::kType:
+      calibration_.request();
+      break;
+    case ZeroDepth::kType:
+      if (!armed()) sensors_.zero_depth();
+      break;
     default:
       break;  // a heartbeat needs no handling; the other types are sent by the board alone
   }
@@ -86,9 +101,13 @@ void Robot::arm(const Start& start) {
   // The host voided it while it was in transit.
   if (start.epoch == kNoBoot) return;
   const bool was_armed = armed();
-  const Refusal refusal = arming_.start(start, board::milliseconds());
+  const uint8_t missing = calibration_.missing();
+  const Refusal refusal = arming_.start(start, !missing, board::milliseconds());
   if (refusal != Refusal::kNone) {
-    link_.queue_line(DebugLine(DebugLevel::kWarning) << FLASH_TEXT("START refused: ") << describe(refusal));
+    DebugLine line(DebugLevel::kWarning);
+    line << FLASH_TEXT("START refused: ") << describe(refusal);
+    if (refusal == Refusal::kCalibration) line << describe_step(missing);
+    link_.queue_line(line);
   } else if (!was_armed) {
     link_.queue_line(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("armed"));
   }
@@ -101,6 +120,7 @@ void Robot::tick(uint8_t ticks) {
   // First, so that a command takes effect with the least delay.
   fins_.step(motion(now), parameters_);
   sensors_.step(ticks, !armed());
+  calibration_.step();
   board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
   tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;
   if (slot_tick_ < kTicksPerSlot) ++slot_tick_;
@@ -112,15 +132,16 @@ void Robot::tick(uint8_t ticks) {
   }
   // Before a host's HELLO nothing is sent: messages of the boot wait in the queue.
   if (!arming_.greeted()) return;
-  answer_parameters();
+  answer_requests();
   link_.step(now);
 }
 
 // Answers that do not fit the queue are sent in a later tick.
-void Robot::answer_parameters() {
+void Robot::answer_requests() {
   for (Parameter answer; parameters_.next(&answer) && link_.queue(answer);) {
     parameters_.answered(answer.number);
   }
+  if (calibration_.answer_due() && link_.queue(calibration_.value())) calibration_.answered();
 }
 
 void Robot::watch_battery(uint32_t now_ms) {
@@ -149,7 +170,7 @@ void Robot::send_telemetry() {
     link_.send(motor);
   }
   Depth depth;
-  if (has_depth(slot_) && sensors_.take(&depth)) link_.send(depth);
+  if (has_depth(slot_) && sensors_.take(&depth, parameters_[kWaterDensity])) link_.send(depth);
   if (slot_ == kBeaconSlot) {
     Beacon beacon;
     sensors_.read(&beacon);

@@ -2,6 +2,7 @@
 #pragma once
 #include <stdint.h>
 
+#include "calibration.h"
 #include "fins/fins.h"
 #include "link/link.h"
 #include "packets.gen.h"
@@ -22,7 +23,7 @@ class Robot {
   void handle(const Message& message);
   void greet(const Hello& hello);
   void arm(const Start& start);
-  void answer_parameters();
+  void answer_requests();
   void tick(uint8_t ticks);
   void watch_battery(uint32_t now_ms);
   Motion motion(uint32_t now_ms);
@@ -36,9 +37,10 @@ class Robot {
 
   Link link_;
   Arming arming_;
-  Fins fins_;
+  CalibrationStore calibration_;
+  Fins fins_{calibration_.value()};
   Parameters parameters_;
-  Sensors sensors_;
+  Sensors sensors_{calibration_.value()};
   BatteryAlarm battery_alarm_;
   uint32_t lowering_since_ms_ = 0;
   bool lowering_ = false;

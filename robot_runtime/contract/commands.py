@@ -10,6 +10,7 @@ from dataclasses import MISSING, Field, asdict, dataclass, field, fields
 from enum import IntEnum
 from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform, get_type_hints
 
+from robot_runtime.contract.calibration import CalibrationValues
 from robot_runtime.contract.documents import ParameterValue, Steering
 from robot_runtime.contract.limits import (
     SET_POINTS,
@@ -243,6 +244,23 @@ class ParametersCommand(RobotCommand):
     def __post_init__(self) -> None:
         if not self.values:
             raise ValueError("values must name one parameter at least")
+
+
+@command("calibrate", Need.CONTROL)
+class CalibrateCommand(RobotCommand):
+    """Stores a calibration in the board. It is refused while the robot is armed."""
+
+    values: CalibrationValues
+
+
+@command("measure_gyro", Need.CONTROL)
+class MeasureGyroCommand(RobotCommand):
+    """Measures the gyroscope's offset for three seconds at rest, and stores it. An event tells the result."""
+
+
+@command("zero_depth", Need.CONTROL, words="The depth is zero")
+class ZeroDepthCommand(RobotCommand):
+    """Takes the pressure now for the surface's. It is refused while the robot is armed."""
 
 
 @command("steering", Need.CONTROL, tunes=True, in_scenarios=True, disturbs_experiment=True)

@@ -7,6 +7,7 @@ no fixed size. Both are frozen dataclasses; the page's types are generated from 
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from robot_runtime.contract.calibration import CalibrationValues
 from robot_runtime.contract.packets.layout import Record, Wire, record
 from robot_runtime.contract.vision_settings import VisionSettings
 
@@ -143,6 +144,14 @@ class VisionInForce(Document):
     """The vision settings in force; sent at every change and every ten seconds."""
 
     settings: VisionSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationKept(Document):
+    """The calibration that the board keeps; sent at every change and every ten seconds."""
+
+    values: CalibrationValues | None = field(metadata={"meaning": "null until the board has told it"})
+    missing: list[str] = field(metadata={"meaning": "the steps that are not done, in words"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

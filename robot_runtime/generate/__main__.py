@@ -4,9 +4,10 @@ import argparse
 import sys
 from pathlib import Path
 
-from robot_runtime.generate import cpp, json_schema, reference, typescript
+from robot_runtime.generate import cpp, hardware, json_schema, reference, typescript
 from robot_runtime.generate.configuration import configuration_page
 from robot_runtime.generate.craft import craft_page
+from robot_runtime.generate.wiring_picture import wiring_picture
 
 SOURCES = Path(__file__).resolve().parents[2]
 ROOT = SOURCES
@@ -22,6 +23,7 @@ def main() -> int:
     only_check = parser.parse_args().check
     files = {
         "firmware/src/packets.gen.h": cpp.header(),
+        "firmware/emulator/calibration.gen.h": cpp.calibration(),
         "firmware/src/parameters.gen.h": cpp.parameters(),
         "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
@@ -35,6 +37,9 @@ def main() -> int:
         "docs/reference/packets.md": reference.packets_page(),
         "docs/reference/parameters.md": reference.parameters_page(),
         "docs/reference/topics.md": reference.topics_page(),
+        "docs/run/hardware/parts.md": hardware.parts_page(),
+        "docs/run/hardware/wiring.md": hardware.wiring_page(),
+        "docs/pictures/wiring.svg": wiring_picture(),
     }
     old = [name for name, text in files.items() if _read(ROOT / name) != text]
     for name in old:

@@ -2,6 +2,7 @@
 
 from enum import IntEnum, IntFlag
 
+from robot_runtime.contract.calibration import EMULATED, RECORD_ADDRESS, RECORD_VERSION, record
 from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     DEFINITIONS_HASH,
@@ -25,6 +26,23 @@ constexpr uint32_t kDefinitionsHash = 0x%08xUL;
 constexpr uint8_t kFinCount = %d;
 constexpr uint8_t kFrameBytesMax = %d;
 constexpr uint8_t kNotReady = %d;
+// Of the record in EEPROM; another one's layout is another.
+constexpr uint8_t kCalibrationVersion = %d;
+"""
+
+_CALIBRATION = """\
+/* Written by `make generate` from robot_runtime/contract/calibration.py. Do not edit. */
+/* The record in the EEPROM of a calibrated emulated board. */
+#ifndef CALIBRATION_GEN_H
+#define CALIBRATION_GEN_H
+
+#define CALIBRATION_ADDRESS %d
+#define CALIBRATION_BYTES %d
+
+static const unsigned char calibration_record[CALIBRATION_BYTES] = {
+%s};
+
+#endif
 """
 
 _PARAMETERS = """\
@@ -68,9 +86,17 @@ def parameters() -> str:
     return _PARAMETERS % (numbers, len(CHIP_PARAMETERS), rows)
 
 
+def calibration() -> str:
+    """The whole text of the emulator's calibration.gen.h."""
+    stored = record(EMULATED.packet())
+    rows = [stored[start : start + 12] for start in range(0, len(stored), 12)]
+    text = "".join("    " + " ".join(f"0x{byte:02x}," for byte in row) + "\n" for row in rows)
+    return _CALIBRATION % (RECORD_ADDRESS, len(stored), text)
+
+
 def header() -> str:
     """The whole text of packets.gen.h."""
-    head = _HEAD % (DEFINITIONS_HASH, FIN_COUNT, FRAME_BYTES_MAX, NOT_READY)
+    head = _HEAD % (DEFINITIONS_HASH, FIN_COUNT, FRAME_BYTES_MAX, NOT_READY, RECORD_VERSION)
     enums = [_enum(enum) for enum in ENUMERATIONS]
     structs = [_struct(cls) for _, cls in sorted(PACKETS.items())]
     return "\n".join([head, *enums, *structs, _sizes(), _reliability(), "}  // namespace mucat", ""])
@@ -83,7 +109,8 @@ def _enum(enum: type[IntEnum] | type[IntFlag]) -> str:
 
 
 def _struct(cls: type[Packet]) -> str:
-    lines = [f"// {cls.__doc__}", f"struct __attribute__((packed)) {cls.__name__} {{"]
+    described = [f"// {line.strip()}".rstrip() for line in (cls.__doc__ or "").strip().splitlines()]
+    lines = [*described, f"struct __attribute__((packed)) {cls.__name__} {{"]
     lines.append(f"  static constexpr uint8_t kType = 0x{cls.type:02x};")
     lines += [_field(name, wire) for name, wire in cls.wires.items()]
     size = cls.layout.size

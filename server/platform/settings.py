@@ -124,6 +124,8 @@ class Settings:
     """The networks whose X-Forwarded-For is believed."""
     craft: Path | None = None
     """The craft file that the configuration names; None: the adopted one."""
+    mistakes: tuple[str, ...] = ()
+    """Of the emulated board; see robot_runtime/simulation/boards/mistakes.py."""
     build: Path = Path(__file__).parents[2] / "build"
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"

@@ -9,6 +9,7 @@ TICK = 0.5e-6
 ACKNOWLEDGED_ADDRESS, REFUSED_ADDRESS = 0x18, 0x20
 REFUSED_READ_ADDRESS = 0x48
 ACKNOWLEDGED_DATA, REFUSED_DATA = 0x28, 0x30
+ARBITRATION_LOST = 0x38
 LAST_DATA = 0x58
 
 
@@ -71,6 +72,14 @@ class Monitor:
     def phase_correct_period(self) -> float:
         """The duration (s) between two overflows of an 8-bit timer at 2 MHz in phase-correct PWM."""
         return int.from_bytes(self._ask(b"P", 2), "little") * TICK
+
+    def fill_memory(self) -> None:
+        """Fill memory that no reset clears."""
+        self._ask(b"W", 0)
+
+    def memory_lost(self) -> float:
+        """Share of that memory that has changed since."""
+        return int.from_bytes(self._ask(b"w", 2), "little") / 512
 
     def outputs(self, port_c: int) -> None:
         self._ask(b"O" + bytes([port_c]), 0)

@@ -9,7 +9,7 @@ from tests.board.conftest import Make
 from tests.board.monitor import Monitor
 from tests.board.rig import SKETCHES, Rig
 
-POWER_ON, RESET_PIN, WATCHDOG = 1 << 0, 1 << 1, 1 << 3
+POWER_ON, RESET_PIN, BROWN_OUT, WATCHDOG = 1 << 0, 1 << 1, 1 << 2, 1 << 3
 
 
 def test_the_program_learns_the_reset_cause(make_rig: Make) -> None:
@@ -19,6 +19,35 @@ def test_the_program_learns_the_reset_cause(make_rig: Make) -> None:
     rig.board.reset()
     assert monitor.boot() == RESET_PIN
     assert rig.board.stats()["resets"] == 2
+
+
+@pytest.mark.parametrize("lost", [0.0, 0.3, 1.0])
+def test_a_brown_out_loses_a_part_of_the_memory(make_rig: Make, lost: float) -> None:
+    rig = make_rig("monitor")
+    monitor = Monitor(rig)
+    monitor.boot()
+    monitor.outputs(1 << 3)
+    monitor.fill_memory()
+    rig.board.brown_out(lost)
+    assert not rig.board.fins().powered
+    assert monitor.boot() == BROWN_OUT
+    # One random byte in 256 is what it was.
+    assert monitor.memory_lost() == pytest.approx(lost * 255 / 256, abs=0.08 if 0 < lost < 1 else 0.01)
+    with pytest.raises(BoardError, match="the share of the memory"):
+        rig.board.brown_out(1.1)
+
+
+def test_two_brown_outs_are_not_alike(make_rig: Make) -> None:
+    rig = make_rig("monitor")
+    monitor = Monitor(rig)
+    monitor.boot()
+    lost = []
+    for _ in range(2):
+        monitor.fill_memory()
+        rig.board.brown_out(0.5)
+        monitor.boot()
+        lost.append(monitor.memory_lost())
+    assert lost[0] != lost[1]
 
 
 # It hangs in a loop, sleeps with interrupts off, or jumps into erased memory.
@@ -65,9 +94,9 @@ def test_writing_the_eeprom_takes_its_time(make_rig: Make) -> None:
     monitor = Monitor(rig)
     monitor.boot()
     assert monitor.read_eeprom(0) == 0xFF
-    assert monitor.read_eeprom(17) == 0xFF
-    assert monitor.write_eeprom(17, 0x5A) == pytest.approx(3.4e-3, abs=20e-6)
-    assert monitor.read_eeprom(17) == 0x5A
+    assert monitor.read_eeprom(200) == 0xFF
+    assert monitor.write_eeprom(200, 0x5A) == pytest.approx(3.4e-3, abs=20e-6)
+    assert monitor.read_eeprom(200) == 0x5A
 
 
 @pytest.mark.usefixtures("built")

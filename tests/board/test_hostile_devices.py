@@ -6,14 +6,25 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.contract.packets import DeviceFault, Imu, Navigation, Status, StatusFlag
-from robot_runtime.simulation.boards.emulator_process import FaultKind
+from robot_runtime.contract.packets import (
+    Depth,
+    DeviceFault,
+    Imu,
+    Navigation,
+    ResetCause,
+    Status,
+    StatusFlag,
+)
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER, FaultKind
 from tests.board.host import Robot, all_of, last, start
 from tests.board.rig import ROOT, build
 
 DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
 SENSORS = DeviceFault.IMU | DeviceFault.PRESSURE
 BRIDGES = DeviceFault(sum(DeviceFault.BRIDGE_FRONT_RIGHT << fin for fin in range(4)))
+FRONT_RIGHT, BACK_RIGHT, BACK_LEFT = (
+    DeviceFault(DeviceFault.TRACKING_FRONT_RIGHT << fin) for fin in range(3)
+)
 TICK_US = 10_000
 
 
@@ -28,6 +39,14 @@ def robot(built: None, tmp_path: Path) -> Iterator[Robot]:  # noqa: ARG001 - bui
         yield robot
 
 
+def assert_untroubled(robot: Robot, statuses: list[Status]) -> None:
+    """No tick was late, and the robot is armed throughout."""
+    assert {status.missed_ticks for status in statuses} == {0}
+    assert max(status.loop_worst for status in statuses) < TICK_US
+    assert all(status.flags & StatusFlag.ARMED for status in statuses)
+    assert robot.board.stats()["watchdog_resets"] == 0
+
+
 @pytest.mark.parametrize(
     ("device", "kind", "faults"),
     [
@@ -38,6 +57,7 @@ def robot(built: None, tmp_path: Path) -> Iterator[Robot]:  # noqa: ARG001 - bui
         ("bridge2", "absent", DeviceFault.BRIDGE_BACK_LEFT),
         ("i2c", "refused", SENSORS | BRIDGES),
         ("i2c", "stretched", SENSORS | BRIDGES),
+        ("i2c", "contested", SENSORS | BRIDGES),
     ],
 )
 def test_no_device_delays_a_tick_and_each_is_reported_and_found_again(
@@ -49,13 +69,69 @@ def test_no_device_delays_a_tick_and_each_is_reported_and_found_again(
     robot.board.fault(device, "none")
     statuses += all_of(robot.converse(1.0, DOWN), Status)
     assert statuses[-1].faults == 0
-    assert {status.missed_ticks for status in statuses} == {0}
-    assert max(status.loop_worst for status in statuses) < TICK_US
-    assert all(status.flags & StatusFlag.ARMED for status in statuses)
+    assert_untroubled(robot, statuses)
+
+
+@pytest.mark.parametrize(
+    ("mistake", "faults"),
+    [
+        ("gyro-offset:20,-20,20", 0),
+        ("encoder-noise:2", 0),
+        ("backlash:0.05", 0),
+        ("pack-resistance:0.5", 0),
+        ("regulator-off:5", 0),
+        ("regulator-off:-5", 0),
+        ("imu-turned:+x-y-z", 0),
+        ("motors-swapped:front-right,back-right", FRONT_RIGHT | BACK_RIGHT),
+        ("encoders-swapped:front-right,back-left", FRONT_RIGHT | BACK_LEFT),
+        ("missing:motor-back-left", BACK_LEFT),
+        ("strap-wrong:back-left", DeviceFault.BRIDGE_BACK_LEFT),
+        ("imu-strap", DeviceFault.IMU),
+    ],
+)
+def test_a_mistake_delays_no_tick_and_stops_no_sound_fin(
+    robot: Robot, mistake: str, faults: DeviceFault
+) -> None:
+    robot.board.mistake(mistake)
+    statuses = all_of(robot.converse(2.5, DOWN), Status)
+    assert statuses[-1].faults == faults
+    assert_untroubled(robot, statuses)
+
+
+def test_a_brown_out_stops_the_fins_at_once_and_the_board_comes_back(robot: Robot) -> None:
+    before = last(robot.heard, Status)
+    for lost, cause in ((0.0, ResetCause.EXTERNAL), (0.5, ResetCause.POWER_ON)):
+        robot.board.brown_out(lost)
+        assert not robot.board.fins().powered
+        robot.listen(0.5)
+        assert not robot.board.fins().powered
+        robot.greet()
+        status = robot.status()
+        assert not status.flags & (StatusFlag.ARMED | StatusFlag.MOTOR_POWER)
+        assert status.epoch == before.epoch + 1
+        assert (status.faults, status.reset_cause) == (0, cause)
+        before = status
+        robot.arm()
+        robot.converse(0.5, DOWN)
     assert robot.board.stats()["watchdog_resets"] == 0
 
 
-@pytest.mark.parametrize("kind", ["refused", "stretched"])
+def test_a_brown_out_under_water_shows_the_depth_or_begins_anew_but_nothing_else(robot: Robot) -> None:
+    """The surface's pressure in the memory may be damaged."""
+    depths = set()
+    for _ in range(10):
+        robot.board.sense(STILL_WATER)
+        robot.board.brown_out(1.0)
+        robot.listen(1.0)  # at the surface, whose pressure it takes as zero depth
+        robot.board.sense(STILL_WATER._replace(pressure=STILL_WATER.pressure + 1.5 * 9810))
+        robot.board.brown_out(0.2)
+        robot.listen(0.5)
+        robot.greet()
+        depths.add(round(last(robot.listen(0.5), Depth).depth, 2))
+    assert depths <= {0.0, 1.5}
+
+
+@pytest.mark.parametrize("kind", ["refused", "stretched", "contested"])
 def test_fins_stop_in_time_on_a_bus_that_misbehaves(robot: Robot, kind: FaultKind) -> None:
     """The motor power goes by a pin of its own, whatever the bus does."""
     robot.board.fault("i2c", kind)

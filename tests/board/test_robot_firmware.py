@@ -25,6 +25,7 @@ from robot_runtime.contract.packets import (
     StatusFlag,
 )
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER
+from robot_runtime.simulation.boards.mistakes import FINS
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.host import Robot, all_of, last, start
@@ -285,10 +286,12 @@ def test_an_absent_device_shows_and_heals(robot: Robot, device: str, fault: Devi
     assert last(robot.listen(0.6), Status).faults == 0
 
 
-@pytest.mark.parametrize("device", [f"{part}{fin}" for part in ("bridge", "encoder") for fin in range(4)])
-def test_a_fin_with_swapped_leads_or_encoder_is_stopped_within_300_ms(robot: Robot, device: str) -> None:
-    fin = int(device[-1])
-    robot.board.fault(device, "reversed")
+@pytest.mark.parametrize("fin", range(4))
+@pytest.mark.parametrize("mistake", ["leads-reversed", "encoder-reversed"])
+def test_a_fin_with_swapped_leads_or_encoder_is_stopped_within_300_ms(
+    robot: Robot, mistake: str, fin: int
+) -> None:
+    robot.board.mistake(f"{mistake}:{FINS[fin]}")
     robot.arm()
     motors = all_of(robot.converse(1.5, DOWN), Motor)
     driven = [one.time for one in motors if one.drive[fin]]
@@ -308,6 +311,19 @@ def test_no_sound_fin_is_stopped_by_any_command(robot: Robot, gain: float, frequ
     for command in (*COMMANDS, *COMMANDS[::5]):
         robot.converse(0.7, command)
         assert robot.status().faults == 0
+
+
+def test_no_sound_fin_with_imperfect_parts_is_stopped(robot: Robot) -> None:
+    numbers = {one.name: number for number, one in enumerate(CHIP_PARAMETERS)}
+    for mistake in ("encoder-noise:3", "backlash:0.1", "pack-resistance:0.5"):
+        robot.board.mistake(mistake)
+    robot.arm()
+    for gain, frequency in ((0.3, 0.3), (1.2, 2.0)):
+        for name, value in (("fins.gain", gain), ("fins.frequency", frequency)):
+            robot.send(Parameter(number=numbers[name], value=value))
+        for command in COMMANDS[:6]:
+            robot.converse(0.7, command)
+            assert robot.status().faults == 0
 
 
 def test_an_absent_bridge_shows_while_it_has_power(robot: Robot) -> None:

@@ -181,4 +181,6 @@ def test_attitude_stays_a_unit_quaternion(
 
 @given(counts=st.integers(0, 1023))
 def test_battery_is_twice_the_converters_voltage(firmware: ctypes.CDLL, counts: int) -> None:
-    assert firmware.firmware_battery_millivolts(counts) == pytest.approx(counts / 1023 * 10000, abs=0.5)
+    assert firmware.firmware_battery_millivolts(counts, 10000) == pytest.approx(
+        counts / 1023 * 10000, abs=0.5
+    )

@@ -18,6 +18,7 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.contract.calibration import EMULATED
 from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     Debug,
@@ -27,6 +28,7 @@ from robot_runtime.contract.packets import (
     Navigation,
     Packet,
     Parameter,
+    RequestCalibration,
     Start,
     Status,
     StatusFlag,
@@ -100,6 +102,8 @@ class Board:
             self.end.say(Debug(time=_micros(), level=1, text="armed"))
         elif type_ == Stop.type:
             self._armed = False
+        elif type_ == RequestCalibration.type:
+            self.end.say(EMULATED.packet())
         elif type_ == Parameter.type and not self.deaf_to_parameters:
             self.end.say(Parameter.from_bytes(payload))
 

@@ -4,9 +4,11 @@ Most requests are valid, and about something that is there: their answer is the 
 are exceptions, each with its reason in `because` and its own words, which no router and no guard says.
 """
 
-from dataclasses import dataclass, field
+import json
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from robot_runtime.contract.calibration import EMULATED
 from robot_runtime.contract.vision_settings import VisionSettings
 from server.platform.settings import Settings
 
@@ -17,6 +19,7 @@ STARTS = "It would start a process each time."
 CODE = "a new code"
 OPERATOR_CODE = "a new operator's code"
 """In a body: codes that the shell has just made."""
+CALIBRATION = json.loads(json.dumps(asdict(EMULATED)))
 NEW_NAME = "a new name"
 """In a body: a name that nobody has."""
 
@@ -77,6 +80,9 @@ PROBES: dict[tuple[str, str], Probe] = {
     ("POST", "/api/robot/commands/arm"): Probe(204),
     ("POST", "/api/robot/commands/mode"): Probe(204, {"mode": "manual"}),
     ("POST", "/api/robot/commands/check_fins"): Probe(204),
+    ("POST", "/api/robot/commands/calibrate"): Probe(204, {"values": CALIBRATION}),
+    ("POST", "/api/robot/commands/measure_gyro"): Probe(204),
+    ("POST", "/api/robot/commands/zero_depth"): Probe(204),
     ("POST", "/api/robot/commands/loop"): Probe(body={"name": "depth", "on": False}),
     ("POST", "/api/robot/commands/parameters"): Probe(body={"values": {"depth.set_point": 1.0}}),
     ("POST", "/api/robot/commands/vision_settings"): Probe(body=VisionSettings().table()),

@@ -14,6 +14,7 @@ import httpx
 import psutil
 import pytest
 
+from robot_runtime.simulation.boards.mistakes import write_list
 from server import VERSION, cli
 from server.platform.folder_lock import runner_of
 from server.platform.pidfile import pid_file, running_parts
@@ -164,6 +165,16 @@ def test_an_impossible_start_is_refused_in_one_line(settings: Settings, tmp_path
     assert not long.exists()
     assert_refused(mucat("run", "--port", "70000", *data, *good), "70000")
     assert_refused(mucat("run", "--host", "203.0.113.1", *data, *good), "203.0.113.1")
+    bad.write_text('[robot]\nmode = "robot"\n')
+    real = mucat("run", *data, "--config", str(bad), "--mistake", "imu-strap")
+    assert_refused(real, "--mistake is for the emulated board")
+    unknown = mucat("run", *data, *good, "--mistake", "imu")
+    assert (unknown.returncode, "there is no mistake 'imu'; there are" in unknown.stderr) == (2, True)
+
+
+def test_the_help_lists_the_mistakes() -> None:
+    listed = mucat("run", "--help").stdout
+    assert all(f"  {line}\n" in listed for line in write_list())
 
 
 def assert_refused(result: subprocess.CompletedProcess[str], words: str) -> None:

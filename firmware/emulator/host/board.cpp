@@ -2,6 +2,9 @@
 #include "board.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "calibration.gen.h"
 
 namespace mucat {
 namespace host {
@@ -11,8 +14,6 @@ Board* current;
 namespace {
 
 constexpr uint64_t kTickUs = 10000;
-constexpr double kFullScaleVolts = 5;
-constexpr double kBatteryDivider = 2;  // two equal resistors
 constexpr uint16_t kCountsMax = 1023;
 constexpr size_t kPortBytesMax = 4096;  // as much as Linux buffers for a serial port
 
@@ -20,7 +21,10 @@ double seconds(const void* owner) { return static_cast<const Board*>(owner)->now
 
 }  // namespace
 
-Board::Board() { devices_create(&parts, {seconds, this}); }
+Board::Board() {
+  devices_create(&parts, {seconds, this});
+  memcpy(kept, calibration_record, sizeof calibration_record);
+}
 
 void Board::reset(ResetCause why) {
   current = this;
@@ -100,16 +104,21 @@ void write_line(const uint8_t* bytes, uint8_t size) {
 
 uint16_t bytes_lost() { return current->bytes_lost; }
 
+// Several devices at one address all take what is written, and of what they send every 0 wins.
 bool exchange_i2c(uint8_t address, const uint8_t* out, uint8_t out_size, uint8_t* in, uint8_t in_size) {
+  bool answered = false;
   for (const i2c_device& device : current->parts.i2c) {
     if (device.address != address) continue;
-    if (out_size && !device.start(device.device)) return false;
+    if (out_size && !device.start(device.device)) continue;
     for (uint8_t i = 0; i < out_size; ++i) device.write(device.device, i, out[i]);
-    if (in_size && !device.start(device.device)) return false;
-    for (uint8_t i = 0; i < in_size; ++i) in[i] = device.read(device.device);
-    return true;
+    if (in_size && !device.start(device.device)) continue;
+    for (uint8_t i = 0; i < in_size; ++i) {
+      const uint8_t byte = device.read(device.device);
+      in[i] = answered ? in[i] & byte : byte;
+    }
+    answered = true;
   }
-  return false;
+  return answered;
 }
 
 void read_encoder(uint8_t fin, uint8_t (&bytes)[kEncoderBytes]) {
@@ -120,16 +129,22 @@ void read_encoder(uint8_t fin, uint8_t (&bytes)[kEncoderBytes]) {
 }
 
 void start_battery() {
-  const double volts = current->parts.surroundings.battery / host::kBatteryDivider;
-  const double counts = floor(volts / host::kFullScaleVolts * host::kCountsMax);
-  current->battery_counts = static_cast<uint16_t>(fmin(counts, host::kCountsMax));
+  current->battery_counts = static_cast<uint16_t>(host::kCountsMax * devices_battery(&current->parts));
 }
 
 uint16_t take_battery() { return current->battery_counts; }
 
-bool beacon_right() { return current->parts.surroundings.beacon_right; }
+bool beacon_right() {
+  bool levels[2];
+  devices_beacons(&current->parts, levels);
+  return levels[0];
+}
 
-bool beacon_left() { return current->parts.surroundings.beacon_left; }
+bool beacon_left() {
+  bool levels[2];
+  devices_beacons(&current->parts, levels);
+  return levels[1];
+}
 
 void set_led(bool on) { current->led = on; }
 
@@ -139,6 +154,10 @@ uint16_t next_epoch() {
   if (++current->epoch == 0) current->epoch = 1;
   return current->epoch;
 }
+
+void read_kept(void* bytes, uint8_t size) { memcpy(bytes, current->kept, size); }
+
+void write_kept(uint8_t index, uint8_t byte) { current->kept[index] = byte; }
 
 RetainedMemory& retained_memory() { return current->retained; }
 

@@ -4,6 +4,10 @@
 
 #include "board.h"
 
+extern "C" {
+#include "mistakes.h"
+}
+
 using mucat::host::Board;
 using mucat::host::Wire;
 
@@ -61,6 +65,14 @@ bool board_sense(Board* board, const double* numbers) {
 
 bool board_fault(Board* board, const char* device, const char* kind) {
   return devices_set_fault(&board->parts, device, kind);
+}
+
+// Adds a mistake of wiring or an imperfection of a part; false if there is none of this name.
+bool board_mistake(Board* board, const char* text) {
+  wiring changed = board->parts.wiring;
+  const bool known = mistakes_add(&changed, text);
+  if (known) devices_set_wiring(&board->parts, &changed);
+  return known;
 }
 
 void board_seed(Board* board, uint64_t seed) {

@@ -8,7 +8,8 @@ namespace mucat {
 
 constexpr float kPi = 3.14159265f;
 constexpr float kTickSeconds = 0.01f;
-constexpr uint16_t kFinPhase[kFinCount] = {0x8000, 0, 0, 0x8000};
+// The front fins flap against the back fins.
+inline uint16_t fin_phase(uint8_t fin) { return at_front(fin) ? 0x8000 : 0; }
 
 // The largest stroke fades to rest in 120 ms: fins that begin to stop 250 ms after the last command rest by
 // 500 ms, for all parameter values.

@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "board/board.h"
-#include "fins/calibration.h"
 #include "sensors/as5040.h"
 #include "sensors/drv8830.h"
 
@@ -45,19 +44,19 @@ void Fins::step(Motion motion, const Parameters& parameters) {
   const float turn = parameters.value(kFinsTurnRate) * kTickSeconds;
   const int16_t gain = gain_from_thousandths(parameters[kFinsGain]);
   for (uint8_t i = 0; i < kFinCount; ++i) {
-    set_points_[i] = laws_[i].step(demand(i), phase_ + kFinPhase[i], turn);
+    set_points_[i] = laws_[i].step(demand(i), phase_ + fin_phase(i), turn);
     drive(i, find_drive(i, gain));
   }
   read_bridge_faults();
 }
 
 int8_t Fins::find_drive(uint8_t fin, int16_t gain) {
-  const FinCalibration& calibration = kFinCalibration[fin];
+  const FinCalibration calibration = fin_calibration(calibration_, fin);
   DriveWatch& watch = watches_[fin];
   const uint8_t bit = 1 << fin;
   // While its encoder or its H-bridge fails, what a fin does says nothing about its motor.
   if (!((encoder_faults_ | silent_bridges_) & bit)) {
-    watch.step(drives_[fin], calibration.encoder_sign * wrap_counts(counts_[fin] - counts_before_[fin]));
+    watch.step(drives_[fin], calibration.drive_sign * wrap_counts(counts_[fin] - counts_before_[fin]));
   }
   if (encoder_faults_ & bit || watch.failed()) return 0;
   return loops_[fin].step(calibration, counts_from_angle(calibration, set_points_[fin]), counts_[fin], gain);
@@ -78,7 +77,7 @@ void Fins::read_encoders() {
     const bool valid = field != MagneticField::kUnusable;
     assign(&encoder_faults_, i, !valid);
     assign(&yellow_fields_, i, field == MagneticField::kYellow);
-    if (valid) angles_[i] = angle_from_counts(kFinCalibration[i], counts_[i]);
+    if (valid) angles_[i] = angle_from_counts(fin_calibration(calibration_, i), counts_[i]);
   }
 }
 

@@ -19,6 +19,7 @@ enum class Motion : uint8_t {
 
 class Fins {
  public:
+  explicit Fins(const Calibration& calibration) : calibration_(calibration) {}
   // Sets all drives to 0; they may still run from before the start.
   void start();
   // The newest command counts. It is mixed at the next tick, because mixing takes 1.5 ms.
@@ -46,6 +47,7 @@ class Fins {
   void drive(uint8_t fin, int8_t drive);
   FinDemand demand(uint8_t fin) const;
 
+  const Calibration& calibration_;
   Navigation command_ = {};
   bool mixed_ = true;
   FinDemand demands_[kFinCount] = {};

@@ -5,26 +5,8 @@
 namespace mucat {
 namespace {
 
-// Place of a fin, and direction of its push when it points along its mount; signs in body axes.
-struct FinMount {
-  int8_t forward;       // 1 at the front
-  int8_t right;         // 1 on the right
-  int8_t pushes_right;  // the push has a part to the right
-  int8_t turns_right;   // the push turns the robot to the right: the sign of its moment about the down axis
-};
-
-constexpr FinMount kMounts[kFinCount] = {
-    {1, 1, -1, -1},
-    {-1, 1, -1, 1},
-    {-1, -1, 1, -1},
-    {1, -1, 1, 1},
-};
-
-// The part of `command` that a fin whose push has this sign can give without turning round.
-float share(int8_t command, int8_t sign) {
-  const int16_t demand = static_cast<int16_t>(command) * sign;
-  return demand > 0 ? demand : 0;
-}
+// A fin pushes one way without turning round.
+int16_t share(int16_t command) { return command > 0 ? command : 0; }
 
 }  // namespace
 
@@ -35,11 +17,15 @@ void mix(const Navigation& command, float amplitude, FinDemand (&demands)[kFinCo
   float length[kFinCount];
   float largest = kFull;
   for (uint8_t i = 0; i < kFinCount; ++i) {
-    const FinMount& mount = kMounts[i];
-    along[i] = share(command.x, mount.forward) + share(command.y, mount.pushes_right) +
-               static_cast<float>(command.yaw) * mount.turns_right;
-    down[i] = static_cast<float>(command.z) + static_cast<float>(command.roll) * mount.right -
-              static_cast<float>(command.pitch) * mount.forward;
+    const bool front = at_front(i);
+    const bool right = on_right(i);
+    // Along its mount a fin pushes inwards; a front right or a back left one turns the robot to the left by it.
+    const int16_t forwards = front ? command.x : -command.x;
+    const int16_t inwards = right ? -command.y : command.y;
+    const int16_t turn = front == right ? -command.yaw : command.yaw;
+    const int16_t tilt = (right ? command.roll : -command.roll) - (front ? command.pitch : -command.pitch);
+    along[i] = share(forwards) + share(inwards) + turn;
+    down[i] = command.z + tilt;
     length[i] = sqrtf(along[i] * along[i] + down[i] * down[i]);
     if (length[i] > largest) largest = length[i];
   }

@@ -4,9 +4,14 @@
 // up and at 180° against its mount. So each fin's share is a vector in the plane in which it turns: along its
 // mount and down. The vector's direction is the fin's zero direction, its length the fin's amplitude.
 #pragma once
+#include <stdint.h>
+
 #include "packets.gen.h"
 
 namespace mucat {
+
+inline bool at_front(uint8_t fin) { return fin == 0 || fin == 3; }
+inline bool on_right(uint8_t fin) { return fin < 2; }
 
 struct FinDemand {
   float direction;  // rad, the angle about which the fin flaps

@@ -19,6 +19,13 @@ int16_t magnitude(int16_t value) { return value < 0 ? -value : value; }
 
 }  // namespace
 
+FinCalibration fin_calibration(const Calibration& calibration, uint8_t fin) {
+  const uint8_t bit = 1 << fin;
+  return {static_cast<int16_t>(calibration.fin_zeros[fin]),
+          static_cast<int8_t>(calibration.encoders_reversed & bit ? -1 : 1),
+          static_cast<int8_t>(calibration.motors_reversed & bit ? -1 : 1)};
+}
+
 int16_t wrap_counts(int16_t counts) {
   return static_cast<int16_t>(static_cast<uint16_t>(counts + kCountsPerTurn / 2) % kCountsPerTurn) -
          kCountsPerTurn / 2;
@@ -26,16 +33,16 @@ int16_t wrap_counts(int16_t counts) {
 
 int16_t counts_from_angle(const FinCalibration& fin, float angle) {
   const int16_t turned = lroundf(angle * (kCountsPerTurn / (2 * kPi)));
-  return fin.zero + fin.encoder_sign * fin.rotation_sign * turned;
+  return fin.zero + fin.angle_sign * turned;
 }
 
 float angle_from_counts(const FinCalibration& fin, int16_t counts) {
-  const int16_t turned = wrap_counts(fin.encoder_sign * fin.rotation_sign * (counts - fin.zero));
+  const int16_t turned = wrap_counts(fin.angle_sign * (counts - fin.zero));
   return turned * (2 * kPi / kCountsPerTurn);
 }
 
 int8_t PositionLoop::step(const FinCalibration& fin, int16_t set_point, int16_t measured, int16_t gain) {
-  const int16_t error = fin.encoder_sign * wrap_counts(set_point - measured);
+  const int16_t error = fin.drive_sign * wrap_counts(set_point - measured);
   const int16_t change = restarted_ ? 0 : wrap_counts(error - last_error_);
   last_error_ = error;
   restarted_ = false;

@@ -2,7 +2,7 @@
 #pragma once
 #include <stdint.h>
 
-#include "fins/calibration.h"
+#include "packets.gen.h"
 
 namespace mucat {
 
@@ -12,6 +12,14 @@ constexpr int8_t kDriveMax = 40;
 // Gain of one drive step for each count of error.
 constexpr int16_t kGainUnit = 256;
 inline int16_t gain_from_thousandths(uint16_t gain) { return gain * 32 / 125; }
+
+// A fin's part of the calibration.
+struct FinCalibration {
+  int16_t zero;        // encoder counts when the fin points along its mount
+  int8_t angle_sign;   // of the fin's angle per count
+  int8_t drive_sign;   // of counts per drive
+};
+FinCalibration fin_calibration(const Calibration& calibration, uint8_t fin);
 
 // The same position within -512 to 511.
 int16_t wrap_counts(int16_t counts);

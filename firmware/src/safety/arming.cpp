@@ -22,6 +22,8 @@ FlashText describe(Refusal refusal) {
       return FLASH_TEXT("no steady traffic yet");
     case Refusal::kBattery:
       return FLASH_TEXT("battery is low");
+    case Refusal::kCalibration:
+      return FLASH_TEXT("not calibrated: ");
     case Refusal::kNone:
       break;
   }
@@ -73,17 +75,18 @@ Disarming Arming::tick(uint32_t now_ms) {
   return disarm(Disarming::kSilence);
 }
 
-Refusal Arming::refusal(const Start& start, uint32_t now_ms) const {
+Refusal Arming::refusal(const Start& start, bool calibrated, uint32_t now_ms) const {
   if (!greeted_) return Refusal::kNoHello;
   if (!agreed_) return Refusal::kDefinitions;
   if (start.epoch != epoch_) return Refusal::kEpoch;
   if (now_ms - steady_since_ms_ < kTrafficMs) return Refusal::kTraffic;
   if (battery_failed_) return Refusal::kBattery;
+  if (!calibrated) return Refusal::kCalibration;
   return Refusal::kNone;
 }
 
-Refusal Arming::start(const Start& start, uint32_t now_ms) {
-  const Refusal reason = refusal(start, now_ms);
+Refusal Arming::start(const Start& start, bool calibrated, uint32_t now_ms) {
+  const Refusal reason = refusal(start, calibrated, now_ms);
   if (reason == Refusal::kNone) armed_ = true;
   return reason;
 }

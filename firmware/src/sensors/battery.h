@@ -4,8 +4,9 @@
 
 namespace mucat {
 
-// mV from the converter's counts (0 to 1023 for 5 V) behind a divider of two equal resistors.
-uint16_t battery_millivolts(uint16_t counts);
+// mV from the converter's counts (0 to 1023 for 5 V) behind a divider of two equal resistors, times `factor`
+// in ten-thousandths.
+uint16_t battery_millivolts(uint16_t counts, uint16_t factor);
 
 // Alarm after 20 s below a voltage. It stays until the next reset, because a flat battery recovers without
 // load.

@@ -5,13 +5,13 @@
 namespace mucat {
 namespace {
 
-// Pa per m: fresh water of 1000 kg/m³, 9.81 m/s².
-constexpr int32_t kPressurePerMetre = 9810;
+// cm/s².
+constexpr int32_t kGravity = 981;
 // Pa: range of air pressure, from a high mountain to a strong high.
 constexpr int32_t kSurfaceMin = 50000;
 constexpr int32_t kSurfaceMax = 120000;
-// Pa: 32 m, the limit of a depth of 16 bits.
-constexpr int32_t kAboveMax = 32 * kPressurePerMetre;
+// m: the limit of a depth of 16 bits.
+constexpr int32_t kDepthMax = 32;
 
 bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <= kSurfaceMax; }
 
@@ -34,12 +34,18 @@ void Surface::add(int32_t pressure) {
   board::retained_memory().complement = ~static_cast<uint32_t>(pressure_);
 }
 
-int16_t Surface::depth(int32_t pressure) const {
+void Surface::forget() {
+  pressure_ = 0;
+  readings_ = 0;
+}
+
+int16_t Surface::depth(int32_t pressure, uint16_t density) const {
   const int32_t above = pressure - pressure_;
-  if (above >= kAboveMax) return INT16_MAX;
-  if (above <= -kAboveMax) return INT16_MIN;
-  const int32_t half = kPressurePerMetre / 2;
-  return (above * 1000 + (above < 0 ? -half : half)) / kPressurePerMetre;
+  const int32_t per_metre = density * kGravity / 100;
+  if (above >= kDepthMax * per_metre) return INT16_MAX;
+  if (above <= -kDepthMax * per_metre) return INT16_MIN;
+  const int32_t half = per_metre / 2;
+  return (above * 1000 + (above < 0 ? -half : half)) / per_metre;
 }
 
 }  // namespace mucat

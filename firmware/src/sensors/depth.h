@@ -14,8 +14,10 @@ class Surface {
   // Adds a reading (Pa) at the surface, until the surface is known. The last one stores the mean in memory
   // that survives a reset.
   void add(int32_t pressure);
-  // Depth in mm, downwards; only once the surface is known.
-  int16_t depth(int32_t pressure) const;
+  // Depth in mm, downwards, in water of this density (kg/m³); only once the surface is known.
+  int16_t depth(int32_t pressure, uint16_t density) const;
+  // It is measured anew.
+  void forget();
 
  private:
   static constexpr uint8_t kReadings = 16;

@@ -11,6 +11,15 @@ namespace {
 constexpr float kUnitCounts = 16384.0f;
 constexpr uint8_t kBatteryTicks = 10;
 
+// The chip's reading along one of its axes, as the calibration numbers them.
+int32_t along(int8_t axis, const int16_t (&chip)[3]) {
+  return axis < 0 ? -static_cast<int32_t>(chip[-axis - 1]) : chip[axis - 1];
+}
+
+int16_t limited(int32_t value) {
+  return value > INT16_MAX ? INT16_MAX : value < INT16_MIN ? INT16_MIN : value;
+}
+
 }  // namespace
 
 void Sensors::step(uint8_t ticks, bool at_surface) {
@@ -21,12 +30,16 @@ void Sensors::step(uint8_t ticks, bool at_surface) {
 
 void Sensors::read_imu(uint8_t ticks) {
   const uint32_t now = board::microseconds();
-  if (!imu_.step(&imu_reading_)) return;
+  ImuReading chip;
+  if (!imu_.step(&chip)) return;
   imu_time_ = now;
   imu_fresh_ = true;
   float rate[3];
   float force[3];
   for (uint8_t axis = 0; axis < 3; ++axis) {
+    const int8_t from = calibration_.axes[axis];
+    imu_reading_.rate[axis] = limited(along(from, chip.rate) - calibration_.gyro_bias[axis]);
+    imu_reading_.force[axis] = limited(along(from, chip.force));
     rate[axis] = imu_reading_.rate[axis] * kRadiansPerSecondPerCount;
     force[axis] = imu_reading_.force[axis] * kGPerCount;
   }
@@ -44,7 +57,9 @@ void Sensors::read_pressure(bool at_surface) {
 // The converter runs from one tick to the next, ten times a second.
 void Sensors::read_battery() {
   if (battery_tick_ == 0) board::start_battery();
-  if (battery_tick_ == 1) battery_millivolts_ = mucat::battery_millivolts(board::take_battery());
+  if (battery_tick_ == 1) {
+    battery_millivolts_ = mucat::battery_millivolts(board::take_battery(), calibration_.battery_factor);
+  }
   battery_tick_ = (battery_tick_ + 1) % kBatteryTicks;
 }
 
@@ -60,20 +75,20 @@ bool Sensors::take(Imu* packet) {
   return true;
 }
 
-bool Sensors::take(Depth* packet) {
+bool Sensors::take(Depth* packet, uint16_t density) {
   if (!depth_fresh_) return false;
   depth_fresh_ = false;
   packet->time = pressure_time_;
-  packet->depth = surface_.depth(pressure_reading_.pressure);
-  packet->pressure = pressure_reading_.pressure;
+  packet->depth = surface_.depth(pressure_reading_.pressure, density);
+  packet->pressure = pressure_reading_.pressure - calibration_.pressure_offset;
   packet->temperature = pressure_reading_.temperature;
   return true;
 }
 
 void Sensors::read(Beacon* packet) const {
   packet->time = board::microseconds();
-  packet->right = board::beacon_right();
-  packet->left = board::beacon_left();
+  packet->right = board::beacon_right() != calibration_.beacons_inverted;
+  packet->left = board::beacon_left() != calibration_.beacons_inverted;
 }
 
 uint8_t Sensors::faults() const {

@@ -13,15 +13,18 @@ namespace mucat {
 
 class Sensors {
  public:
+  explicit Sensors(const Calibration& calibration) : calibration_(calibration) {}
   void start() { surface_.start(); }
   // Call every tick; `ticks` have passed since the last call. The surface is measured only while
   // `at_surface`.
   void step(uint8_t ticks, bool at_surface);
 
-  // Takes the newest reading; false if there is no new one.
+  // Takes the newest reading; false if there is no new one. The water's density is in kg/m³.
   bool take(Imu* packet);
-  bool take(Depth* packet);
+  bool take(Depth* packet, uint16_t density);
   void read(Beacon* packet) const;
+  // The surface is measured anew.
+  void zero_depth() { surface_.forget(); }
 
   uint16_t battery_millivolts() const { return battery_millivolts_; }
   uint8_t imu_identity() const { return imu_.identity(); }
@@ -33,6 +36,7 @@ class Sensors {
   void read_pressure(bool at_surface);
   void read_battery();
 
+  const Calibration& calibration_;
   Mpu6050 imu_;
   Attitude attitude_;
   ImuReading imu_reading_ = {};

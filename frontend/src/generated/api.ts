@@ -1149,6 +1149,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/robot/commands/calibrate": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Stores a calibration in the board. It is refused while the robot is armed
+         * @description Stores a calibration in the board. It is refused while the robot is armed.
+         */
+        post: operations["commandCalibrate"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robot/commands/card": {
         parameters: {
             query?: never;
@@ -1203,6 +1223,26 @@ export interface paths {
          * @description Changes one control loop: all of it or nothing. What is left out stays as it is.
          */
         post: operations["commandLoop"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/robot/commands/measure_gyro": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Measures the gyroscope's offset for three seconds at rest, and stores it. An event tells the result
+         * @description Measures the gyroscope's offset for three seconds at rest, and stores it. An event tells the result.
+         */
+        post: operations["commandMeasureGyro"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1283,6 +1323,26 @@ export interface paths {
          * @description Replaces all settings of the vision node, also for later starts. None may be left out.
          */
         post: operations["commandVisionSettings"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/robot/commands/zero_depth": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Takes the pressure now for the surface's. It is refused while the robot is armed
+         * @description Takes the pressure now for the surface's. It is refused while the robot is armed.
+         */
+        post: operations["commandZeroDepth"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2169,6 +2229,87 @@ export interface components {
             text?: string | null;
             /** Time */
             time?: number | null;
+        };
+        /**
+         * CalibrateCommand
+         * @description Stores a calibration in the board. It is refused while the robot is armed.
+         */
+        CalibrateCommand: {
+            values: components["schemas"]["CalibrationValues"];
+        };
+        /**
+         * CalibrationValues
+         * @description A robot's calibration as its board keeps it. Fins: front right, back right, back left, front left.
+         */
+        CalibrationValues: {
+            /**
+             * Axes
+             * @description the IMU chip's axes that point forward, right, down; -: away from it
+             */
+            axes: [
+                "x" | "-x" | "y" | "-y" | "z" | "-z",
+                "x" | "-x" | "y" | "-y" | "z" | "-z",
+                "x" | "-x" | "y" | "-y" | "z" | "-z"
+            ];
+            /**
+             * Battery Factor
+             * @description the battery's true voltage over the measured one
+             */
+            battery_factor: number;
+            /**
+             * Beacons Inverted
+             * @description whether a detector's pin is low while it sees the beacon
+             */
+            beacons_inverted: boolean;
+            /**
+             * Done
+             * @description the steps that are done
+             */
+            done: ("fins" | "motors" | "axes" | "gyro" | "pressure" | "battery" | "beacons")[];
+            /**
+             * Encoders Reversed
+             * @description whether the counts fall as the fin's tip goes down
+             */
+            encoders_reversed: [
+                boolean,
+                boolean,
+                boolean,
+                boolean
+            ];
+            /**
+             * Fin Zeros
+             * @description encoder counts, 1024 a turn, where each fin points along its mount
+             */
+            fin_zeros: [
+                number,
+                number,
+                number,
+                number
+            ];
+            /**
+             * Gyro Bias
+             * @description rad/s, measured at rest; forward, right, down
+             */
+            gyro_bias: [
+                number,
+                number,
+                number
+            ];
+            /**
+             * Motors Reversed
+             * @description whether the counts fall at positive drive
+             */
+            motors_reversed: [
+                boolean,
+                boolean,
+                boolean,
+                boolean
+            ];
+            /**
+             * Pressure Offset
+             * @description Pa that the sensor shows too much
+             */
+            pressure_offset: number;
         };
         /**
          * CallerDetails
@@ -3447,6 +3588,11 @@ export interface components {
             /** Token */
             token: string;
         };
+        /**
+         * MeasureGyroCommand
+         * @description Measures the gyroscope's offset for three seconds at rest, and stores it. An event tells the result.
+         */
+        MeasureGyroCommand: Record<string, never>;
         /**
          * MeasuredLimitCycle
          * @description Result of a relay experiment; medians over its cycles, values in the loop's unit.
@@ -5238,6 +5384,11 @@ export interface components {
             /** Text */
             text: string;
         };
+        /**
+         * ZeroDepthCommand
+         * @description Takes the pressure now for the surface's. It is refused while the robot is armed.
+         */
+        ZeroDepthCommand: Record<string, never>;
     };
     responses: never;
     parameters: never;
@@ -8342,6 +8493,73 @@ export interface operations {
             };
         };
     };
+    commandCalibrate: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CalibrateCommand"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     commandCard: {
         parameters: {
             query?: never;
@@ -8497,6 +8715,73 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Restored"];
                 };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    commandMeasureGyro: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["MeasureGyroCommand"] | null;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description The runtime refuses */
             409: {
@@ -8771,6 +9056,73 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Restored"];
                 };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    commandZeroDepth: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["ZeroDepthCommand"] | null;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description The runtime refuses */
             409: {

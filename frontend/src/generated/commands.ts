@@ -43,6 +43,17 @@ export interface ParametersCommand {
   partly?: boolean;
 }
 
+/** Stores a calibration in the board. It is refused while the robot is armed. */
+export interface CalibrateCommand {
+  values: CalibrationValues;
+}
+
+/** Measures the gyroscope's offset for three seconds at rest, and stores it. An event tells the result. */
+export type MeasureGyroCommand = Record<string, never>;
+
+/** Takes the pressure now for the surface's. It is refused while the robot is armed. */
+export type ZeroDepthCommand = Record<string, never>;
+
 /** Chooses the course while the robot holds its depth. */
 export interface SteeringCommand {
   /** none: stay; beacons: swim to the light that its detectors see */
@@ -80,6 +91,9 @@ export interface Commands {
   acknowledge: AcknowledgeCommand;
   loop: LoopCommand;
   parameters: ParametersCommand;
+  calibrate: CalibrateCommand;
+  measure_gyro: MeasureGyroCommand;
+  zero_depth: ZeroDepthCommand;
   steering: SteeringCommand;
   card: CardCommand;
   vision_settings: VisionSettingsCommand;

@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = 'cbf539b7';
+export const DEFINITIONS_HASH = '742c62b8';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -65,6 +65,16 @@ export const ResetCause = {
   EXTERNAL: 2,
   BROWN_OUT: 3,
   WATCHDOG: 4,
+} as const;
+
+export const CalibrationStep = {
+  FINS: 1,
+  MOTORS: 2,
+  AXES: 4,
+  GYRO: 8,
+  PRESSURE: 16,
+  BATTERY: 32,
+  BEACONS: 64,
 } as const;
 
 export const ROW_TOPICS = {
@@ -411,6 +421,7 @@ export const OTHER_TOPICS = {
   parameters: 21,
   experiment: 22,
   vision: 23,
+  calibration: 24,
   picture: 32,
   observer: 33,
   thumbnail: 34,
@@ -622,6 +633,26 @@ export interface VisionInForce {
   settings: VisionSettings;
 }
 
+/** A robot's calibration as its board keeps it. Fins: front right, back right, back left, front left. */
+export interface CalibrationValues {
+  done: 'fins' | 'motors' | 'axes' | 'gyro' | 'pressure' | 'battery' | 'beacons'[];
+  fin_zeros: [number, number, number, number];
+  encoders_reversed: [boolean, boolean, boolean, boolean];
+  motors_reversed: [boolean, boolean, boolean, boolean];
+  axes: ['x' | '-x' | 'y' | '-y' | 'z' | '-z', 'x' | '-x' | 'y' | '-y' | 'z' | '-z', 'x' | '-x' | 'y' | '-y' | 'z' | '-z'];
+  gyro_bias: [number, number, number];
+  pressure_offset: number;
+  battery_factor: number;
+  beacons_inverted: boolean;
+}
+
+/** The calibration that the board keeps; sent at every change and every ten seconds. */
+export interface CalibrationKept {
+  time: number;
+  values: CalibrationValues | null;
+  missing: string[];
+}
+
 export interface Documents {
   state: State;
   detection: Detection;
@@ -631,4 +662,5 @@ export interface Documents {
   parameters: Parameters;
   experiment: Experiment;
   vision: VisionInForce;
+  calibration: CalibrationKept;
 }

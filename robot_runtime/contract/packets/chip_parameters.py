@@ -30,5 +30,8 @@ CHIP_PARAMETERS: tuple[ChipParameter, ...] = (
     ChipParameter(
         "battery.alarm", 6.2, 6.2, 7.4, "V", "below it for 20 s the robot is stopped", while_armed=False
     ),
+    ChipParameter(
+        "water.density", 1.0, 0.99, 1.05, "kg/L", "1 for fresh water, 1.025 for the sea", while_armed=False
+    ),
 )
 """Each one's place is its number on the line."""

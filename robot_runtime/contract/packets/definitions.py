@@ -82,7 +82,25 @@ class ResetCause(IntEnum):
     WATCHDOG = 4
 
 
-ENUMERATIONS: tuple[type[IntEnum] | type[IntFlag], ...] = (DebugLevel, StatusFlag, DeviceFault, ResetCause)
+class CalibrationStep(IntFlag):
+    """The steps of a board's calibration, one bit each."""
+
+    FINS = 1
+    MOTORS = 2
+    AXES = 4
+    GYRO = 8
+    PRESSURE = 16
+    BATTERY = 32
+    BEACONS = 64
+
+
+ENUMERATIONS: tuple[type[IntEnum] | type[IntFlag], ...] = (
+    DebugLevel,
+    StatusFlag,
+    DeviceFault,
+    ResetCause,
+    CalibrationStep,
+)
 
 
 class TelemetryRate(NamedTuple):
@@ -306,6 +324,48 @@ class Parameter(Packet):
     value: Annotated[float, Wire("H", scale=0.001, meaning="in the parameter's own unit")]
 
 
+# What differs from robot to robot.
+
+
+@_packet(0x13, reliable=True)
+class Calibration(Packet):
+    """Host to board: the calibration to keep. Board to host, in answer: the one that it keeps in EEPROM.
+
+    A board arms only when every step is done. While it is armed it keeps what it has.
+    """
+
+    done: Annotated[int, Wire("B", meaning="see CalibrationStep")]
+    fin_zeros: Annotated[
+        tuple[int, int, int, int],
+        Wire("H", count=4, meaning="encoder counts, 1024 a turn, where the fin points along its mount"),
+    ]
+    encoders_reversed: Annotated[int, Wire("B", meaning="bit n: fin n's counts fall as its tip goes down")]
+    motors_reversed: Annotated[int, Wire("B", meaning="bit n: fin n's counts fall at positive drive")]
+    axes: Annotated[
+        tuple[int, int, int],
+        Wire("b", count=3, meaning="the chip's axes, 1 to 3, that point forward, right, down; -: away"),
+    ]
+    gyro_bias: Annotated[
+        tuple[float, float, float],
+        Wire(
+            "h", scale=0.00026632423, unit="rad/s", count=3, meaning="turn rate measured at rest, body axes"
+        ),
+    ]
+    pressure_offset: Annotated[int, Wire("h", unit="Pa", meaning="what the sensor shows too much")]
+    battery_factor: Annotated[float, Wire("H", scale=0.0001, meaning="true battery voltage over measured")]
+    beacons_inverted: Annotated[int, Wire("B", meaning="1: a detector's pin is low while it sees the beacon")]
+
+
+@_packet(0x14, reliable=True)
+class RequestCalibration(Packet):
+    """Host to board: asks for the calibration that it keeps."""
+
+
+@_packet(0x15, reliable=True)
+class ZeroDepth(Packet):
+    """Host to board: the pressure now is the surface's. Ignored while armed."""
+
+
 def encode(packet: Packet) -> bytes:
     """Type byte and payload. Raises LayoutError where a value cannot be written."""
     return bytes([packet.type]) + packet.to_bytes()
@@ -319,15 +379,17 @@ def decode(type_: int, payload: bytes | memoryview) -> Packet:
     return cls.from_bytes(payload)
 
 
+def describe_packet(cls: type[Packet]) -> str:
+    """A packet's type number and layout as a line of text."""
+    fields = [f"{name}:{wire.count}{wire.code}*{wire.scale!r}{wire.unit}" for name, wire in cls.wires.items()]
+    fields += [f"{cls.tail[0]}:text{cls.tail[1].max_bytes}"] if cls.tail else []
+    return f"{cls.type:02x} {cls.__name__} reliable={cls.reliable:d} " + " ".join(fields)
+
+
 def canonical() -> str:
     """The definitions that both ends must share, as text; they compare its hash."""
     lines = [f"fins {FIN_COUNT} frame {FRAME_BYTES_MAX} not_ready {NOT_READY}"]
-    for type_, cls in sorted(PACKETS.items()):
-        fields = [
-            f"{name}:{wire.count}{wire.code}*{wire.scale!r}{wire.unit}" for name, wire in cls.wires.items()
-        ]
-        fields += [f"{cls.tail[0]}:text{cls.tail[1].max_bytes}"] if cls.tail else []
-        lines.append(f"{type_:02x} {cls.__name__} reliable={cls.reliable:d} " + " ".join(fields))
+    lines += [describe_packet(cls) for _, cls in sorted(PACKETS.items())]
     lines += [
         f"{enum.__name__} " + " ".join(f"{one.name}={one.value}" for one in enum) for enum in ENUMERATIONS
     ]

@@ -21,6 +21,7 @@ from robot_runtime.experiments.scenario.events import (
     check_controller,
     read_event,
 )
+from robot_runtime.simulation.boards.mistakes import check_mistake
 from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Vector
 from robot_runtime.simulation.water.surroundings import (
     FLOATING,
@@ -126,12 +127,14 @@ class Scenario:
     trim: Trim | None = None
     craft: Literal["default", "robot"] = "default"
     robot: SimulationParameters = field(default_factory=SimulationParameters)
+    mistakes: tuple[str, ...] = ()
+    """Of the board; see `simulation/boards/mistakes.py`."""
     control: ControlConfig = field(default_factory=ControlConfig)
     vision: VisionChoice = VisionChoice()
     events: tuple[TimedEvent, ...] = ()
 
     def __post_init__(self) -> None:
-        problems = [*self._words(), *self._water(), *self._events()]
+        problems = [*self._words(), *self._water(), *self._mistakes(), *self._events()]
         if problems:
             raise ConfigError(*problems)
 
@@ -169,6 +172,15 @@ class Scenario:
             check_controller("depth", self.control.controller, self.control.gains)
         except ValueError as problem:
             problems.append(TOP.field("control").sentence(str(problem)))
+        return problems
+
+    def _mistakes(self) -> list[EntryProblem]:
+        problems = []
+        for index, text in enumerate(self.mistakes):
+            try:
+                check_mistake(text)
+            except ValueError as problem:
+                problems.append(TOP.field("mistakes").item(index).sentence(str(problem)))
         return problems
 
     def _events(self) -> list[str]:

@@ -102,6 +102,8 @@ class ScenarioRig:
         self.robot = SimulatedRobot(scenario, self.clock, send, self._open_camera)
         self.board = make_board(self._advance_water)
         self.board.seed_line(scenario.seed)
+        for mistake in scenario.mistakes:
+            self.board.mistake(mistake)
         self.robot.link.attach(self.board.write)
 
     def __enter__(self) -> Self:

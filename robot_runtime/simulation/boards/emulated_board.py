@@ -111,6 +111,10 @@ class EmulatedBoard(SteppedBoard):
         """Sets or clears the fault of a device."""
         self._board.fault(device, kind)
 
+    def mistake(self, text: str) -> None:
+        """Adds a mistake of wiring, or an imperfection of a part."""
+        self._board.mistake(text)
+
     def line(self, command: str) -> None:
         """Sets a fault of the line by a command such as `line to_board cut on`."""
         self._board.command(command)

@@ -19,7 +19,7 @@ ANSWER_TIMEOUT = 60.0
 """s of real time for an answer; a `run` of many emulated seconds takes a while."""
 
 Water = Callable[[FinMotion], Reading]
-FaultKind = Literal["none", "absent", "stuck", "reversed", "weak", "tripped", "dip", "refused", "stretched"]
+FaultKind = Literal["none", "absent", "stuck", "weak", "tripped", "dip", "refused", "stretched", "contested"]
 """Not every device has each; see docs/reference/emulator.md."""
 LineDirection = Literal["to_board", "from_board"]
 LineFault = Literal["bit_errors", "drop", "double", "insert"]
@@ -104,6 +104,10 @@ class EmulatorClient:
         """Sets or clears the fault of a device (imu, pressure, encoder0-3, bridge0-3). Raises BoardError."""
         self.command(f"fault {device} {kind}")
 
+    def mistake(self, text: str) -> None:
+        """Adds a mistake of `mistakes.MISTAKES`, or removes all by `none`. Raises BoardError."""
+        self.command(f"mistake {text}")
+
     def disturb_line(self, direction: LineDirection, kind: LineFault, rate: float) -> None:
         """Sets the probability of a fault for each bit (bit_errors) or character. Raises BoardError."""
         self.command(f"line {direction} {kind} {rate!r}")
@@ -131,6 +135,13 @@ class EmulatorClient:
     def reset(self) -> None:
         """Pulls the reset pin."""
         self.command("reset")
+
+    def brown_out(self, lost: float) -> None:
+        """Resets the chip as a dip of its supply does; this share of its memory's bytes becomes random.
+
+        Raises BoardError if the share is not within 0 to 1.
+        """
+        self.command(f"brownout {lost!r}")
 
     def power(self) -> None:
         """Switches the power off and on; flash memory and EEPROM keep their contents."""

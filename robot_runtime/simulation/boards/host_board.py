@@ -26,6 +26,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "board_fins": (None, c_void_p, _DOUBLES),
     "board_sense": (c_bool, c_void_p, _DOUBLES),
     "board_fault": (c_bool, c_void_p, c_char_p, c_char_p),
+    "board_mistake": (c_bool, c_void_p, c_char_p),
     "board_seed": (None, c_void_p, c_uint64),
     "board_disturb": (c_bool, c_void_p, c_int, c_char_p, c_char_p),
     "board_stall": (None, c_void_p, c_int, c_double),
@@ -72,6 +73,11 @@ class HostBoard(SteppedBoard):
         """Sets or clears the fault of a device."""
         if not self._library.board_fault(self._board, device.encode(), kind.encode()):
             raise BoardError(f"there is no device {device!r}, or no fault {kind!r}")
+
+    def mistake(self, text: str) -> None:
+        """Adds a mistake of wiring, or an imperfection of a part."""
+        if not self._library.board_mistake(self._board, text.encode()):
+            raise BoardError(f"there is no mistake {text!r}")
 
     def line(self, command: str) -> None:
         """Sets a fault of the line by a command such as `line to_board cut on`."""

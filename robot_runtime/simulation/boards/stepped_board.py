@@ -34,6 +34,10 @@ class SteppedBoard(ABC):
         """Sets or clears the fault of a device (imu, pressure, encoder0-3, bridge0-3). Raises BoardError."""
 
     @abstractmethod
+    def mistake(self, text: str) -> None:
+        """Adds a mistake of `mistakes.MISTAKES` from now on. Raises BoardError."""
+
+    @abstractmethod
     def line(self, command: str) -> None:
         """Sets a fault of the line by a command such as `line to_board cut on`. Raises BoardError."""
 

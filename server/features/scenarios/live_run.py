@@ -210,6 +210,8 @@ class LiveExecutor:
             SimulationParameters.of(self._settings.read_craft()),
         ):
             reasons.append("It changes the hull's parameters, which needs simulated time.")
+        if scenario.mistakes:
+            reasons.append("Its board has mistakes, which needs simulated time.")
         state = self._monitor.state() or {}
         rate = state.get("control_rate", scenario.control.rate)
         if rate != scenario.control.rate:

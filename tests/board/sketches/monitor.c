@@ -12,6 +12,7 @@
 uint8_t in_the_elf EEMEM __attribute__((used)) = 0x11;
 
 static uint8_t reset_cause __attribute__((section(".noinit")));
+static uint8_t filled[512] __attribute__((section(".noinit")));
 
 void keep_reset_cause(void) __attribute__((naked, used, section(".init3")));
 void keep_reset_cause(void) {
@@ -144,6 +145,13 @@ static void do_overflow(void) {
   put_word(ticks);
 }
 
+// -> bytes of the filled memory that are not as filled
+static void do_count(void) {
+  uint16_t lost = 0;
+  for (uint16_t i = 0; i < sizeof filled; i++) lost += filled[i] != (uint8_t)(i + (i >> 8));
+  put_word(lost);
+}
+
 static void do_command(uint8_t command) {
   switch (command) {
     case 'T':
@@ -172,6 +180,12 @@ static void do_command(uint8_t command) {
       break;
     case 'P':
       do_overflow();
+      break;
+    case 'W':
+      for (uint16_t i = 0; i < sizeof filled; i++) filled[i] = (uint8_t)(i + (i >> 8));
+      break;
+    case 'w':
+      do_count();
       break;
     case 'O':
       PORTC = serial_get();

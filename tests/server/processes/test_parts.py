@@ -388,6 +388,8 @@ def test_a_real_robot_runs_only_the_runtime_and_an_emulated_one_all_processes(se
     assert str(settings.build / "firmware/optiboot.hex") in commands["board"].arguments
     assert commands["runtime"].needs == (settings.data.board_tty,)
     assert str(settings.data.board_tty) in commands["runtime"].arguments
+    board = plan(replace(settings, mistakes=("imu-strap", "backlash:0.1")))[0].arguments
+    assert " ".join(board).endswith("--mistake imu-strap --mistake backlash:0.1")
     alone = plan(replace(settings, mode="robot"))[0].arguments
     assert "--port" not in alone
     assert "--server-lock" not in alone

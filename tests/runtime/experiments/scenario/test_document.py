@@ -130,6 +130,17 @@ def test_every_entry_is_parsed() -> None:
     assert all(one.words for one in scenario.events)
 
 
+def test_mistakes_of_the_board_are_checked_by_name() -> None:
+    whole = read_scenario('mistakes = ["imu-strap", "leads-reversed:back-left"]\n' + BARE)
+    assert whole.mistakes == ("imu-strap", "leads-reversed:back-left")
+    with pytest.raises(ConfigError) as refusal:
+        read_scenario('mistakes = ["imu-strap", "leads-reversed:left", "none"]\n' + BARE)
+    (first, second) = refusal.value.problems
+    assert (first.path, second.path) == (("mistakes", 1), ("mistakes", 2))
+    assert "is written leads-reversed:FIN" in first.text
+    assert "there is no mistake 'none'" in second.text
+
+
 def test_missing_entries_get_the_robot_s_defaults() -> None:
     scenario = read_scenario(BARE)
     assert (scenario.robot, scenario.trim, scenario.start.down) == (SimulationParameters(), None, None)

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.contract.packets import DeviceFault
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import AFTERWARDS, ScenarioRun
@@ -115,6 +116,15 @@ def test_arming_is_refused_while_a_sensor_fails() -> None:
     assert "At 2 s: Arm: refused." in told.ended["problem"]
     assert told.ended["state"] == "complete"
     assert "navigation" not in told.rows
+
+
+@pytest.mark.parametrize("board", ["host", "emulated"])
+def test_a_board_can_have_mistakes(board: str) -> None:
+    text = document(4, 'at = 1; do = "arm"')
+    told = perform('mistakes = ["leads-reversed:back-left", "beacons-inverted"]\n' + text, board)
+    faults = {status.faults for _, status in told.rows["status"]}
+    assert faults == {0, DeviceFault.TRACKING_BACK_LEFT}
+    assert all(beacon.right and beacon.left for beacon in told.between("beacon", 0.0, 1.0))
 
 
 def test_a_cut_line_stops_the_fins_and_disarms() -> None:

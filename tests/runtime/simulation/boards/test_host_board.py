@@ -8,6 +8,7 @@ import pytest
 
 from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
+    Beacon,
     DeviceFault,
     Hello,
     Imu,
@@ -83,6 +84,21 @@ def test_a_device_that_does_not_answer_is_reported_until_it_does(
     assert Status.from_bytes(rig.run(1.0)[Status.type][-1]).faults == fault
     rig.board.fault(device, "none")
     assert Status.from_bytes(rig.run(1.0)[Status.type][-1]).faults == 0
+
+
+def test_a_board_with_mistakes(rig: Rig) -> None:
+    rig.board.mistake("imu-strap")
+    rig.board.mistake("divider-wrong:0.9")
+    rig.board.mistake("beacons-swapped")
+    rig.reading = STILL_WATER._replace(beacon_right=True, battery=8.0)
+    said = rig.run(1.0)
+    status = Status.from_bytes(said[Status.type][-1])
+    assert status.faults == DeviceFault.IMU
+    assert status.battery == pytest.approx(7.2, abs=0.02)
+    beacon = Beacon.from_bytes(said[Beacon.type][-1])
+    assert (beacon.right, beacon.left) == (0, 1)
+    with pytest.raises(BoardError, match="there is no mistake 'imu'"):
+        rig.board.mistake("imu")
 
 
 def test_a_reset_is_another_boot(rig: Rig) -> None:

@@ -234,6 +234,8 @@ def test_after_a_kill_the_next_server_undoes_the_set_up(stack: Stack) -> None:
 def test_a_refusal_gives_the_reason(stack: Stack) -> None:
     hull = SHORT + "[robot]\nmass = 3.1\n"
     assert refusal(stack, hull) == "It changes the hull's parameters, which needs simulated time."
+    mistaken = 'mistakes = ["imu-strap"]\n' + SHORT
+    assert refusal(stack, mistaken) == "Its board has mistakes, which needs simulated time."
     fast = SHORT.replace("[control]", "[control]\nrate = 20")
     assert refusal(stack, fast).startswith("It needs control at 20 Hz; this robot's runs at 10 Hz")
     session = stack.api.post("/sessions", json={"name": "mine"}).json()["id"]

@@ -1,0 +1,269 @@
+"""Upper bound of the stack of a program for the ATmega328P, from the instructions of its ELF file.
+
+It follows every path of every function, so that it has library functions in assembler, and what link-time
+optimization makes of the source. What it cannot follow is an error, never a smaller bound: recursion,
+pointers to functions, a computed stack pointer.
+"""
+
+import re
+import subprocess
+from collections.abc import Collection
+from pathlib import Path
+from typing import NamedTuple
+
+VECTORS = 26
+_VECTOR_BYTES = 4
+_RETURN_ADDRESS = 2
+_DEPTHS_MAX = 8
+"""Different depths at one instruction; more are a loop that pushes."""
+_LINE = re.compile(r"^\s*([0-9a-f]+):\t((?:[0-9a-f]{2} )+)\s*\t(\S+)(?:\t([^;]*))?(?:;(.*))?$")
+_SYMBOL = re.compile(r"^([0-9a-f]+) <(.+)>:$")
+_TARGET = re.compile(r"0x([0-9a-f]+)")
+_SKIPS = {"cpse", "sbrc", "sbrs", "sbic", "sbis"}
+_FRAME_WRITES = {
+    "ldi",
+    "mov",
+    "movw",
+    "pop",
+    "add",
+    "adc",
+    "ld",
+    "ldd",
+    "lds",
+    "lpm",
+    "in",
+    "com",
+    "neg",
+    "inc",
+    "dec",
+}
+
+
+class StackBoundError(Exception):
+    """The stack has no bound that this module can find; the text says where and why."""
+
+
+class Instruction(NamedTuple):
+    """A decoded instruction."""
+
+    size: int
+    name: str
+    operands: tuple[str, ...]
+    target: int | None
+
+
+class _State(NamedTuple):
+    depth: int
+    """Bytes on the stack since the function's entry."""
+    frame: int | None
+    """Depth to which the frame pointer Y points; None: anywhere."""
+
+
+class _Program:
+    """The instructions and symbols of a program."""
+
+    def __init__(self, elf: Path) -> None:
+        listing = subprocess.run(["avr-objdump", "-d", str(elf)], capture_output=True, text=True, check=True)
+        self.code: dict[int, Instruction] = {}
+        self.names: dict[int, str] = {}
+        for line in listing.stdout.splitlines():
+            if symbol := _SYMBOL.match(line):
+                self.names[int(symbol[1], 16)] = symbol[2]
+            elif found := _LINE.match(line):
+                address, data, name, operands, comment = found.groups()
+                words = tuple(one.strip() for one in (operands or "").split(",") if one.strip())
+                target = _TARGET.search(comment or "")
+                self.code[int(address, 16)] = Instruction(
+                    len(data.split()), name, words, int(target[1], 16) if target else None
+                )
+        self.constructors = self._read_constructors(elf)
+
+    def find(self, name: str) -> int | None:
+        """The address of this symbol."""
+        return next((address for address, one in self.names.items() if one == name), None)
+
+    def place(self, address: int) -> str:
+        """The function at an address, and the address."""
+        starts = [one for one in self.names if one <= address]
+        return f"{self.names[max(starts)] if starts else '?'} at 0x{address:x}"
+
+    def _read_constructors(self, elf: Path) -> list[int]:
+        start, end = self._table("__ctors_start", elf), self._table("__ctors_end", elf)
+        if start == end:
+            return []
+        words = [self.code[at] for at in range(start, end, 2) if at in self.code]
+        if len(words) * 2 != end - start:
+            raise StackBoundError("the table of constructors cannot be read")
+        raw = subprocess.run(
+            ["avr-objdump", "-s", f"--start-address={start}", f"--stop-address={end}", str(elf)],
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        data = b"".join(
+            bytes.fromhex("".join(line.split()[1:5])[: 2 * (end - start)])
+            for line in raw.splitlines()
+            if re.match(r"^ [0-9a-f]{4,} ", line)
+        )
+        return [2 * int.from_bytes(data[at : at + 2], "little") for at in range(0, end - start, 2)]
+
+    def _table(self, name: str, elf: Path) -> int:
+        symbols = subprocess.run(["avr-nm", str(elf)], capture_output=True, text=True, check=True).stdout
+        return next(
+            (int(line.split()[0], 16) for line in symbols.splitlines() if line.split()[-1] == name), 0
+        )
+
+
+class _Bound:
+    """The deepest stack of each function."""
+
+    def __init__(self, program: _Program, once: Collection[str] = ()) -> None:
+        self._program = program
+        self._once = once
+        self._found: dict[int, int] = {}
+        self._open: list[int] = []
+        self._cut: set[int] = set()
+
+    def of(self, entry: int) -> int:
+        """Bytes below the function's return address. Raises StackBoundError."""
+        if entry in self._found:
+            return self._found[entry]
+        if entry in self._open:
+            self._check_cut(entry)
+            self._cut.add(entry)
+            return 0
+        self._open.append(entry)
+        deepest = self._follow(entry)
+        self._open.pop()
+        self._cut.discard(entry)
+        if not self._cut:  # otherwise it holds only for this caller
+            self._found[entry] = deepest
+        return deepest
+
+    def _check_cut(self, entry: int) -> None:
+        chain = [*self._open[self._open.index(entry) :], entry]
+        names = [self._program.place(one) for one in chain]
+        if not any(known in name for known in self._once for name in names):
+            raise StackBoundError(f"functions that call each other: {' -> '.join(names)}")
+
+    def _follow(self, entry: int) -> int:
+        deepest = 0
+        waiting = [(entry, _State(0, None))]
+        seen: dict[int, set[_State]] = {}
+        while waiting:
+            address, state = waiting.pop()
+            states = seen.setdefault(address, set())
+            if state in states:
+                continue
+            states.add(state)
+            if len({one.depth for one in states}) > _DEPTHS_MAX:
+                raise StackBoundError(f"a loop pushes: {self._program.place(address)}")
+            after, below, ways = self._step(address, state)
+            deepest = max(deepest, state.depth, after.depth, state.depth + below)
+            waiting += [(way, after) for way in ways]
+        return deepest
+
+    def _step(self, address: int, state: _State) -> tuple[_State, int, list[int]]:
+        """The state after an instruction, the bytes that a call in it takes, and where it goes on."""
+        one = self._program.code.get(address)
+        if one is None:
+            raise StackBoundError(f"no instruction: {self._program.place(address)}")
+        following = address + one.size
+        name = one.name
+        if name in ("ret", "reti"):
+            if state.depth:
+                raise StackBoundError(f"{state.depth} bytes are left: {self._program.place(address)}")
+            return state, 0, []
+        if name in ("call", "rcall"):
+            if one.target is None:
+                raise StackBoundError(f"a call to nowhere: {self._program.place(address)}")
+            if one.target == following:
+                return state._replace(depth=state.depth + _RETURN_ADDRESS), 0, [following]
+            # A weak function that is not linked has the address 0, which the core checks before the call.
+            below = self.of(one.target) if one.target != 0 else 0
+            return state, _RETURN_ADDRESS + below, [following]
+        if name in ("jmp", "rjmp"):
+            return state, 0, [self._jump(one, address)]
+        if name == "ijmp":
+            return state, 0, self._program.constructors
+        if name == "sei" and self._open[0] != 0:
+            raise StackBoundError(f"an interrupt lets others in: {self._program.place(address)}")
+        if name in ("icall", "eicall", "eijmp"):
+            raise StackBoundError(f"a pointer to a function: {self._program.place(address)}")
+        if name.startswith("br") and name != "break":
+            return state, 0, [following, self._jump(one, address)]
+        if name in _SKIPS:
+            return state, 0, [following, following + self._program.code[following].size]
+        after, ways = self._move(address, one, state)
+        return after, 0, [ways]
+
+    def _jump(self, one: Instruction, address: int) -> int:
+        if one.target is None:
+            raise StackBoundError(f"a jump to nowhere: {self._program.place(address)}")
+        return one.target
+
+    def _move(self, address: int, one: Instruction, state: _State) -> tuple[_State, int]:
+        """The state after an instruction that does not jump, and the address of the next one."""
+        name, operands = one.name, one.operands
+        following = address + one.size
+        to = operands[0] if operands else ""
+        depth, frame = state
+        if name == "push":
+            depth += 1
+        elif name == "pop":
+            depth -= 1
+        elif name == "out" and to == "0x3d":
+            begins = self._open == [0] and depth == 0  # the start of the program sets it to the memory's end
+            if not begins and (frame is None or operands[1] != "r28"):
+                raise StackBoundError(f"a computed stack pointer: {self._program.place(address)}")
+            depth = 0 if begins or frame is None else frame
+        if name == "in" and operands == ("r28", "0x3d"):
+            frame = depth
+        elif name in ("adiw", "sbiw") and to == "r28" and frame is not None:
+            frame += int(operands[1], 0) * (1 if name == "sbiw" else -1)
+        elif name == "subi" and to == "r28" and frame is not None:
+            frame, following = self._subtract(following, int(operands[1], 0), frame)
+        elif to in ("r28", "r29") and name in _FRAME_WRITES and operands != ("r29", "0x3e"):
+            frame = None
+        return _State(depth, frame), following
+
+    def _subtract(self, address: int, low: int, frame: int) -> tuple[int | None, int]:
+        """The frame pointer after the second half of a subtraction from it, and what follows."""
+        high = self._program.code[address]
+        if high.name == "sbci" and high.operands[0] == "r29":
+            number = low + 256 * int(high.operands[1], 0)
+        elif high.name == "sbc" and high.operands == ("r29", "r1"):
+            number = low
+        else:
+            return None, address
+        return frame + (number + 0x8000) % 0x10000 - 0x8000, address + high.size
+
+
+def stack_bound(elf: Path, once: Collection[str] = ()) -> int:
+    """Returns the most bytes that the program can have on its stack, in its deepest interrupt.
+
+    `once` are parts of the names of functions whose calls of each other never come round to them, although
+    the program's text allows it. Raises StackBoundError where there is no bound.
+    """
+    program = _Program(elf)
+    bound = _Bound(program, once)
+    _check_tables(program)
+    unused = program.find("__bad_interrupt")
+    interrupts = []
+    for number in range(1, VECTORS):
+        handler = program.code[number * _VECTOR_BYTES].target
+        if handler is not None and handler != unused:
+            interrupts.append(_RETURN_ADDRESS + bound.of(handler))
+    return bound.of(0) + max(interrupts, default=0)
+
+
+def _check_tables(program: _Program) -> None:
+    """Raises StackBoundError if a table of jumps is used by anything but the start of the program."""
+    table = program.find("__tablejump2__")
+    users = {
+        program.place(address).split()[0]
+        for address, one in program.code.items()
+        if table is not None and one.target == table and one.name in ("call", "rcall", "jmp", "rjmp")
+    }
+    if users - {"__do_global_ctors"}:
+        raise StackBoundError(f"a switch by a table of jumps: {', '.join(sorted(users))}")

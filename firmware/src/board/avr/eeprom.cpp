@@ -1,0 +1,30 @@
+// The EEPROM, which survives a power cycle: the boot counter, and the calibration. A cell lasts for 100,000
+// writes.
+#ifdef __AVR__
+#include <avr/eeprom.h>
+
+#include "board/board.h"
+
+namespace mucat {
+namespace board {
+namespace {
+
+uint16_t* const kEpochAddress = nullptr;
+uint8_t* const kKeptAddress = reinterpret_cast<uint8_t*>(16);
+
+}  // namespace
+
+uint16_t next_epoch() {
+  uint16_t epoch = eeprom_read_word(kEpochAddress) + 1;
+  if (epoch == 0) epoch = 1;
+  eeprom_update_word(kEpochAddress, epoch);
+  return epoch;
+}
+
+void read_kept(void* bytes, uint8_t size) { eeprom_read_block(bytes, kKeptAddress, size); }
+
+void write_kept(uint8_t index, uint8_t byte) { eeprom_update_byte(kKeptAddress + index, byte); }
+
+}  // namespace board
+}  // namespace mucat
+#endif

@@ -1,0 +1,79 @@
+#include "calibration.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "board/board.h"
+#include "link/crc32.h"
+#include "sensors/simulated_input.h"
+
+namespace mucat {
+namespace {
+
+constexpr uint8_t kAllSteps = 0x7F;
+static_assert(static_cast<uint8_t>(CalibrationStep::kBeacons) == (kAllSteps + 1) / 2, "the steps changed");
+
+constexpr uint16_t kFactorUnit = 10000;
+// Further off, no regulator and no divider is sound, and a factor of 0 would hide a flat battery.
+constexpr uint16_t kFactorMin = 8000;
+constexpr uint16_t kFactorMax = 12500;
+
+bool possible(const Calibration& calibration) {
+  uint8_t axes = 0;
+  for (int8_t axis : calibration.axes) {
+    if (axis < -3 || axis > 3) return false;
+    axes |= 1 << (axis < 0 ? -axis : axis);
+  }
+  return axes == 0xE && calibration.battery_factor >= kFactorMin && calibration.battery_factor <= kFactorMax;
+}
+
+}  // namespace
+
+FlashText describe_step(uint8_t steps) {
+  if (steps & static_cast<uint8_t>(CalibrationStep::kFins)) return FLASH_TEXT("fins");
+  if (steps & static_cast<uint8_t>(CalibrationStep::kMotors)) return FLASH_TEXT("motors");
+  if (steps & static_cast<uint8_t>(CalibrationStep::kAxes)) return FLASH_TEXT("IMU axes");
+  if (steps & static_cast<uint8_t>(CalibrationStep::kGyro)) return FLASH_TEXT("gyroscope");
+  if (steps & static_cast<uint8_t>(CalibrationStep::kPressure)) return FLASH_TEXT("pressure");
+  if (steps & static_cast<uint8_t>(CalibrationStep::kBattery)) return FLASH_TEXT("battery");
+  return FLASH_TEXT("beacons");
+}
+
+uint32_t CalibrationStore::checksum() const {
+  return crc32(reinterpret_cast<const uint8_t*>(&record_), offsetof(Record, checksum));
+}
+
+void CalibrationStore::start() {
+  board::read_kept(&record_, sizeof record_);
+  const bool valid = record_.version == kCalibrationVersion && record_.checksum == checksum();
+  if (valid && possible(value()) && !in_the_loop()) return;
+  Calibration& none = record_.calibration;
+  memset(&none, 0, sizeof none);
+  for (uint8_t axis = 0; axis < 3; ++axis) none.axes[axis] = axis + 1;
+  none.battery_factor = kFactorUnit;
+  if (in_the_loop()) none.done = kAllSteps;
+}
+
+uint8_t CalibrationStore::missing() const { return writing() ? kAllSteps : kAllSteps & ~value().done; }
+
+void CalibrationStore::store(const Calibration& calibration) {
+  answer_due_ = true;
+  if (in_the_loop() || !possible(calibration)) return;
+  record_.version = kCalibrationVersion;
+  record_.calibration = calibration;
+  record_.checksum = checksum();
+  next_byte_ = 0;
+}
+
+void CalibrationStore::step() {
+  if (!writing()) return;
+  if (next_byte_ == sizeof record_) {
+    next_byte_ = kIdle;
+    start();
+    return;
+  }
+  board::write_kept(next_byte_, reinterpret_cast<const uint8_t*>(&record_)[next_byte_]);
+  ++next_byte_;
+}
+
+}  // namespace mucat

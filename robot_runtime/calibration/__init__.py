@@ -1,0 +1,1 @@
+"""The calibration that the board keeps, and what it is measured by."""

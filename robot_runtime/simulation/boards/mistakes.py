@@ -1,0 +1,112 @@
+"""Mistakes of wiring and imperfections of parts that an emulated board can have, by name.
+
+A mistake is a text such as `imu-strap` or `leads-reversed:front-right`. The board carries them out, in
+`firmware/emulator/mistakes.c`.
+"""
+
+import re
+from collections.abc import Callable
+from itertools import permutations
+from typing import NamedTuple
+
+FINS = ("front-right", "back-right", "back-left", "front-left")
+PARTS = (
+    *("imu", "pressure", "battery", "beacon-right", "beacon-left"),
+    *(f"{part}-{fin}" for part in ("motor", "bridge", "encoder") for fin in FINS),
+)
+_NUMBER = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?")
+_IDENTITY = re.compile(r"0x[0-9a-fA-F]{1,2}|[1-9][0-9]{0,2}")
+_EVEN = {("x", "y", "z"), ("y", "z", "x"), ("z", "x", "y")}
+
+
+class Mistake(NamedTuple):
+    """A kind of mistake."""
+
+    argument: str
+    """What follows the colon; empty: nothing."""
+    meaning: str
+    accepts: Callable[[str], bool]
+
+
+def _is_nothing(text: str) -> bool:
+    return not text
+
+
+def _is_fin(text: str) -> bool:
+    return text in FINS
+
+
+def _are_two_fins(text: str) -> bool:
+    return text in {f"{one},{other}" for one, other in permutations(FINS, 2)}
+
+
+def _are_axes(text: str) -> bool:
+    """True for the 24 ways in which a chip can lie; the other 24 are mirror images."""
+    signs, axes = text[::2], tuple(text[1::2])
+    if len(text) != 6 or not set(signs) <= {"+", "-"} or set(axes) != {"x", "y", "z"}:
+        return False
+    return (axes in _EVEN) == (signs.count("-") % 2 == 0)
+
+
+def _is_identity(text: str) -> bool:
+    return bool(_IDENTITY.fullmatch(text)) and 1 <= int(text, 0) <= 255
+
+
+def _are_numbers(least: float, most: float, count: int = 1) -> Callable[[str], bool]:
+    def accepts(text: str) -> bool:
+        values = text.split(",")
+        return len(values) == count and all(
+            _NUMBER.fullmatch(one) and least <= float(one) <= most for one in values
+        )
+
+    return accepts
+
+
+MISTAKES: dict[str, Mistake] = {
+    "motors-swapped": Mistake("FIN,FIN", "each of two motors is at the other's H-bridge", _are_two_fins),
+    "leads-reversed": Mistake("FIN", "a motor's leads are swapped", _is_fin),
+    "encoders-swapped": Mistake("FIN,FIN", "each of two encoders is at the other's select", _are_two_fins),
+    "encoder-reversed": Mistake("FIN", "an encoder counts backwards: its magnet is turned over", _is_fin),
+    "strap-wrong": Mistake("FIN", "an H-bridge is at 0x62", _is_fin),
+    "strap-shared": Mistake("FIN,FIN", "the first's H-bridge has the second's address", _are_two_fins),
+    "imu-strap": Mistake("", "the IMU is at 0x68", _is_nothing),
+    "imu-turned": Mistake(
+        "AXES", "the body axes along which the IMU's lie; +x-y-z is upside down", _are_axes
+    ),
+    "imu-clone": Mistake("IDENTITY", "WHO_AM_I of another chip, 1 to 255", _is_identity),
+    "missing": Mistake("PART", f"not connected; a part is {', '.join(PARTS)}", PARTS.__contains__),
+    "beacons-inverted": Mistake("", "low is heard", _is_nothing),
+    "beacons-swapped": Mistake("", "right is left", _is_nothing),
+    "divider-wrong": Mistake(
+        "FACTOR", "the battery reads as this many times its voltage, 0.1 to 10", _are_numbers(0.1, 10)
+    ),
+    "regulator-off": Mistake(
+        "PERCENT", "the converter's 5 V are this much higher, -10 to 10", _are_numbers(-10, 10)
+    ),
+    "gyro-offset": Mistake("X,Y,Z", "°/s of the gyroscope's axes, -20 to 20", _are_numbers(-20, 20, 3)),
+    "encoder-noise": Mistake("TICKS", "of all encoders, to either side, 0 to 20", _are_numbers(0, 20)),
+    "backlash": Mistake("RAD", "of all fins' gears, 0 to 0.3", _are_numbers(0, 0.3)),
+    "pack-resistance": Mistake("OHM", "of the battery, 0 to 2", _are_numbers(0, 2)),
+}
+"""By name, wiring first. FIN is one of `FINS`."""
+
+
+def write_list() -> list[str]:
+    """Returns a line for each kind of mistake: how it is written, and what it means."""
+    return [f"{_written(name)}: {mistake.meaning}" for name, mistake in MISTAKES.items()]
+
+
+def check_mistake(text: str) -> None:
+    """Raises ValueError if there is no such mistake; its text says what there is."""
+    name, colon, argument = text.partition(":")
+    if name not in MISTAKES:
+        raise ValueError(f"there is no mistake {text!r}; there are {', '.join(MISTAKES)}")
+    mistake = MISTAKES[name]
+    if not mistake.accepts(argument) or (colon and not argument):
+        fins = f"; FIN is {', '.join(FINS)}" if "FIN" in mistake.argument else ""
+        raise ValueError(f"the mistake {text!r} is written {_written(name)}: {mistake.meaning}{fins}")
+
+
+def _written(name: str) -> str:
+    argument = MISTAKES[name].argument
+    return f"{name}:{argument}" if argument else name

@@ -1,0 +1,90 @@
+"""The bound of a program's stack, on programs whose stack is known, and on the firmware."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from bench.firmware import GUARDED_RECURSION, RAM_BYTES, count_static
+from bench.stack_bound import StackBoundError, stack_bound
+from tests.board.host import Robot, start
+from tests.board.rig import ROOT, build
+
+START = "#include <avr/interrupt.h>\n#include <stdint.h>\n#include <stdlib.h>\n"
+MAIN = "int main(void) { DEEP; for (;;) {} }\n"
+NAKED = "__attribute__((naked, noinline)) void"
+PUSH, POP = "push r2\\n", "pop r2\\n"
+FIVE = f'{NAKED} five(void) {{ asm volatile("{5 * PUSH}{5 * POP}ret"); }}\n'
+THREE = f'{NAKED} three(void) {{ asm volatile("{3 * PUSH}call five\\n{3 * POP}ret"); }}\n'
+HANDLER = f'ISR(TIMER0_OVF_vect, ISR_NAKED) {{ asm volatile("{4 * PUSH}{4 * POP}reti"); }}\n'
+
+
+def program(folder: Path, text: str, *, optimize: str = "-Os") -> Path:
+    source, elf = folder / "program.c", folder / "program.elf"
+    source.write_text(START + text)
+    command = ["avr-gcc", "-mmcu=atmega328p", optimize, "-std=gnu11", str(source), "-o", str(elf)]
+    subprocess.run(command, check=True, capture_output=True)
+    return elf
+
+
+def test_calls_add_up_with_their_return_addresses(tmp_path: Path) -> None:
+    alone = stack_bound(program(tmp_path, MAIN.replace("DEEP", "")))
+    assert alone == 2  # main's return address
+    nested = stack_bound(program(tmp_path, FIVE + THREE + MAIN.replace("DEEP", "three()")))
+    assert nested == alone + (2 + 3) + (2 + 5)
+
+
+def test_the_deepest_interrupt_comes_on_top(tmp_path: Path) -> None:
+    plain = FIVE + THREE + MAIN.replace("DEEP", "three()")
+    without = stack_bound(program(tmp_path, plain))
+    assert stack_bound(program(tmp_path, HANDLER + plain)) == without + 2 + 4
+
+
+@pytest.mark.parametrize(("size", "frame"), [(40, 40), (200, 200), (600, 600)])
+def test_a_frame_counts(tmp_path: Path, size: int, frame: int) -> None:
+    deep = f"volatile uint8_t room[{size}]; room[0] = 1; room[{size - 1}] = room[0]"
+    bound = stack_bound(program(tmp_path, MAIN.replace("DEEP", deep)))
+    assert frame <= bound - 2 <= frame + 4
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            "__attribute__((noinline)) uint16_t f(volatile uint16_t n) { return n ? n * f(n - 1) : 1; }\n"
+            + MAIN.replace("DEEP", "f(3)"),
+            "functions that call each other",
+        ),
+        ("void (*volatile f)(void);\n" + MAIN.replace("DEEP", "f()"), "a pointer to a function"),
+        (
+            "volatile uint8_t n;\n__attribute__((noinline)) void g(uint8_t *p) { p[0] = n; n = p[1]; }\n"
+            "__attribute__((noinline)) void f(void) { g(__builtin_alloca(n)); }\n"
+            + MAIN.replace("DEEP", "f()"),
+            "a computed stack pointer",
+        ),
+        ("ISR(TIMER0_OVF_vect) { sei(); }\n" + MAIN.replace("DEEP", ""), "an interrupt lets others in"),
+        (
+            MAIN.replace("DEEP", 'asm volatile("1: push r2\\nrjmp 1b")'),
+            "a loop pushes",
+        ),
+    ],
+)
+def test_a_program_without_a_bound_is_refused(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(StackBoundError, match=words):
+        stack_bound(program(tmp_path, text))
+
+
+def test_the_firmware_s_stack_fits_and_is_not_deeper_than_its_bound(tmp_path: Path) -> None:
+    build(ROOT / "firmware", "robot")
+    build(ROOT / "firmware/emulator")
+    build(ROOT / "firmware/bootloader")
+    elf = ROOT / "build/firmware/robot.elf"
+    bound = stack_bound(elf, GUARDED_RECURSION)
+    room = RAM_BYTES - count_static(elf)
+    with start("robot", tmp_path) as rig:
+        robot = Robot(rig)
+        robot.listen(0.5)
+        robot.arm()
+        robot.converse(1.0)
+        measured = room - robot.status().stack_free
+    assert 200 < measured <= bound <= room
