@@ -80,6 +80,8 @@ class DataFolder:
         """The emulated board's EEPROM."""
         self.firmware_away = path / "firmware-away"
         """Exists while the robot's board may hold another program than its firmware."""
+        self.bring_up = path / "bring-up.html"
+        """The report of the newest bring-up."""
         self.scenario_before = path / "scenario-before.json"
         """Exists while a scenario runs on the robot: the settings before it."""
         self.scenarios = path / "scenarios"

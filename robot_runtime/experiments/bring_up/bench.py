@@ -15,7 +15,7 @@ from robot_runtime.link.session import BoardMessage
 GREETING_SECONDS = 5.0
 """Time after an upload in which the sketch answers; the boot loader listens for 1 s first."""
 ANSWER_SECONDS = 3.0
-_KEPT = 1200
+_READINGS_MOST = 1200
 """Readings kept, a minute of them."""
 
 
@@ -53,7 +53,7 @@ class SerialBench:
 
     def __init__(self, port: str, baud: int) -> None:
         self._heard = threading.Condition()
-        self._raws: deque[Raw] = deque(maxlen=_KEPT)
+        self._raws: deque[Raw] = deque(maxlen=_READINGS_MOST)
         self._newest_at = 0.0
         self._scans: list[Scan] = []
         self._answers: list[Calibration] = []

@@ -9,7 +9,7 @@ NO_FIN = "none"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Input:
+class Question:
     """A number that a person gives, or one of the `choices`."""
 
     name: str
@@ -28,7 +28,7 @@ class Action:
     name: str
     label: str
     kind: Literal["press", "hold"] = "press"
-    inputs: tuple[Input, ...] = ()
+    inputs: tuple[Question, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,7 +68,7 @@ _BATTERY = Step(
         Action(
             name="compare",
             label="Compare",
-            inputs=(Input(name="volts", label="Multimeter", unit="V", minimum=4, maximum=9),),
+            inputs=(Question(name="volts", label="Multimeter", unit="V", minimum=4, maximum=9),),
         ),
         _KEEP,
     ),
@@ -104,7 +104,7 @@ _PRESSURE = Step(
             name="air",
             label="In air",
             inputs=(
-                Input(
+                Question(
                     name="barometer",
                     label="Barometer",
                     unit="hPa",
@@ -117,7 +117,7 @@ _PRESSURE = Step(
         Action(
             name="bucket",
             label="In the bucket",
-            inputs=(Input(name="depth", label="Depth", unit="cm", minimum=5, maximum=200),),
+            inputs=(Question(name="depth", label="Depth", unit="cm", minimum=5, maximum=200),),
         ),
         _KEEP,
     ),
@@ -159,7 +159,7 @@ def _fin(number: int) -> Step:
 
 
 def _motor(number: int) -> Step:
-    seen = Input(name="fin", label="Fin", choices=(*FINS, NO_FIN))
+    seen = Question(name="fin", label="Fin", choices=(*FINS, NO_FIN))
     return Step(
         name=f"motor_{number}",
         title=f"Motor {FINS[number]}",
@@ -168,9 +168,7 @@ def _motor(number: int) -> Step:
         expected="This fin turns, and its encoder with it. Either way round is fine.",
         actions=(
             Action(name="turn", label="Hold to turn it", kind="hold"),
-            Action(
-                name="seen", label="This one turned", inputs=(Input(name="fin", label="Fin", choices=fins),)
-            ),
+            Action(name="seen", label="This one turned", inputs=(seen,)),
         ),
     )
 

@@ -11,7 +11,7 @@ from robot_runtime.control.fin_check import FINS
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.bring_up import checks
 from robot_runtime.experiments.bring_up.bench import Bench
-from robot_runtime.experiments.bring_up.guide import NO_FIN, STEPS, Action, Input
+from robot_runtime.experiments.bring_up.guide import NO_FIN, STEPS, Action, Question
 from robot_runtime.experiments.bring_up.readings import counts, mean_pressure
 from robot_runtime.experiments.bring_up.results import Result
 
@@ -345,13 +345,13 @@ def _read(action: Action, given: Mapping[str, Any]) -> dict[str, float | str]:
     return read
 
 
-def _read_choice(one: Input, value: object) -> str:
+def _read_choice(one: Question, value: object) -> str:
     if value not in one.choices:
         raise RefusedError(f"{one.label} must be one of {', '.join(one.choices)}.")
     return str(value)
 
 
-def _read_number(one: Input, value: object) -> float:
+def _read_number(one: Question, value: object) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if not number or not one.minimum <= value <= one.maximum:  # type: ignore[operator]
         raise RefusedError(f"{one.label} must be between {one.minimum:g} and {one.maximum:g} {one.unit}.")

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-import server.features.comm_tests.board_reservation as handover_module
+import server.features.board.reservation as handover_module
 import server.stream.bridge as bridge_module
 from robot_runtime.config import LinkConfig
 from robot_runtime.errors import RefusedError
