@@ -17,6 +17,7 @@ BATTERY_VOLTS = 10 / 1023
 """V for each of the converter's counts: 5 V behind a divider of two equal resistors."""
 
 # The AS5040's word, behind its leading 1: ten bits of angle, then these, then even parity (data sheet).
+_NOTHING = 0xFFFF
 _OFFSET_DONE, _OVERFLOW, _LINEARITY, _BOTH_MAG = 1 << 5, 1 << 4, 1 << 3, 3 << 1
 
 
@@ -27,7 +28,8 @@ def counts(word: int) -> int:
 
 def field(word: int) -> Field:
     """The state of an encoder's magnet in the data sheet's colours; silent where no encoder answers."""
-    if word.bit_count() % 2 or not word & _OFFSET_DONE:
+    # Without an encoder the pull-up of its line reads as ones.
+    if word == _NOTHING or word.bit_count() % 2 or not word & _OFFSET_DONE:
         return "silent"
     if word & _OVERFLOW or (word & _BOTH_MAG == _BOTH_MAG and word & _LINEARITY):
         return "red"
