@@ -112,6 +112,8 @@ class Settings:
     """The networks whose X-Forwarded-For is believed."""
     mistakes: tuple[str, ...] = ()
     """Of the emulated board; see robot_runtime/simulation/boards/mistakes.py."""
+    uncalibrated: bool = False
+    """The emulated board begins without a calibration."""
     build: Path = Path(__file__).parents[2] / "build"
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"
