@@ -110,7 +110,7 @@ class BringUpRun:
         try:
             return self._settings.data.bring_up.read_text(encoding="utf-8")
         except FileNotFoundError as problem:
-            raise NoReportError from problem
+            raise NoReportError("There was no bring-up yet, so there is no report.") from problem
 
     def state(self) -> BringUpState:
         """Everything that pages show."""
