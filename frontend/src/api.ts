@@ -69,7 +69,7 @@ export type BringUpStep = Schemas['BringUpStep'];
 export type BringUpAction = Schemas['BringUpAction'];
 export type BringUpResult = Schemas['BringUpResult'];
 export type BringUpReadings = Schemas['RawReadings'];
-export type BringUpInputs = Schemas['BringUpOrder']['inputs'];
+export type BringUpInputs = NonNullable<Schemas['BringUpOrder']['inputs']>;
 
 export type Signal = Schemas['Signal'];
 export type Comparison = Schemas['Comparison'];
