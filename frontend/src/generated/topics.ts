@@ -635,7 +635,7 @@ export interface VisionInForce {
 
 /** A robot's calibration as its board keeps it. Fins: front right, back right, back left, front left. */
 export interface CalibrationValues {
-  done: 'fins' | 'motors' | 'axes' | 'gyro' | 'pressure' | 'battery' | 'beacons'[];
+  done: ('fins' | 'motors' | 'axes' | 'gyro' | 'pressure' | 'battery' | 'beacons')[];
   fin_zeros: [number, number, number, number];
   encoders_reversed: [boolean, boolean, boolean, boolean];
   motors_reversed: [boolean, boolean, boolean, boolean];

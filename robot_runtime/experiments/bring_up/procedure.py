@@ -234,7 +234,7 @@ class BringUp:
     def _turn(self, fin: int, given: Given) -> None:
         if given.get("stop"):
             self._bench.jog(fin, 0)
-            self._turned[fin] += self._bench.since_mark()
+            self._turned.setdefault(fin, []).extend(self._bench.since_mark())
             return
         if fin not in self._turned or not given.get("on"):
             self._turned[fin] = []
