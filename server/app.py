@@ -10,6 +10,7 @@ from starlette.routing import BaseRoute
 from server import VERSION
 from server.container import Container
 from server.features.backup import routes as backup
+from server.features.bring_up import routes as bring_up
 from server.features.comm_tests import routes as comm_tests
 from server.features.comparison import routes as compare
 from server.features.exports import routes as exports
@@ -41,8 +42,8 @@ from server.platform.settings import Settings
 from server.processes.supervisor import ProcessCommand
 
 ROUTES = (
-    *(access, audit, backup, comm_tests, compare, control, exports, layouts, live, panels),
-    *(identification, parameters, robot, scenarios, sessions, simulator, tuning, vision),
+    *(access, audit, backup, bring_up, comm_tests, compare, control, exports, identification, layouts, live),
+    *(panels, parameters, robot, scenarios, sessions, simulator, tuning, vision),
 )
 
 

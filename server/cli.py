@@ -13,6 +13,8 @@ from server.platform.terminal import PlainFormatter
 
 COMMANDS = {
     "run": "server.startup:run",
+    "bring-up": "server.features.bring_up.command:bring_up",
+    "upload": "server.features.board.command:upload",
     "commtest": "server.features.comm_tests.command:commtest",
     "simulator": "server.features.simulator.command:simulator",
     "scenario": "server.features.scenarios.command:scenario",

@@ -13,7 +13,8 @@ from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block
 from server.features.backup.download import DatabaseDownloads
-from server.features.comm_tests.board_reservation import BoardReservation, RobotBoard
+from server.features.board.reservation import BoardReservation, RobotBoard
+from server.features.bring_up.bring_up_run import BringUpRun
 from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import import_samples
@@ -131,6 +132,8 @@ class Container:
             self.board_reservation.reserve,
         )
 
+        self.bring_up = BringUpRun(self.settings, board, self.board_reservation.reserve)
+
     def _add_scenarios(self) -> None:
         self._live = LiveExecutor(
             self.settings,
@@ -145,7 +148,7 @@ class Container:
         )
         simulated = SimulatedExecutor(self.settings, self.store, self.notices)
         self.scenarios = ScenarioRunner(self._live, simulated, self.hub.notify)
-        self.bridge.on_stop = self.scenarios.see_stop
+        self.bridge.on_stop = self._see_stop
 
     def _add_identification(self) -> None:
         self.craft_adoption = CraftAdoption(self.settings, self.monitor, self.processes, self.changes)
@@ -217,6 +220,7 @@ class Container:
             await self.tuning.close()
             await self.scenarios.close()
             await self.comm_tests.close()
+            await self.bring_up.close()
             await self.comparison.close()
             await self.identification.close()
             await self.processes.stop()
@@ -249,6 +253,10 @@ class Container:
                 self.lease_sync.see_run(self.bridge.run)
                 if self.settings.sessions.record_at_arming:
                     self.arming.see(block)
+
+    def _see_stop(self) -> None:
+        self.scenarios.see_stop()
+        self.bring_up.see_stop()
 
     def _scenario_on(self) -> str | None:
         run = self.scenarios.active

@@ -38,13 +38,22 @@ def _read_mistakes(_: click.Context, __: click.Parameter, texts: tuple[str, ...]
     metavar="NAME",
     help="A mistake that the emulated board has, from the list below. Can be repeated.",
 )
+@click.option(
+    "--uncalibrated",
+    is_flag=True,
+    help="The emulated board begins as the factory delivers it: not calibrated.",
+)
 @with_settings
-def run(settings: Settings, mistakes: tuple[str, ...]) -> int:
+def run(settings: Settings, mistakes: tuple[str, ...], *, uncalibrated: bool) -> int:
     """Start everything and serve the page."""
     if mistakes and not settings.emulated_board:
         raise SetupError("--mistake is for the emulated board; robot.toml has a real one (robot.mode).")
-    settings = replace(settings, mistakes=mistakes)
+    if uncalibrated and not settings.emulated_board:
+        raise SetupError("--uncalibrated is for the emulated board; robot.toml has a real one (robot.mode).")
+    settings = replace(settings, mistakes=mistakes, uncalibrated=uncalibrated)
     with claim(settings.data):
+        if uncalibrated:
+            settings.data.board_eeprom.unlink(missing_ok=True)
         return _serve(settings)
 
 

@@ -182,6 +182,20 @@ static void mistake(struct service *service, struct client *client, char *text) 
   send_ok(service, client);
 }
 
+static void turn(struct service *service, struct client *client, char *arguments) {
+  char *angle = strchr(arguments, ' ');
+  if (angle) {
+    *angle++ = 0;
+  }
+  double fin = number(arguments), radians = angle ? number(angle) : NAN;
+  if (!(fin >= 0 && fin < FIN_COUNT && fin == floor(fin) && radians >= -M_PI && radians <= M_PI)) {
+    refuse(service, client, "turn takes a fin, 0 to 3, and an angle from -pi to pi");
+    return;
+  }
+  motors_turn_by_hand(&service->board.devices.motors, (unsigned)fin, radians);
+  send_ok(service, client);
+}
+
 static bool disturb(struct host_port *port, enum direction direction, const char *kind, const char *value) {
   bool clean = !strcmp(kind, "clean");
   if (!strcmp(kind, "stall")) {
@@ -243,6 +257,7 @@ static const struct command commands[] = {
     {"attach", attach}, {"sense", sense}, {"fins", fins},       {"reset", reset},        {"power", power},
     {"load", load},     {"run", run},     {"stats", stats},     {"fault", fault},        {"line", line},
     {"seed", seed},     {"quit", quit},   {"mistake", mistake}, {"brownout", brown_out},
+    {"turn", turn},
 };
 
 void commands_run(void *owner, struct client *client, char *line) {

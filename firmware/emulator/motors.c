@@ -131,6 +131,11 @@ void motors_create(struct motors *motors, const struct drv8830 bridges[FIN_COUNT
   }
 }
 
+void motors_turn_by_hand(struct motors *motors, unsigned fin, double angle) {
+  motors->rotor[fin] = motors->shaft[fin] = rotation_sign[fin] * angle;
+  motors->rotor_speed[fin] = motors->speed[fin] = 0;
+}
+
 double motors_fin_angle(const struct motors *motors, unsigned fin) {
   return remainder(rotation_sign[fin] * motors->shaft[fin], 2 * M_PI);
 }

@@ -35,6 +35,9 @@ double motors_battery(const struct motors *motors);
 // Call it every MOTORS_PERIOD.
 void motors_step(struct motors *motors);
 
+// Somebody turns a fin to this angle (rad).
+void motors_turn_by_hand(struct motors *motors, unsigned fin, double angle);
+
 // A fin's angle (rad, -pi to pi) and speed (rad/s); fins 0 to 3 are front right, back right, back left,
 // front left.
 double motors_fin_angle(const struct motors *motors, unsigned fin);

@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0x742c62b8UL;
+constexpr uint32_t kDefinitionsHash = 0x554575d8UL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
@@ -254,6 +254,42 @@ struct __attribute__((packed)) ZeroDepth {
 };
 static_assert(sizeof(ZeroDepth) == 1, "ZeroDepth has another size");
 
+// Host to board, only in the bring-up: asks which devices answer on I2C, with power on the motors.
+struct __attribute__((packed)) RequestScan {
+  static constexpr uint8_t kType = 0x16;
+};
+static_assert(sizeof(RequestScan) == 1, "RequestScan has another size");
+
+// Board to host, only in the bring-up: the addresses that answered.
+struct __attribute__((packed)) Scan {
+  static constexpr uint8_t kType = 0x17;
+  uint8_t answered[16];  // bit a % 8 of byte a / 8: address a
+};
+static_assert(sizeof(Scan) == 16, "Scan has another size");
+
+// Host to board, only in the bring-up: drives one motor, for 250 ms.
+struct __attribute__((packed)) Jog {
+  static constexpr uint8_t kType = 0x18;
+  uint8_t fin;  // 0 to 3, by the H-bridge's address
+  int8_t drive;  // H-bridge command, -20 to 20
+};
+static_assert(sizeof(Jog) == 2, "Jog has another size");
+
+// Board to host, only in the bring-up, 20 Hz: what the devices say, as they say it.
+struct __attribute__((packed)) Raw {
+  static constexpr uint8_t kType = 0x19;
+  uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
+  uint16_t encoders[4];  // the AS5040's words: 10 bits, then status
+  uint8_t identity;  // the IMU's WHO_AM_I; 0 where nothing answers
+  int16_t rate[3];  // turn rate about the chip's axes; x 0.00026632423 rad/s
+  int16_t force[3];  // specific force along the chip's axes; x 0.0011971008 m/s²
+  uint32_t pressure;  // absolute pressure; 0 where nothing answers; Pa
+  int16_t temperature;  // temperature of the water; x 0.01 °C
+  uint16_t battery;  // the converter's counts, 1023 for twice 5 V
+  uint8_t beacons;  // levels of the detectors' pins; bit 0: right, bit 1: left
+};
+static_assert(sizeof(Raw) == 34, "Raw has another size");
+
 // Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.
 inline int8_t payload_bytes(uint8_t type) {
   switch (type) {
@@ -276,11 +312,15 @@ inline int8_t payload_bytes(uint8_t type) {
     case Calibration::kType: return 25;
     case RequestCalibration::kType: return 0;
     case ZeroDepth::kType: return 0;
+    case RequestScan::kType: return 0;
+    case Scan::kType: return 16;
+    case Jog::kType: return 2;
+    case Raw::kType: return 34;
     default: return -1;
   }
 }
 
 // Whether a packet of this type is repeated until it is acknowledged.
-constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType || type == Parameter::kType || type == Calibration::kType || type == RequestCalibration::kType || type == ZeroDepth::kType; }
+constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType || type == Parameter::kType || type == Calibration::kType || type == RequestCalibration::kType || type == ZeroDepth::kType || type == RequestScan::kType || type == Scan::kType; }
 
 }  // namespace mucat

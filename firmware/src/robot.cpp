@@ -73,22 +73,21 @@ void Robot::handle(const Message& message) {
       // With other definitions its number may mean another parameter.
       if (!arming_.definitions_differ()) parameters_.request(unpack<Parameter>(message), armed());
       break;
-    case Calibration::kType:
-      if (arming_.definitions_differ()) break;
-      if (armed()) {
-        calibration_.request();
-      } else {
-        calibration_.store(unpack<Calibration>(message));
-      }
-      break;
-    case RequestCalibration::kType:
-      calibration_.request();
-      break;
-    case ZeroDepth::kType:
-      if (!armed()) sensors_.zero_depth();
-      break;
     default:
-      break;  // a heartbeat needs no handling; the other types are sent by the board alone
+      calibrate(message);
+  }
+}
+
+// A heartbeat needs no handling; the other types are sent by the board alone.
+void Robot::calibrate(const Message& message) {
+  if (message.type == RequestCalibration::kType) calibration_.request();
+  if (message.type == ZeroDepth::kType && !armed()) sensors_.zero_depth();
+  // With other definitions its bytes may mean something else.
+  if (message.type != Calibration::kType || arming_.definitions_differ()) return;
+  if (armed()) {
+    calibration_.request();
+  } else {
+    calibration_.store(unpack<Calibration>(message));
   }
 }
 

@@ -68,6 +68,13 @@ export type Restored = Schemas['Restored'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
+export type BringUpState = Schemas['BringUpState'];
+export type BringUpStep = Schemas['BringUpStep'];
+export type BringUpAction = Schemas['BringUpAction'];
+export type BringUpResult = Schemas['BringUpResult'];
+export type BringUpReadings = Schemas['RawReadings'];
+export type BringUpInputs = NonNullable<Schemas['BringUpOrder']['inputs']>;
+
 export type Signal = Schemas['Signal'];
 export type Comparison = Schemas['Comparison'];
 export type Compared = Schemas['Compared'];
@@ -113,8 +120,8 @@ function order(method: string, path: string, body?: object, timeout?: number): P
   return refusal === null ? command(method, path, body, timeout) : Promise.resolve(refusal);
 }
 
-function orderFor<T>(method: string, path: string, body?: object): Promise<Answer<T>> {
-  return refusal === null ? request<T>(method, path, body) : Promise.resolve({ problem: refusal });
+function orderFor<T>(method: string, path: string, body?: object, timeout?: number): Promise<Answer<T>> {
+  return refusal === null ? request<T>(method, path, body, timeout) : Promise.resolve({ problem: refusal });
 }
 
 export const api = {
@@ -223,5 +230,10 @@ export const api = {
   stopTuning: () => order('POST', '/tuning/stop'),
   renameTuning: (id: TuningRun['id'], name: string) => command('PATCH', `/tuning/runs/${id}`, { name }),
   deleteTuning: (id: TuningRun['id']) => command('DELETE', `/tuning/runs/${id}`),
+  bringUp: () => request<BringUpState>('GET', '/bring-up'),
+  beginBringUp: () => orderFor<BringUpState>('POST', '/bring-up', undefined, TIMEOUT_COMM_TEST),
+  endBringUp: () => request<BringUpState>('DELETE', '/bring-up'),
+  actInBringUp: (step: string, action: string, inputs: BringUpInputs) =>
+    orderFor<BringUpState>('POST', '/bring-up/actions', { step, action, inputs }, TIMEOUT_CHECK),
   thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),
 };

@@ -11,6 +11,7 @@ export const lazyPages = {
   sessions: () => import('./pages/sessions/Sessions.svelte'),
   replay: () => import('./pages/replay/Replay.svelte'),
   people: () => import('./pages/people/People.svelte'),
+  'bring-up': () => import('./pages/bring_up/BringUp.svelte'),
   system: () => import('./pages/system/System.svelte'),
 } satisfies Partial<Record<PageName, Load>>;
 

@@ -78,6 +78,14 @@ describe('Live', () => {
     expect(live.debug.entries.map(({ text }) => text)).toEqual(['hello']);
   });
 
+  it('has the newest calibration, until the robot’s clock is another', () => {
+    server().greet();
+    server().give(documentBlock(OTHER_TOPICS.calibration, [{ time: 98, values: null, missing: ['b'] }, { time: 99, values: null, missing: [] }]));
+    expect(live.calibration?.missing).toEqual([]);
+    server().greet({ steady: 5 });
+    expect(live.calibration).toBeNull();
+  });
+
   it('counts time by the robot’s clock, whatever this computer’s calendar says', () => {
     server().greet();
     vi.setSystemTime(new Date('2031-01-01T00:00:00Z'));

@@ -65,7 +65,7 @@ def commands_module() -> str:
     """The whole text of commands.ts."""
     parts = [
         "// Written by `make generate` from robot_runtime/contract/commands.py. Do not edit.\n"
-        "import type { ColourRange } from './topics';\n",
+        "import type { CalibrationValues, ColourRange } from './topics';\n",
         *(_command(cls) for cls in http_commands()),
         "/** The body of each command, by its name. */\nexport interface Commands {\n"
         + "".join(f"  {cls.policy.name}: {cls.__name__};\n" for cls in http_commands())
@@ -170,14 +170,19 @@ def _type(hint: typing.Any) -> str:
     if origin is types.UnionType:
         return " | ".join(dict.fromkeys(_type(part) for part in typing.get_args(hint)))
     if origin is list:
-        return f"{_type(typing.get_args(hint)[0])}[]"
+        return _array(typing.get_args(hint)[0])
     if origin is tuple:
         first, *others = typing.get_args(hint)
-        return f"{_type(first)}[]" if Ellipsis in others else f"[{', '.join(map(_type, [first, *others]))}]"
+        return _array(first) if Ellipsis in others else f"[{', '.join(map(_type, [first, *others]))}]"
     if origin is dict:
         return f"Record<string, {_type(typing.get_args(hint)[1])}>"
     simple = {float: "number", int: "number", str: "string", bool: "boolean", types.NoneType: "null"}
     return simple.get(hint) or _name(hint)
+
+
+def _array(hint: typing.Any) -> str:
+    one = _type(hint)
+    return f"({one})[]" if " | " in one else f"{one}[]"
 
 
 def _quoted(text: str) -> str:

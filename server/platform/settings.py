@@ -90,6 +90,8 @@ class DataFolder:
         """The emulated board's EEPROM."""
         self.firmware_away = path / "firmware-away"
         """Exists while the robot's board may hold another program than its firmware."""
+        self.bring_up = path / "bring-up.html"
+        """The report of the newest bring-up."""
         self.scenario_before = path / "scenario-before.json"
         """Exists while a scenario runs on the robot: the settings before it."""
         self.scenarios = path / "scenarios"
@@ -126,6 +128,8 @@ class Settings:
     """The craft file that the configuration names; None: the adopted one."""
     mistakes: tuple[str, ...] = ()
     """Of the emulated board; see robot_runtime/simulation/boards/mistakes.py."""
+    uncalibrated: bool = False
+    """The emulated board begins without a calibration."""
     build: Path = Path(__file__).parents[2] / "build"
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"

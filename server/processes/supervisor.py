@@ -306,6 +306,7 @@ def plan(settings: Settings) -> list[ProcessCommand]:
     board = [str(program), "--elf", str(elf), "--bootloader", str(bootloader)]
     board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
     board += ["--eeprom", str(folder.board_eeprom), *lock]
+    board += ["--uncalibrated"] if settings.uncalibrated else []
     board += [word for mistake in settings.mistakes for word in ("--mistake", mistake)]
     return [
         ProcessCommand("board", "emulated board", tuple(board), made_of=(program, elf, bootloader)),

@@ -39,6 +39,7 @@ PAGES = (
     View("replay", "replay/{first}/{moment}", "of Dive to half"),
     View("system", "system", "Parts"),
     View("people", "people", "Browsers and programs"),
+    View("bring-up", "bring-up", "Bring-up"),
 )
 
 LIVE = tuple(one for one in PAGES if one.address.startswith(("operate", "tune", "system")))

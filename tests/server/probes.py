@@ -76,6 +76,18 @@ PROBES: dict[tuple[str, str], Probe] = {
     ("POST", "/api/access/tokens"): Probe(201, {"name": NEW_NAME}),
     ("POST", "/api/control/take"): Probe(query="over=true"),
     ("POST", "/api/robot/stop"): Probe(204),
+    ("GET", "/api/bring-up"): Probe(),
+    ("GET", "/api/bring-up/report"): Probe(
+        NOT_THERE, words="There was no bring-up yet", because="A bring-up would upload to the board."
+    ),
+    ("POST", "/api/bring-up"): Probe(409, words="bring_up.hex", because="It would upload to the board."),
+    ("POST", "/api/bring-up/actions"): Probe(
+        409,
+        {"step": "devices", "action": "scan"},
+        words="The board is not ready",
+        because="It needs a board with the sketch.",
+    ),
+    ("DELETE", "/api/bring-up"): Probe(),
     ("POST", "/api/robot/commands/acknowledge"): Probe(204),
     ("POST", "/api/robot/commands/arm"): Probe(204),
     ("POST", "/api/robot/commands/mode"): Probe(204, {"mode": "manual"}),

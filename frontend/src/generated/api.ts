@@ -273,6 +273,74 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/bring-up": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Return the bring-up's steps with their results, and the newest readings
+         * @description Return the bring-up's steps with their results, and the newest readings.
+         */
+        get: operations["getBringUp"];
+        put?: never;
+        /**
+         * Begin a bring-up: its sketch is uploaded to the robot's board, which takes some seconds
+         * @description Begin a bring-up: its sketch is uploaded to the robot's board, which takes some seconds.
+         */
+        post: operations["beginBringUp"];
+        /**
+         * End the bring-up: the report is written, and the robot's firmware uploaded again
+         * @description End the bring-up: the report is written, and the robot's firmware uploaded again.
+         */
+        delete: operations["endBringUp"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/bring-up/actions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Perform an action of a step; this answers with its results
+         * @description Perform an action of a step; this answers with its results.
+         */
+        post: operations["actInBringUp"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/bring-up/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Return the newest report, as HTML
+         * @description Return the newest report, as HTML.
+         */
+        get: operations["getBringUpReport"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/comm-tests/cancel": {
         parameters: {
             query?: never;
@@ -2200,6 +2268,16 @@ export interface components {
             more: boolean;
         };
         /**
+         * BeaconLevels
+         * @description The levels of the detectors' pins.
+         */
+        BeaconLevels: {
+            /** Left */
+            left: boolean;
+            /** Right */
+            right: boolean;
+        };
+        /**
          * Bookmark
          * @description A moment of a session with a text.
          */
@@ -2229,6 +2307,134 @@ export interface components {
             text?: string | null;
             /** Time */
             time?: number | null;
+        };
+        /**
+         * BringUpAction
+         * @description A button of a step. One to hold is posted every 100 ms while it is held, and with `stop` in the end.
+         */
+        BringUpAction: {
+            /** Inputs */
+            inputs: components["schemas"]["BringUpQuestion"][];
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "press" | "hold";
+            /** Label */
+            label: string;
+            /** Name */
+            name: string;
+        };
+        /**
+         * BringUpOrder
+         * @description An action of a step, with what the person gives.
+         */
+        BringUpOrder: {
+            /** Action */
+            action: string;
+            /** Inputs */
+            inputs?: {
+                [key: string]: number | string;
+            };
+            /** Step */
+            step: string;
+        };
+        /**
+         * BringUpQuestion
+         * @description A number that a person gives, or one of the choices.
+         */
+        BringUpQuestion: {
+            /**
+             * Choices
+             * @description empty for a number
+             */
+            choices: string[];
+            /** Label */
+            label: string;
+            /** Maximum */
+            maximum: number;
+            /** Minimum */
+            minimum: number;
+            /** Name */
+            name: string;
+            /** Optional */
+            optional: boolean;
+            /** Unit */
+            unit: string;
+        };
+        /**
+         * BringUpResult
+         * @description One check of one part.
+         */
+        BringUpResult: {
+            /**
+             * Advice
+             * @description what to do where it is not good
+             */
+            advice: string;
+            /** Expected */
+            expected: string;
+            /** Measured */
+            measured: string;
+            /**
+             * Verdict
+             * @enum {string}
+             */
+            verdict: "good" | "note" | "wrong";
+            /** What */
+            what: string;
+        };
+        /**
+         * BringUpState
+         * @description The bring-up as a whole.
+         */
+        BringUpState: {
+            /**
+             * Phase
+             * @enum {string}
+             */
+            phase: "idle" | "starting" | "ready" | "ending";
+            /**
+             * Problem
+             * @description why it could not go on; empty if it could
+             */
+            problem: string;
+            raw: components["schemas"]["RawReadings"] | null;
+            /**
+             * Report
+             * @description address of the newest report
+             */
+            report: string | null;
+            /** Steps */
+            steps: components["schemas"]["BringUpStep"][];
+            /**
+             * Words
+             * @description what it is doing, or how it ended
+             */
+            words: string;
+        };
+        /**
+         * BringUpStep
+         * @description A step: what to do, and what came of it.
+         */
+        BringUpStep: {
+            /** About */
+            about: string;
+            /** Actions */
+            actions: components["schemas"]["BringUpAction"][];
+            /** Expected */
+            expected: string;
+            /** Name */
+            name: string;
+            /** Results */
+            results: components["schemas"]["BringUpResult"][];
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "open" | "done" | "wrong";
+            /** Title */
+            title: string;
         };
         /**
          * CalibrateCommand
@@ -2998,6 +3204,22 @@ export interface components {
             too_old: number;
         };
         /**
+         * EncoderReading
+         * @description An encoder's angle and the field of its magnet.
+         */
+        EncoderReading: {
+            /**
+             * Counts
+             * @description 0 to 1023
+             */
+            counts: number;
+            /**
+             * Field
+             * @enum {string}
+             */
+            field: "green" | "yellow" | "red" | "silent";
+        };
+        /**
          * EndedIdentification
          * @description The last fit.
          */
@@ -3352,6 +3574,35 @@ export interface components {
             profile: components["schemas"]["Profile"];
             /** Unknown */
             unknown: string[];
+        };
+        /**
+         * ImuRaw
+         * @description The IMU's reading along and about the chip's own axes.
+         */
+        ImuRaw: {
+            /**
+             * Force
+             * @description g
+             */
+            force: [
+                number,
+                number,
+                number
+            ];
+            /**
+             * Identity
+             * @description WHO_AM_I
+             */
+            identity: number;
+            /**
+             * Rate
+             * @description °/s
+             */
+            rate: [
+                number,
+                number,
+                number
+            ];
         };
         /**
          * Job
@@ -4073,6 +4324,25 @@ export interface components {
             run: number;
             /** Title */
             title: string;
+        };
+        /**
+         * RawReadings
+         * @description The newest readings of all parts, as they say them.
+         */
+        RawReadings: {
+            /** Battery Volts */
+            battery_volts: number;
+            beacons: components["schemas"]["BeaconLevels"];
+            /** Encoders */
+            encoders: components["schemas"]["EncoderReading"][];
+            imu: components["schemas"]["ImuRaw"] | null;
+            /** Pressure Hpa */
+            pressure_hpa: number | null;
+            /**
+             * Temperature
+             * @description °C
+             */
+            temperature: number | null;
         };
         /**
          * RecordedColumn
@@ -6066,6 +6336,245 @@ export interface operations {
             };
             /** @description The database cannot be copied */
             507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getBringUp: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BringUpState"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    beginBringUp: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BringUpState"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    endBringUp: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BringUpState"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    actInBringUp: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BringUpOrder"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BringUpState"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getBringUpReport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": unknown;
+                };
+            };
+            /** @description There was no bring-up yet */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };

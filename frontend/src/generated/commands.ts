@@ -1,5 +1,5 @@
 // Written by `make generate` from robot_runtime/contract/commands.py. Do not edit.
-import type { ColourRange } from './topics';
+import type { CalibrationValues, ColourRange } from './topics';
 
 /** Arms the robot. It is refused with every reason that stands against it. */
 export interface ArmCommand {

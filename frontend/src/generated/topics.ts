@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = '742c62b8';
+export const DEFINITIONS_HASH = '554575d8';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -635,7 +635,7 @@ export interface VisionInForce {
 
 /** A robot's calibration as its board keeps it. Fins: front right, back right, back left, front left. */
 export interface CalibrationValues {
-  done: 'fins' | 'motors' | 'axes' | 'gyro' | 'pressure' | 'battery' | 'beacons'[];
+  done: ('fins' | 'motors' | 'axes' | 'gyro' | 'pressure' | 'battery' | 'beacons')[];
   fin_zeros: [number, number, number, number];
   encoders_reversed: [boolean, boolean, boolean, boolean];
   motors_reversed: [boolean, boolean, boolean, boolean];

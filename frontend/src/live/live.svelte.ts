@@ -3,6 +3,7 @@ import { SvelteMap } from 'svelte/reactivity';
 import {
   OTHER_TOPICS,
   type Alarm,
+  type CalibrationKept,
   type DebugLine,
   type Detection,
   type TunableParameter,
@@ -59,6 +60,8 @@ export class Live {
   state = $state.raw<State | null>(null);
   /** everything that may be tuned; null until the runtime has told of it */
   parameters = $state.raw<readonly TunableParameter[] | null>(null);
+  /** null until the runtime has told what it knows of the board's */
+  calibration = $state.raw<CalibrationKept | null>(null);
   detection = $state.raw<Detection | null>(null);
   /** Hz, as detections really come; null while there are fewer than two */
   detectionRate = $state<number | null>(null);
@@ -221,6 +224,7 @@ export class Live {
     this.events.clear();
     this.state = null;
     this.parameters = null;
+    this.calibration = null;
     this.detection = null;
     this.detectionRate = null;
     this.#detected = [];
@@ -263,6 +267,7 @@ export class Live {
   #keep(topic: number, documents: { time: number }[], last: { time: number }): void {
     if (topic === OTHER_TOPICS.state) this.state = last as State;
     else if (topic === OTHER_TOPICS.parameters) this.parameters = (last as Parameters).parameters;
+    else if (topic === OTHER_TOPICS.calibration) this.calibration = last as CalibrationKept;
     else if (topic === OTHER_TOPICS.detection) this.#detect(documents, last as Detection);
     else if (topic === OTHER_TOPICS.vision) this.vision = last as VisionInForce;
     else if (topic === OTHER_TOPICS.debug) this.debug.append(documents as DebugLine[]);

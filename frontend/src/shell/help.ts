@@ -14,6 +14,7 @@ export const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Reco
   replay: 'use/sessions/#replay',
   system: 'run/troubleshoot/',
   people: 'run/access/',
+  'bring-up': 'run/bring-up/',
   unknown: '',
 };
 

@@ -8,5 +8,6 @@ export const pages = {
   system: 'System',
   replay: 'Replay',
   people: 'People',
+  'bring-up': 'Bring-up',
   unknown: 'Page not found',
 } as const;

@@ -366,6 +366,52 @@ class ZeroDepth(Packet):
     """Host to board: the pressure now is the surface's. Ignored while armed."""
 
 
+# The bring-up: what the robot's own firmware does not do. Its sketch is firmware/examples/bring_up.
+
+
+@_packet(0x16, reliable=True)
+class RequestScan(Packet):
+    """Host to board, only in the bring-up: asks which devices answer on I2C, with power on the motors."""
+
+
+@_packet(0x17, reliable=True)
+class Scan(Packet):
+    """Board to host, only in the bring-up: the addresses that answered."""
+
+    answered: Annotated[tuple[int, ...], Wire("B", count=16, meaning="bit a % 8 of byte a / 8: address a")]
+
+
+@_packet(0x18)
+class Jog(Packet):
+    """Host to board, only in the bring-up: drives one motor, for 250 ms."""
+
+    fin: Annotated[int, Wire("B", meaning="0 to 3, by the H-bridge's address")]
+    drive: Annotated[int, Wire("b", meaning="H-bridge command, -20 to 20")]
+
+
+@_packet(0x19)
+class Raw(Packet):
+    """Board to host, only in the bring-up, 20 Hz: what the devices say, as they say it."""
+
+    time: Micros
+    encoders: Annotated[
+        tuple[int, int, int, int], Wire("H", count=4, meaning="the AS5040's words: 10 bits, then status")
+    ]
+    identity: Annotated[int, Wire("B", meaning="the IMU's WHO_AM_I; 0 where nothing answers")]
+    rate: Annotated[
+        tuple[float, float, float],
+        Wire("h", scale=0.00026632423, unit="rad/s", count=3, meaning="turn rate about the chip's axes"),
+    ]
+    force: Annotated[
+        tuple[float, float, float],
+        Wire("h", scale=0.0011971008, unit="m/s²", count=3, meaning="specific force along the chip's axes"),
+    ]
+    pressure: Annotated[int, Wire("I", unit="Pa", meaning="absolute pressure; 0 where nothing answers")]
+    temperature: Annotated[float, Wire("h", scale=0.01, unit="°C", meaning="temperature of the water")]
+    battery: Annotated[int, Wire("H", meaning="the converter's counts, 1023 for twice 5 V")]
+    beacons: Annotated[int, Wire("B", meaning="levels of the detectors' pins; bit 0: right, bit 1: left")]
+
+
 def encode(packet: Packet) -> bytes:
     """Type byte and payload. Raises LayoutError where a value cannot be written."""
     return bytes([packet.type]) + packet.to_bytes()

@@ -132,6 +132,10 @@ class EmulatorClient:
         """Seeds the faults of the line from now on."""
         self.command(f"seed {seed}")
 
+    def turn(self, fin: int, angle: float) -> None:
+        """Turns a fin by hand to this angle (rad). Raises BoardError."""
+        self.command(f"turn {fin} {angle!r}")
+
     def reset(self) -> None:
         """Pulls the reset pin."""
         self.command("reset")

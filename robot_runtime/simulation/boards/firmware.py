@@ -37,6 +37,11 @@ def firmware_path(build: Path, baud: int, suffix: str, *, hil: bool = False) -> 
     return (folder / "hil" if hil else folder) / f"robot{suffix}"
 
 
+def bring_up_path(build: Path, baud: int) -> Path:
+    """Returns the path of the bring-up's sketch for this many bit/s, to upload."""
+    return firmware_path(build, baud, ".hex").with_name("bring_up.hex")
+
+
 @contextmanager
 def build_lock() -> Iterator[None]:
     """Waits for other builds: make does not notice another make that writes the same files."""
@@ -61,7 +66,8 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
             f"There is no firmware for {baud} baud ({product}), and no compiler to build it. Install make, "
             "gcc-avr and arduino-core-avr, or set link.baud in robot.toml to what the firmware was built for."
         )
-    command = ["make", "--silent", "-C", str(_SOURCES), "robot", f"BAUD={baud}", f"BUILD={product.parent}"]
+    sketches = ["robot"] if hil else ["robot", "bring_up"]
+    command = ["make", "--silent", "-C", str(_SOURCES), *sketches, f"BAUD={baud}", f"BUILD={product.parent}"]
     command += ["HIL=1"] if hil else []
     with build_lock():
         made = subprocess.run(command, capture_output=True, text=True, check=False)

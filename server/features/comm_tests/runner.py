@@ -44,7 +44,7 @@ class CommTestError(Exception):
 
 Notify = Callable[[dict[str, Any]], None]
 Reserve = Callable[[str], AbstractAsyncContextManager[list[str]]]
-"""Called with the test's name; the context reserves the robot's board, its value are the arguments of the
+"""Called with the test in words; the context reserves the robot's board, its value are the arguments of the
 test process. Raises RefusedError if the board is not free."""
 
 
@@ -136,7 +136,7 @@ class CommTestRunner:
         progress = Progress(tests, place, self._clock.now(), weights)
         try:
             if place == "robot":
-                async with self._reserve(tests[0].name) as arguments:
+                async with self._reserve(f"The communication test “{tests[0].name}”") as arguments:
                     await self._perform(progress, text, arguments, began)
             else:
                 await self._perform(progress, text, [], began)

@@ -7,8 +7,8 @@ from typing import Any
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.experiments.comm_test.document import CommTest
+from server.features.board.reservation import RobotBoard
 from server.features.comm_tests import tables
-from server.features.comm_tests.board_reservation import RobotBoard
 from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.schemas import Place

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-import server.features.comm_tests.board_reservation as handover_module
+import server.features.board.reservation as handover_module
 import server.stream.bridge as bridge_module
 from robot_runtime.config import LinkConfig
 from robot_runtime.errors import RefusedError
@@ -79,7 +79,7 @@ async def reserved_reason(served: Served, name: str = "tested") -> AsyncIterator
         served.runtime.publish(state_block(1000 * (asked + 1), time=now, armed=False))
 
     disarming = asyncio.create_task(disarm())
-    async with served.container.board_reservation.reserve(name) as arguments:
+    async with served.container.board_reservation.reserve(f"The communication test “{name}”") as arguments:
         yield arguments
     await disarming
 
@@ -104,7 +104,7 @@ def test_the_board_is_reserved_and_released(robot: Robot) -> None:
                 assert (answer.status_code, "“grid”" in answer.json()["detail"]) == (409, True)
             assert (await served.api.post("/robot/stop")).status_code == 204
             with pytest.raises(RefusedError, match="grid"):
-                async with served.container.board_reservation.reserve("another"):
+                async with served.container.board_reservation.reserve("The communication test “another”"):
                     pass
             assert runtime_state(served) == "paused"
         assert "--restore" in robot.uploads.read_text()
@@ -152,7 +152,7 @@ def test_no_reservation_without_an_answer_to_stop(robot: Robot, monkeypatch: pyt
 
     async def scenario(served: Served) -> None:
         served.runtime.gates["stop"].clear()
-        with pytest.raises(RefusedError, match="could not be disarmed before the test"):
+        with pytest.raises(RefusedError, match="could not be disarmed before"):
             async with served.container.board_reservation.reserve("tested"):
                 pass
         served.runtime.gates["stop"].set()

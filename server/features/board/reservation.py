@@ -1,4 +1,4 @@
-"""Reserves the robot's board for a communication test, and restores the robot's firmware afterwards.
+"""Reserves the robot's board for other programs, and restores the robot's firmware afterwards.
 
 While the board may hold other firmware, a file in the data folder says so: it is written before the first
 upload and removed after the robot's firmware is back. So a killed server restores it at its next start.
@@ -53,14 +53,14 @@ class RobotBoard:
         return self._settings.data.firmware_away.exists()
 
     @asynccontextmanager
-    async def reserve(self, name: str) -> AsyncIterator[list[str]]:
-        """Reserve the board for the test of this name; the value are the lab's arguments for it.
+    async def reserve(self, work: str) -> AsyncIterator[list[str]]:
+        """Reserve the board for this work, in words; the value are the lab's arguments for the board.
 
         Raises RefusedError if the note that the firmware is away cannot be written.
         """
         note = self._settings.data.firmware_away
         try:
-            await asyncio.to_thread(_write_note, note, name)
+            await asyncio.to_thread(_write_note, note, work)
         except OSError as problem:
             raise RefusedError(
                 f"{note} cannot be written: {problem.strerror}. After a power cut the server would not know "
@@ -73,12 +73,14 @@ class RobotBoard:
 
     async def restore(self) -> None:
         """Upload the robot's firmware, and report the result."""
-        problem = await self._upload()
+        settings = self._settings
+        program = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
+        problem = await self.upload(program)
         if problem:
             self.problem = (
                 f"The robot's firmware is not on its board: {problem}. Check that the board is powered and "
-                "its reset line connected, then start the server again, or another test on the robot's "
-                "board; both bring it back."
+                "its reset line connected, then start the server again, or a communication test on "
+                "the robot's board; both bring it back."
             )
             self._notify("firmware", "alarm", self.problem)
             return
@@ -86,13 +88,11 @@ class RobotBoard:
         self.problem = None
         self._notify("firmware", "info", "The robot's firmware is back on its board.")
 
-    async def _upload(self) -> str:
-        """Upload the robot's firmware; the problem in words, empty on success."""
+    async def upload(self, program: Path) -> str:
+        """Upload a program (Intel HEX); the problem in words, empty on success."""
         output = ProcessLog(self._settings.data.logs / "restore.log")
         before = output.size()
-        settings = self._settings
-        firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
-        command = [sys.executable, "-m", "robot_runtime.experiments.comm_test", "--restore", str(firmware)]
+        command = [sys.executable, "-m", "robot_runtime.experiments.comm_test", "--restore", str(program)]
         command += ["--with-parent", *self._arguments]
         try:
             async with asyncio.timeout(PORT_SECONDS):
@@ -120,7 +120,7 @@ class RobotBoard:
 
 
 class BoardReservation:
-    """Hands the board from the runtime to a test; `occupied` returns a reason against it, if any."""
+    """Hands the board from the runtime to another program; `occupied` returns a reason against it, if any."""
 
     def __init__(
         self,
@@ -139,7 +139,7 @@ class BoardReservation:
         self._occupied = occupied
 
     @asynccontextmanager
-    async def reserve(self, name: str) -> AsyncIterator[list[str]]:
+    async def reserve(self, work: str) -> AsyncIterator[list[str]]:
         """As `RobotBoard.reserve`; disarms the robot and ends its runtime before, restarts it afterwards.
 
         Raises RefusedError if that is not possible.
@@ -147,13 +147,13 @@ class BoardReservation:
         reason = self._bridge.reserved_reason or self._occupied()
         if reason:
             raise RefusedError(reason)
-        why = f"The communication test “{name}” uses the robot's board. To free the board, cancel the test."
+        why = f"{work} uses the robot's board. To free the board, end it."
         with self._nobody_commands(why):
             await self._disarm()
             # A session may have been about to start when the board was asked for.
             if reason := self._occupied():
                 raise RefusedError(reason)
-            async with self._without_runtime(why), self._board.reserve(name) as arguments:
+            async with self._without_runtime(why), self._board.reserve(work) as arguments:
                 yield arguments
 
     async def start_processes(self) -> None:
@@ -161,7 +161,7 @@ class BoardReservation:
         if not self._board.away:
             self._processes.start()
             return
-        why = "A communication test was cut off; the robot's firmware is being uploaded to its board again."
+        why = "Work on the robot's board was cut off; its firmware is being uploaded to the board again."
         with self._nobody_commands(why):
             async with self._without_runtime(why):
                 self._processes.start()
@@ -193,12 +193,12 @@ class BoardReservation:
         except RuntimeSilentError as problem:
             if not problem.waited:
                 return  # no runtime: a board without commands disarms itself within a second
-            raise RefusedError(f"The robot could not be disarmed before the test. {problem}") from problem
+            raise RefusedError(f"The robot could not be disarmed before. {problem}") from problem
         while self._may_be_armed(sent):
             if self._clock.now() - sent > DISARM_SECONDS:
                 raise RefusedError(
-                    f"The robot was not disarmed within {DISARM_SECONDS:g} s, so its board cannot run a "
-                    "communication test. Look at the System page, and try again."
+                    f"The robot was not disarmed within {DISARM_SECONDS:g} s, so its board cannot run "
+                    "another program. Look at the System page, and try again."
                 )
             await asyncio.sleep(POLL_SECONDS)
 
@@ -209,8 +209,8 @@ class BoardReservation:
         return not isinstance(time, int | float) or time < since or state.get("armed") is not False
 
 
-def _write_note(path: Path, name: str) -> None:
-    write_whole(path, f"{name}\n".encode())
+def _write_note(path: Path, work: str) -> None:
+    write_whole(path, f"{work}\n".encode())
 
 
 def _remove_note(path: Path) -> None:

@@ -1,0 +1,50 @@
+import { api, type BringUpInputs, type BringUpState } from '../../api';
+import type { Answer } from '../../http';
+
+/** ms between two looks: of live readings, while something is being done, and while nothing is */
+const EVERY: Readonly<Record<BringUpState['phase'], number>> = { ready: 250, starting: 500, ending: 500, idle: 2000 };
+
+/** The bring-up as the server tells it. */
+export class BringUpWatch {
+  state = $state.raw<BringUpState | null>(null);
+  /** why it could not be looked at */
+  problem = $state('');
+  /** counts what the server has done meanwhile: an answer from before is older */
+  #turn = 0;
+
+  /** Look again and again while the page is visible. Returns what ends that. */
+  start(): () => void {
+    let ended = false;
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    const look = async () => {
+      if (!document.hidden) await this.look();
+      if (!ended) timer = setTimeout(() => void look(), EVERY[this.state?.phase ?? 'idle']);
+    };
+    void look();
+    return () => {
+      ended = true;
+      clearTimeout(timer);
+    };
+  }
+
+  async look(): Promise<void> {
+    const turn = this.#turn;
+    const answer = await api.bringUp();
+    if (turn !== this.#turn) return;
+    this.problem = 'problem' in answer ? answer.problem : '';
+    if ('value' in answer) this.state = answer.value;
+  }
+
+  begin = (): Promise<string> => this.#change(api.beginBringUp());
+  end = (): Promise<string> => this.#change(api.endBringUp());
+  act = (step: string, action: string, inputs: BringUpInputs): Promise<string> => this.#change(api.actInBringUp(step, action, inputs));
+
+  /** Answers why it was refused; '' where it was not. */
+  async #change(request: Promise<Answer<BringUpState>>): Promise<string> {
+    const answer = await request;
+    this.#turn += 1;
+    if ('problem' in answer) return answer.problem;
+    this.state = answer.value;
+    return '';
+  }
+}

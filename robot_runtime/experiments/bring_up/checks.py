@@ -1,0 +1,365 @@
+"""The checks of the bring-up: readings in, results in words out."""
+
+from collections.abc import Collection, Sequence
+from math import degrees
+from statistics import fmean, pstdev
+
+from robot_runtime.contract.calibration import GYRO_BIAS, Axis
+from robot_runtime.contract.packets import FIN_COUNT, Raw
+from robot_runtime.control.fin_check import FINS
+from robot_runtime.experiments.bring_up.readings import (
+    Three,
+    field,
+    mean_force,
+    mean_pressure,
+    mean_volts,
+    movements,
+)
+from robot_runtime.experiments.bring_up.results import Result
+
+IMU, PRESSURE = 0x69, 0x76
+BRIDGES = (0x64, 0x60, 0x61, 0x63)
+"""By fin, as firmware/src/sensors/drv8830.cpp addresses them."""
+DEVICES = {
+    IMU: "IMU",
+    PRESSURE: "pressure sensor",
+    **{address: f"H-bridge of the {fin} fin" for address, fin in zip(BRIDGES, FINS, strict=True)},
+}
+_BRIDGE_RANGE = range(0x60, 0x69)
+"""What the DRV8830's two straps can choose."""
+IDENTITIES = {
+    0x68: "an MPU-6050",
+    0x70: "an MPU-6500 or a clone of the MPU-6050",
+    0x71: "an MPU-9250",
+    0x72: "a clone of the MPU-6050",
+    0x98: "a clone of the MPU-6050",
+}
+
+MOVED = 40
+"""Counts, 14°, from which an encoder has been turned."""
+QUARTER = 256
+_QUARTER_TOLERANCE = 128
+_LEVEL, _TILTED = 0.8, 0.6
+"""g along one axis, from which the hull counts as lying so."""
+_FORCE_TOLERANCE = 0.1
+"""g; an MPU-6050 is off by 0.05 g at most, a clone by more."""
+AIR = (80_000, 110_000)
+"""Pa, from a high mountain to a strong high."""
+SENSOR_TOLERANCE = 5_000
+"""Pa; the MS5837-30BA is off by 50 hPa at most between 0 and 40 °C."""
+DEPTH_TOLERANCE = 0.02
+"""m, and as much as a twentieth of the depth."""
+PRESSURE_PER_METRE = 9_810
+_STILL = 0.02
+"""rad/s, standard deviation at rest: ten times the noise of an MPU-6050 behind its 44 Hz filter."""
+
+
+def check_devices(found: Collection[int]) -> list[Result]:
+    """The devices that answer on I2C. An address that should be silent hints at a strap."""
+    strangers = sorted(set(found) - set(DEVICES))
+    return [
+        *(_check_device(address, name, found, strangers) for address, name in DEVICES.items()),
+        *(
+            Result(
+                what=f"0x{address:02X}",
+                expected="silent",
+                measured="answers",
+                verdict="note",
+                advice=_stranger(address),
+            )
+            for address in strangers
+        ),
+    ]
+
+
+def _check_device(address: int, name: str, found: Collection[int], strangers: Sequence[int]) -> Result:
+    there = address in found
+    return Result(
+        what=f"{name} at 0x{address:02X}",
+        expected="answers",
+        measured="answers" if there else "silent",
+        verdict="good" if there else "wrong",
+        advice="" if there else _missing(address, strangers, found),
+    )
+
+
+def _missing(address: int, strangers: Sequence[int], found: Collection[int]) -> str:
+    if not found:
+        return (
+            "Nothing answers: check SDA (A4), SCL (A5), their pull-ups, and that no device holds them down."
+        )
+    if address == IMU:
+        if 0x68 in strangers:
+            return "An IMU answers at 0x68: its strap AD0 must lie at its supply."
+        return "Check the IMU's supply and its two wires."
+    if address == PRESSURE:
+        if 0x77 in strangers:
+            return "A sensor answers at 0x77: it is an MS5837-02BA or of another make; the robot needs 0x76."
+        return "Check the pressure sensor's supply and its two wires."
+    bridges = [one for one in strangers if one in _BRIDGE_RANGE]
+    if bridges:
+        places = ", ".join(f"0x{one:02X}" for one in bridges)
+        return f"A bridge answers at {places} instead: compare its straps A0 and A1 with the wiring table."
+    return "Check this bridge's supply and straps: two bridges with the same straps answer as one."
+
+
+def _stranger(address: int) -> str:
+    if address == 0x68:
+        return "An IMU whose strap AD0 lies at ground."
+    if address in _BRIDGE_RANGE:
+        return "An H-bridge with other straps than any fin's."
+    return "The robot does not need it."
+
+
+def check_identity(raw: Raw) -> Result:
+    """The kind of the IMU."""
+    known = IDENTITIES.get(raw.identity)
+    return Result(
+        what="kind of IMU",
+        expected="an MPU-6050 or one whose registers agree",
+        measured=known or (f"WHO_AM_I 0x{raw.identity:02X}" if raw.identity else "silent"),
+        verdict="good" if known else "wrong",
+        advice="" if known else "Another chip answers there, or none. The robot cannot use it.",
+    )
+
+
+def check_fields(raw: Raw) -> list[Result]:
+    """The magnet that each encoder sees."""
+    advice = {
+        "green": "",
+        "yellow": "The magnet is a little too near or too far: usable, but the angle is less exact.",
+        "red": "The magnet is far too near, too far, or off its centre.",
+        "silent": "No encoder answers: check its supply, its select line, and the bus.",
+    }
+    fields = [field(word) for word in raw.encoders]
+    return [
+        Result(
+            what=f"encoder of the {name} fin",
+            expected="green",
+            measured=now,
+            verdict="good" if now == "green" else "note" if now == "yellow" else "wrong",
+            advice=advice[now],
+        )
+        for name, now in zip(FINS, fields, strict=True)
+    ]
+
+
+def check_turn(fin: int, before: Raw, after: Raw) -> tuple[Result, bool | None]:
+    """A fin's tip was turned a quarter down by hand; whether its counts fall by that, if it can be said."""
+    turned = movements([before, after])
+    moved = [one for one in range(FIN_COUNT) if abs(turned[one]) >= MOVED]
+    what, expected = f"{FINS[fin]} fin turned by hand", "its own encoder turns by a quarter"
+    if moved == [fin] and abs(abs(turned[fin]) - QUARTER) <= _QUARTER_TOLERANCE:
+        falls = turned[fin] < 0
+        way = "fall" if falls else "rise"
+        measured = f"{abs(turned[fin]) * 360 / 1024:.0f}°; its counts {way} as the tip goes down"
+        return Result(what=what, expected=expected, measured=measured), falls
+    if not moved:
+        measured, advice = "no encoder turned", "Is the magnet glued to the shaft? Turn the fin by its root."
+    elif moved == [fin]:
+        measured = f"{abs(turned[fin]) * 360 / 1024:.0f}°"
+        advice = "Turn it by a quarter, slowly, the way its tip goes down, and measure again."
+    elif len(moved) == 1:
+        measured = f"the encoder of the {FINS[moved[0]]} fin turned"
+        advice = (
+            f"The select lines of the {FINS[fin]} and the {FINS[moved[0]]} encoder are swapped, or you "
+            "turned the other fin. Swap them and measure both again."
+        )
+    else:
+        measured = f"the encoders of {' and '.join(FINS[one] for one in moved)} turned"
+        advice = "Turn one fin alone; else two encoders are selected at once."
+    return Result(what=what, expected=expected, measured=measured, verdict="wrong", advice=advice), None
+
+
+def check_jog(fin: int, raws: Sequence[Raw], seen: int | None) -> tuple[Result, bool | None]:
+    """A motor was driven forwards and a person saw a fin turn; whether the counts fell, if it can be said."""
+    turned = movements(raws)
+    moved = [one for one in range(FIN_COUNT) if abs(turned[one]) >= MOVED]
+    what = f"motor of the {FINS[fin]} fin"
+    expected = "this fin turns, and its encoder with it"
+    eyes = "no fin turned" if seen is None else f"the {FINS[seen]} fin turned"
+    encoders = " and ".join(FINS[one] for one in moved)
+    measured = f"{eyes}; {f'encoder: {encoders}' if moved else 'no encoder'}"
+    if moved == [fin] and seen == fin:
+        return Result(what=what, expected=expected, measured=measured), turned[fin] < 0
+    return (
+        Result(
+            what=what,
+            expected=expected,
+            measured=measured,
+            verdict="wrong",
+            advice=_explain_jog(fin, moved, seen),
+        ),
+        None,
+    )
+
+
+def _explain_jog(fin: int, moved: Sequence[int], seen: int | None) -> str:
+    if len(moved) > 1:
+        both = " and ".join(FINS[one] for one in moved)
+        return f"Two motors turn: the H-bridges of {both} have the same straps."
+    if seen is None and not moved:
+        return "Is the motors' supply on, and the motor at its bridge? A bridge that has tripped rests."
+    if not moved:
+        return "The fin turns but no encoder sees it: check this encoder's magnet and select line."
+    (encoder,) = moved
+    if seen is None:
+        return f"The encoder of the {FINS[encoder]} fin turned though no fin did: look again."
+    if seen == encoder:
+        return (
+            f"The motors of the {FINS[fin]} and the {FINS[seen]} fin are swapped at their bridges, or the "
+            "bridges' straps are."
+        )
+    if seen == fin:
+        return (
+            f"This fin turns, but the encoders of {FINS[fin]} and {FINS[encoder]} have swapped select lines."
+        )
+    return "Motors and encoders are swapped: begin with the motor's wires, then repeat both steps."
+
+
+def find_axis(force: Three, sign: int, least: float) -> Axis | None:
+    """The chip's axis along which gravity is felt most, with this sign; None where it lies askew."""
+    axis = max(range(3), key=lambda one: abs(force[one]))
+    return _name(axis, (force[axis] > 0) == (sign > 0)) if abs(force[axis]) >= least else None
+
+
+def check_pose(what: str, raws: Sequence[Raw], sign: int, level: bool) -> tuple[Result, Axis | None]:
+    """The hull was laid down in a pose, in which one axis of the body lies along gravity.
+
+    `sign`: -1 where the body's axis points down, 1 where it points up (specific force points up at rest).
+    """
+    force = mean_force(raws)
+    size = sum(part * part for part in force) ** 0.5
+    axis = find_axis(force, sign, _LEVEL if level else _TILTED)
+    shown = f"{force[0]:+.2f}, {force[1]:+.2f}, {force[2]:+.2f} g"
+    if size == 0:
+        advice = "The IMU says nothing."
+    elif abs(size - 1) > _FORCE_TOLERANCE:
+        advice = f"At rest it must feel 1 g, but feels {size:.2f} g: it moved, or it is a bad clone."
+    elif axis is None:
+        advice = "It lies askew: lay the hull as the picture shows, and measure again."
+    else:
+        return Result(what=what, expected="1 g along one axis", measured=shown), axis
+    return Result(
+        what=what, expected="1 g along one axis", measured=shown, verdict="wrong", advice=advice
+    ), None
+
+
+def complete_axes(forward: Axis, down: Axis) -> tuple[Axis, Axis, Axis] | None:
+    """The chip's axes forward, right and down; None where forward and down are the same axis."""
+    first, last = "xyz".index(forward[-1]), "xyz".index(down[-1])
+    if first == last:
+        return None
+    # Right is the cross product of down and forward.
+    cyclic = (first - last) % 3 == 1
+    positive = forward.startswith("-") == down.startswith("-")
+    return forward, _name(3 - first - last, positive == cyclic), down
+
+
+def _name(axis: int, positive: bool) -> Axis:
+    names: tuple[Axis, ...] = ("x", "y", "z") if positive else ("-x", "-y", "-z")
+    return names[axis]
+
+
+def check_air(raws: Sequence[Raw], barometer: float | None) -> Result:
+    """The pressure in air, in Pa, beside that of a barometer at the same height, if there is one."""
+    pressure = mean_pressure(raws)
+    expected = f"{barometer / 100:.1f} hPa" if barometer else f"{AIR[0] / 100:.0f} to {AIR[1] / 100:.0f} hPa"
+    good = (
+        AIR[0] <= pressure <= AIR[1] if barometer is None else abs(pressure - barometer) <= SENSOR_TOLERANCE
+    )
+    advice = "A sound sensor is off by 50 hPa at most. Is it wet, or pressed by its potting?"
+    if not pressure:
+        advice = "The sensor says nothing: its PROM could not be read, or it does not answer."
+    return Result(
+        what="pressure in air",
+        expected=expected,
+        measured=f"{pressure / 100:.1f} hPa",
+        verdict="good" if good else "wrong",
+        advice="" if good else advice,
+    )
+
+
+def check_bucket(air: float, raws: Sequence[Raw], depth: float) -> Result:
+    """The pressure at a known depth (m) of fresh water."""
+    measured = (mean_pressure(raws) - air) / PRESSURE_PER_METRE
+    good = abs(measured - depth) <= max(DEPTH_TOLERANCE, depth / 20)
+    return Result(
+        what="depth in a bucket",
+        expected=f"{depth * 100:.0f} cm",
+        measured=f"{measured * 100:.1f} cm",
+        verdict="good" if good else "wrong",
+        advice="" if good else "Hold its opening at that depth, and wait until no bubble sits in it.",
+    )
+
+
+def check_battery(raws: Sequence[Raw], multimeter: float) -> tuple[Result, float | None]:
+    """The battery's voltage beside a multimeter's; the true one over the measured one, if it can be."""
+    volts = mean_volts(raws)
+    factor = multimeter / volts if volts > 1 else 0.0
+    good = 0.8 <= factor <= 1.25
+    sound = abs(factor - 1) <= 0.06
+    advice = "" if sound else "The regulator or the divider is out of its tolerance. The factor mends it."
+    if not good:
+        advice = "Is the divider made of two equal resistors, its middle at A2?"
+    return (
+        Result(
+            what="battery voltage",
+            expected=f"{multimeter:.2f} V by the multimeter",
+            measured=f"{volts:.2f} V",
+            verdict="wrong" if not good else "good" if sound else "note",
+            advice=advice,
+        ),
+        factor if good else None,
+    )
+
+
+def check_lamp(side: int, dark: Raw, lit: Raw) -> tuple[Result, bool | None]:
+    """A lamp was held before one detector (0: right, 1: left); whether its pin is low in the light."""
+    names = ("right", "left")
+    changed = dark.beacons ^ lit.beacons
+    what, expected = f"{names[side]} detector", "its own pin changes in the light"
+    if changed == 1 << side:
+        low = not lit.beacons >> side & 1
+        return Result(what=what, expected=expected, measured=f"its pin goes {'low' if low else 'high'}"), low
+    if changed == 0:
+        measured, advice = (
+            "no pin changed",
+            "Does the lamp blink at the detector's frequency? Check its supply.",
+        )
+    elif changed == 2 >> side:
+        measured = f"the {names[1 - side]} detector's pin changed"
+        advice = "The detectors are swapped: right belongs to D4, left to D5."
+    else:
+        measured, advice = "both pins changed", "Shade the other detector, and measure again."
+    return Result(what=what, expected=expected, measured=measured, verdict="wrong", advice=advice), None
+
+
+def rest_rate(raws: Sequence[Raw]) -> tuple[Three, float]:
+    """The mean turn rate about the chip's axes, and its largest standard deviation; rad/s."""
+    x, y, z = (fmean(raw.rate[axis] for raw in raws) for axis in range(3))
+    return (x, y, z), max(pstdev(raw.rate[axis] for raw in raws) for axis in range(3))
+
+
+def check_rest(rate: Three, noise: float) -> tuple[Result, bool]:
+    """The turn rate (rad/s) of a hull at rest and its standard deviation; whether it can be trusted."""
+    shown = ", ".join(f"{degrees(part):+.2f}" for part in rate)
+    largest = max(abs(part) for part in rate)
+    if noise > _STILL:
+        advice = "The hull moved. Lay it down where nothing shakes it, and measure again."
+    elif largest > GYRO_BIAS.maximum:
+        advice = "No sound gyroscope is off by so much: the hull turned, or the chip is broken."
+    elif noise == 0:
+        advice = "The readings do not change at all: the IMU does not answer, or has stopped."
+    else:
+        return Result(what="turn rate at rest", expected="below 20 °/s", measured=f"{shown} °/s"), True
+    return (
+        Result(
+            what="turn rate at rest",
+            expected="below 20 °/s",
+            measured=f"{shown} °/s",
+            verdict="wrong",
+            advice=advice,
+        ),
+        False,
+    )

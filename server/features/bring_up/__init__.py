@@ -1,0 +1,1 @@
+"""The bring-up of a robot, from the page and the shell."""

@@ -1,0 +1,240 @@
+"""One bring-up at a time: it reserves the board, uploads the sketch, performs actions, writes the report."""
+
+import asyncio
+import logging
+from collections.abc import Callable, Mapping
+from contextlib import AbstractAsyncContextManager, suppress
+from datetime import UTC, datetime
+from math import degrees
+
+from robot_runtime.contract.packets import Raw
+from robot_runtime.durable_files import write_whole
+from robot_runtime.errors import RefusedError
+from robot_runtime.experiments.bring_up.bench import Bench, BenchError, SerialBench
+from robot_runtime.experiments.bring_up.guide import STEPS, Step
+from robot_runtime.experiments.bring_up.procedure import BringUp
+from robot_runtime.experiments.bring_up.readings import BATTERY_VOLTS, GRAVITY, counts, field
+from robot_runtime.simulation.boards.firmware import bring_up_path
+from server.features.board.reservation import RobotBoard
+from server.features.bring_up.report import write_report
+from server.features.bring_up.schemas import (
+    BeaconLevels,
+    BringUpAction,
+    BringUpQuestion,
+    BringUpResult,
+    BringUpState,
+    BringUpStep,
+    EncoderReading,
+    ImuRaw,
+    Phase,
+    RawReadings,
+)
+from server.platform.errors import NotFoundError
+from server.platform.settings import Settings
+
+log = logging.getLogger(__name__)
+
+IDLE_SECONDS = 1800.0
+"""Time without any action after which a bring-up ends by itself, so that the robot can be used again."""
+REPORT = "/api/bring-up/report"
+Reserve = Callable[[str], AbstractAsyncContextManager[list[str]]]
+
+
+class NoReportError(NotFoundError):
+    """There was no bring-up yet"""
+
+
+class BringUpRun:
+    """The bring-up of this server's robot."""
+
+    def __init__(self, settings: Settings, board: RobotBoard, reserve: Reserve) -> None:
+        self._settings = settings
+        self._board = board
+        self._reserve = reserve
+        self._phase: Phase = "idle"
+        self._words = ""
+        self._problem = ""
+        self._bench: Bench | None = None
+        self._procedure: BringUp | None = None
+        self._task: asyncio.Task[None] | None = None
+        self._over = asyncio.Event()
+        self._acted = asyncio.Event()
+        self._acting = asyncio.Lock()
+
+    async def begin(self) -> None:
+        """Begin; `state` tells when the board is ready. Raises RefusedError where it cannot begin."""
+        if self._task is not None and not self._task.done():
+            raise RefusedError("A bring-up is going on. End it first.")
+        sketch = bring_up_path(self._settings.build, self._settings.link.baud)
+        if not sketch.exists():
+            raise RefusedError(f"There is no {sketch}; `make firmware` builds it.")
+        self._over.clear()
+        self._phase, self._problem = "starting", ""
+        self._words = "The robot is disarmed and its board reserved."
+        reserved: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._task = asyncio.create_task(self._run(reserved))
+        await asyncio.shield(reserved)
+
+    def end(self) -> None:
+        """End it; the robot's firmware is uploaded again meanwhile."""
+        self._over.set()
+
+    async def close(self) -> None:
+        """End it and wait for its end."""
+        self.end()
+        if self._task is not None:
+            await asyncio.wait([self._task])
+
+    def see_stop(self) -> None:
+        """Stop the motor at a STOP."""
+        if self._bench is not None:
+            with suppress(BenchError):
+                self._bench.jog(0, 0)
+
+    async def perform(self, step: str, action: str, inputs: Mapping[str, float | str]) -> None:
+        """Perform an action. Raises RefusedError where it cannot be done."""
+        procedure = self._procedure
+        if procedure is None or self._phase != "ready":
+            raise RefusedError("The board is not ready. Begin the bring-up, and wait until it is.")
+        self._acted.set()
+        async with self._acting:
+            try:
+                await asyncio.to_thread(procedure.perform, step, action, inputs)
+            except BenchError as problem:
+                raise RefusedError(str(problem)) from problem
+        if step == "store":
+            await asyncio.to_thread(self._write_report, procedure)
+
+    def report(self) -> str:
+        """The newest report. Raises NoReportError."""
+        try:
+            return self._settings.data.bring_up.read_text(encoding="utf-8")
+        except FileNotFoundError as problem:
+            raise NoReportError("There was no bring-up yet, so there is no report.") from problem
+
+    def state(self) -> BringUpState:
+        """Everything that pages show."""
+        return BringUpState(
+            phase=self._phase,
+            words=self._words,
+            problem=self._problem,
+            steps=[self._describe(step) for step in STEPS],
+            raw=self._raw(),
+            report=REPORT if self._settings.data.bring_up.exists() else None,
+        )
+
+    async def _run(self, reserved: "asyncio.Future[None]") -> None:
+        try:
+            async with self._reserve("The bring-up") as arguments:
+                reserved.set_result(None)
+                await self._work(arguments[arguments.index("--port") + 1])
+        except RefusedError as problem:
+            if reserved.done():
+                self._problem = str(problem)
+            else:
+                reserved.set_exception(problem)
+        finally:
+            self._phase, self._words = (
+                "idle",
+                "" if self._problem else "The robot's firmware is on its board.",
+            )
+            if not reserved.done():
+                reserved.set_exception(RefusedError("The bring-up ended before it began."))
+
+    async def _work(self, port: str) -> None:
+        try:
+            self._words = "The bring-up's sketch is uploaded to the board."
+            sketch = bring_up_path(self._settings.build, self._settings.link.baud)
+            if problem := await self._board.upload(sketch):
+                self._problem = f"The sketch is not on the board: {problem}"
+                return
+            self._words = "The board is expected to answer."
+            bench = SerialBench(port, self._settings.link.baud)
+            await asyncio.to_thread(bench.__enter__)
+            try:
+                self._bench, self._procedure = bench, BringUp(bench)
+                self._phase, self._words = "ready", "The board answers."
+                await self._wait()
+                await asyncio.to_thread(self._write_report, self._procedure)
+            finally:
+                self._bench = None
+                await asyncio.to_thread(bench.__exit__, None, None, None)
+        except BenchError as problem:
+            self._problem = str(problem)
+        finally:
+            self._phase, self._words = "ending", "The robot's firmware is uploaded again."
+
+    async def _wait(self) -> None:
+        while not self._over.is_set():
+            self._acted.clear()
+            waits = [asyncio.create_task(one.wait()) for one in (self._over, self._acted)]
+            done, _ = await asyncio.wait(waits, timeout=IDLE_SECONDS, return_when=asyncio.FIRST_COMPLETED)
+            for one in waits:
+                one.cancel()
+            if not done:
+                self._problem = "Nobody did anything for half an hour, so the bring-up ended."
+                return
+
+    def _write_report(self, procedure: BringUp) -> None:
+        text = write_report(self._settings.robot, datetime.now(UTC), procedure)
+        try:
+            write_whole(self._settings.data.bring_up, text.encode())
+        except OSError as problem:
+            self._problem = f"The report could not be written: {problem.strerror}"
+
+    def _describe(self, step: Step) -> BringUpStep:
+        procedure = self._procedure
+        return BringUpStep(
+            name=step.name,
+            title=step.title,
+            about=step.about,
+            expected=step.expected,
+            state=procedure.state(step.name) if procedure else "open",
+            actions=[
+                BringUpAction(
+                    name=action.name,
+                    label=action.label,
+                    kind=action.kind,
+                    inputs=[
+                        BringUpQuestion(
+                            name=one.name,
+                            label=one.label,
+                            unit=one.unit,
+                            minimum=one.minimum,
+                            maximum=one.maximum,
+                            choices=list(one.choices),
+                            optional=one.optional,
+                        )
+                        for one in action.inputs
+                    ],
+                )
+                for action in step.actions
+            ],
+            results=[
+                BringUpResult(
+                    what=one.what,
+                    expected=one.expected,
+                    measured=one.measured,
+                    verdict=one.verdict,
+                    advice=one.advice,
+                )
+                for one in (procedure.results(step.name) if procedure else [])
+            ],
+        )
+
+    def _raw(self) -> RawReadings | None:
+        raw = self._bench.newest() if self._bench is not None else None
+        return None if raw is None else _describe_raw(raw)
+
+
+def _describe_raw(raw: Raw) -> RawReadings:
+    fx, fy, fz = (part / GRAVITY for part in raw.force)
+    rx, ry, rz = map(degrees, raw.rate)
+    return RawReadings(
+        encoders=[EncoderReading(counts=counts(word), field=field(word)) for word in raw.encoders],
+        imu=ImuRaw(identity=raw.identity, force=(fx, fy, fz), rate=(rx, ry, rz)) if raw.identity else None,
+        pressure_hpa=raw.pressure / 100 if raw.pressure else None,
+        temperature=raw.temperature if raw.pressure else None,
+        battery_volts=raw.battery * BATTERY_VOLTS,
+        beacons=BeaconLevels(right=bool(raw.beacons & 1), left=bool(raw.beacons & 2)),
+    )

@@ -1,0 +1,108 @@
+"""The bring-up as pages see it."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from robot_runtime.experiments.bring_up.procedure import StepState
+from robot_runtime.experiments.bring_up.readings import Field as MagneticField
+from robot_runtime.experiments.bring_up.results import Verdict
+
+Phase = Literal["idle", "starting", "ready", "ending"]
+
+
+class BringUpQuestion(BaseModel):
+    """A number that a person gives, or one of the choices."""
+
+    name: str
+    label: str
+    unit: str
+    minimum: float
+    maximum: float
+    choices: list[str] = Field(description="empty for a number")
+    optional: bool
+
+
+class BringUpAction(BaseModel):
+    """A button of a step. One to hold is posted every 100 ms while it is held, and with `stop` in the end."""
+
+    name: str
+    label: str
+    kind: Literal["press", "hold"]
+    inputs: list[BringUpQuestion]
+
+
+class BringUpResult(BaseModel):
+    """One check of one part."""
+
+    what: str
+    expected: str
+    measured: str
+    verdict: Verdict
+    advice: str = Field(description="what to do where it is not good")
+
+
+class BringUpStep(BaseModel):
+    """A step: what to do, and what came of it."""
+
+    name: str
+    title: str
+    about: str
+    expected: str
+    state: StepState
+    actions: list[BringUpAction]
+    results: list[BringUpResult]
+
+
+class EncoderReading(BaseModel):
+    """An encoder's angle and the field of its magnet."""
+
+    counts: int = Field(description="0 to 1023")
+    field: MagneticField
+
+
+class ImuRaw(BaseModel):
+    """The IMU's reading along and about the chip's own axes."""
+
+    identity: int = Field(description="WHO_AM_I")
+    force: tuple[float, float, float] = Field(description="g")
+    rate: tuple[float, float, float] = Field(description="°/s")
+
+
+class BeaconLevels(BaseModel):
+    """The levels of the detectors' pins."""
+
+    right: bool
+    left: bool
+
+
+class RawReadings(BaseModel):
+    """The newest readings of all parts, as they say them."""
+
+    encoders: list[EncoderReading]
+    imu: ImuRaw | None
+    pressure_hpa: float | None
+    temperature: float | None = Field(description="°C")
+    battery_volts: float
+    beacons: BeaconLevels
+
+
+class BringUpState(BaseModel):
+    """The bring-up as a whole."""
+
+    phase: Phase
+    words: str = Field(description="what it is doing, or how it ended")
+    problem: str = Field(description="why it could not go on; empty if it could")
+    steps: list[BringUpStep]
+    raw: RawReadings | None
+    report: str | None = Field(description="address of the newest report")
+
+
+class BringUpOrder(BaseModel):
+    """An action of a step, with what the person gives."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    step: str = Field(max_length=40)
+    action: str = Field(max_length=40)
+    inputs: dict[str, float | str] = Field(default_factory=dict, max_length=4)

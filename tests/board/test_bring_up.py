@@ -1,0 +1,169 @@
+"""The bring-up on the emulated chip: of a fresh board, and of one with each mistake, which it names."""
+
+from collections.abc import Callable, Iterator
+from math import radians
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.contract.calibration import EMULATED
+from robot_runtime.contract.packets import Jog, Start
+from robot_runtime.errors import RefusedError
+from robot_runtime.experiments.bring_up.guide import STEPS
+from robot_runtime.simulation.boards.mistakes import FINS as WRITTEN
+from tests.board.bring_up import Person
+from tests.board.rig import ROOT, build
+
+Begin = Callable[..., Person]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _sketch() -> None:
+    build(ROOT / "firmware", "bring_up")
+
+
+@pytest.fixture
+def begin(tmp_path: Path) -> Iterator[Begin]:
+    begun: list[Person] = []
+
+    def one(*mistakes: str) -> Person:
+        begun.append(Person(tmp_path, *mistakes))
+        return begun[-1]
+
+    yield one
+    for person in begun:
+        person.close()
+
+
+def test_a_fresh_board_is_brought_up_and_calibrated(begin: Begin) -> None:
+    person = begin()
+    person.everything()
+    assert {step.name: person.work.state(step.name) for step in STEPS} == {
+        step.name: "done" for step in STEPS
+    }, [person.work.results(step.name) for step in STEPS]
+    found = person.work.calibration()
+    assert found.missing == []
+    # The emulated board's own calibration, which its firmware begins with, is what a person finds.
+    assert found.fin_zeros == pytest.approx(EMULATED.fin_zeros, abs=1)
+    assert found.encoders_reversed == EMULATED.encoders_reversed
+    assert found.motors_reversed == EMULATED.motors_reversed
+    assert found.axes == EMULATED.axes
+    assert found.gyro_bias == pytest.approx((0, 0, 0), abs=0.001)
+    assert found.pressure_offset == pytest.approx(0, abs=20)
+    assert found.battery_factor == pytest.approx(1, abs=0.005)
+    assert found.beacons_inverted == EMULATED.beacons_inverted
+
+
+MISTAKES = [
+    ("strap-wrong:back-right", "devices", "answers at 0x62 instead"),
+    ("strap-shared:front-right,back-left", "devices", "two bridges with the same straps"),
+    ("imu-strap", "devices", "its strap AD0 must lie at its supply"),
+    ("missing:imu", "devices", "Check the IMU's supply"),
+    ("missing:pressure", "devices", "Check the pressure sensor's supply"),
+    *((f"missing:bridge-{fin}", "devices", "Check this bridge's supply and straps") for fin in WRITTEN),
+    ("imu-clone:0x55", "sensors", "Another chip answers there"),
+    *((f"missing:encoder-{fin}", "sensors", "No encoder answers") for fin in WRITTEN),
+    ("divider-wrong:3", "battery", "two equal resistors"),
+    ("missing:battery", "battery", "two equal resistors"),
+    ("encoders-swapped:front-right,back-left", "fin_0", "select lines of the front right and the back left"),
+    ("encoders-swapped:front-right,back-left", "fin_2", "select lines of the back left and the front right"),
+    ("encoders-swapped:front-right,back-left", "motor_0", "have swapped select lines"),
+    (
+        "motors-swapped:front-right,back-left",
+        "motor_0",
+        "motors of the front right and the back left fin are",
+    ),
+    ("strap-shared:front-right,back-left", "motor_2", "have the same straps"),
+    ("missing:motor-front-left", "motor_3", "the motor at its bridge"),
+    ("beacons-swapped", "beacons", "The detectors are swapped"),
+    ("missing:beacon-right", "beacons", "Does the lamp blink"),
+]
+
+
+@pytest.mark.parametrize(("mistake", "step", "words"), MISTAKES)
+def test_each_mistake_is_found_and_named(begin: Begin, mistake: str, step: str, words: str) -> None:
+    person = begin(mistake)
+    person.do(step)
+    assert person.work.state(step) == "wrong", person.work.results(step)
+    assert words in person.advice(step)
+
+
+def test_what_can_be_calibrated_away_is(begin: Begin) -> None:
+    """Leads and a magnet the other way round, a chip that lies askew, and parts that are off."""
+    person = begin(
+        "leads-reversed:front-right",
+        "encoder-reversed:back-left",
+        "imu-turned:-y+x+z",
+        "gyro-offset:-3,12,20",
+        "beacons-inverted",
+        "regulator-off:5",
+    )
+    person.everything()
+    assert {step.name: person.work.state(step.name) for step in STEPS} == {
+        step.name: "done" for step in STEPS
+    }, [person.work.results(step.name) for step in STEPS]
+    found = person.work.calibration()
+    assert found.motors_reversed == (False, True, False, True)
+    assert found.encoders_reversed == (True, True, True, False)
+    assert found.beacons_inverted
+    assert found.battery_factor == pytest.approx(1.05, abs=0.006)
+    # The chip's x lies along -y of the body, its y along x: forward is y, right is -x.
+    assert found.axes == ("y", "-x", "z")
+    assert found.gyro_bias == pytest.approx((radians(12), radians(3), radians(20)), abs=0.002)
+
+
+@pytest.mark.parametrize("axes", ["+x-y-z", "+z+x+y", "-y-x-z"])
+def test_an_imu_that_lies_otherwise_gets_its_axes(begin: Begin, axes: str) -> None:
+    person = begin(f"imu-turned:{axes}")
+    person.do("axes")
+    assert person.work.state("axes") == "done"
+    forward, right, down = person.work.calibration().axes
+    where = {"xyz"[number]: axes[2 * number : 2 * number + 2] for number in range(3)}
+    for axis, body in ((forward, "x"), (right, "y"), (down, "z")):
+        assert where[axis[-1]] == ("-" if axis.startswith("-") else "+") + body
+
+
+def test_a_motor_stops_when_nobody_holds_it(begin: Begin) -> None:
+    person = begin()
+    person.press("motor_1", "turn")
+    person.bench.host.run(0.2)
+    turning = person.rig.board.fins()
+    assert abs(turning.speeds[1]) > 1
+    person.bench.host.run(0.4)
+    assert person.rig.board.fins().speeds == pytest.approx((0, 0, 0, 0), abs=0.05)
+
+
+def test_a_motor_is_never_driven_hard_and_the_sketch_never_arms(begin: Begin) -> None:
+    person = begin()
+    for _ in range(5):
+        person.bench.host.say(Jog(fin=0, drive=127))
+        person.bench.host.run(0.1)
+    low = abs(person.rig.board.fins().speeds[0])
+    assert 0 < low < 6
+    hello = person.bench.host.session.board
+    assert hello
+    person.bench.host.say(Start(epoch=hello.epoch))
+    person.bench.host.run(1.0)
+    assert person.rig.board.fins().speeds == pytest.approx((0, 0, 0, 0), abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("step", "action", "given", "words"),
+    [
+        ("devices", "dance", {}, "no step 'devices' with the action 'dance'"),
+        ("battery", "compare", {}, "Multimeter must be between 4 and 9 V"),
+        ("battery", "compare", {"volts": 12}, "Multimeter must be between 4 and 9 V"),
+        ("battery", "compare", {"volts": "7"}, "Multimeter must be between 4 and 9 V"),
+        ("fin_0", "down", {}, "First turn the fin along its mount"),
+        ("motor_0", "seen", {"fin": "front right"}, "First hold the button"),
+        ("motor_0", "seen", {"fin": "tail"}, "Fin must be one of"),
+        ("gyro", "rest", {}, "First measure how the IMU lies"),
+        ("pressure", "bucket", {"depth": 30}, "First measure the pressure in air"),
+        ("beacons", "right", {}, "First cover both detectors"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_in_words(
+    begin: Begin, step: str, action: str, given: dict[str, float | str], words: str
+) -> None:
+    with pytest.raises(RefusedError, match=words):
+        begin().work.perform(step, action, given)

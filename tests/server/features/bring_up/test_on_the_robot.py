@@ -1,0 +1,100 @@
+"""The whole stack: a bring-up on the robot's own board, here emulated, by HTTP and from a shell."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
+from tests.board.rig import OPTIBOOT, PROGRAM, ROOT
+from tests.stack import Stack
+
+pytestmark = pytest.mark.stack
+SECONDS = 60.0
+
+
+def wait(condition: Callable[[], object], what: str) -> None:
+    end = time.monotonic() + SECONDS
+    while not condition():
+        assert time.monotonic() < end, f"waited in vain for {what}"
+        time.sleep(0.1)
+
+
+def state(stack: Stack) -> dict[str, Any]:
+    found: dict[str, Any] = stack.api.get("/bring-up").json()
+    return found
+
+
+def act(stack: Stack, step: str, action: str, **inputs: float | str) -> dict[str, Any]:
+    """Perform an action; the step as it is then."""
+    body = {"step": step, "action": action, "inputs": inputs}
+    answer = stack.api.post("/bring-up/actions", json=body, timeout=SECONDS)
+    assert answer.status_code == 200, answer.text
+    found: dict[str, Any] = next(one for one in answer.json()["steps"] if one["name"] == step)
+    return found
+
+
+@pytest.mark.timeout(200)
+def test_a_bring_up_by_http_and_the_robot_is_back_afterwards(shared_stack: Stack) -> None:
+    stack = shared_stack
+    wait(lambda: stack.api.get("/robot").json().get("connected"), "the robot")
+    assert stack.api.get("/bring-up/report").status_code == 404
+    answer = stack.api.post("/bring-up", timeout=SECONDS)
+    assert answer.status_code == 200, answer.text
+    assert stack.api.post("/bring-up", timeout=SECONDS).status_code == 409
+    wait(lambda: state(stack)["phase"] == "ready", "the sketch")
+    assert stack.api.post("/robot/commands/arm").status_code == 409
+    wait(lambda: state(stack)["raw"], "a reading")
+    assert act(stack, "devices", "scan")["state"] == "done"
+    assert act(stack, "sensors", "look")["state"] == "done"
+    for _ in range(6):
+        act(stack, "motor_3", "turn", on=1)
+        # As a page does while a button is held.
+        time.sleep(0.1)
+    act(stack, "motor_3", "turn", stop=1)
+    assert act(stack, "motor_3", "seen", fin="front left")["state"] == "done"
+    refused = stack.api.post("/bring-up/actions", json={"step": "gyro", "action": "rest"})
+    assert (refused.status_code, "how the IMU lies" in refused.json()["detail"]) == (409, True)
+    assert stack.api.post("/robot/stop").status_code == 204
+    assert stack.api.delete("/bring-up").status_code == 200
+    wait(lambda: state(stack)["phase"] == "idle", "the firmware")
+    assert state(stack)["problem"] == ""
+    report = stack.api.get("/bring-up/report").text
+    assert "<h1>Bring-up of" in report
+    assert "H-bridge of the back left fin at 0x61" in report
+    wait(lambda: stack.api.get("/robot").json().get("connected"), "the robot")
+    assert not (stack.data / "firmware-away").exists()
+
+
+@pytest.mark.timeout(200)
+def test_a_bring_up_from_a_shell(tmp_path: Path) -> None:
+    """The emulated board in place of a real one, which a shell uploads to and talks to."""
+    tty, socket = tmp_path / "tty", tmp_path / "board"
+    config = tmp_path / "robot.toml"
+    config.write_text(
+        f'[robot]\nmode = "robot"\n[link]\nport = "{tty}"\nreset = "board:{socket}"\n', encoding="utf-8"
+    )
+    options = ("--bootloader", str(OPTIBOOT), "--uncalibrated", "--mistake", "imu-strap")
+    elf = ROOT / "build/firmware/robot.elf"
+    with EmulatorProcess(PROGRAM, elf, tty, socket, *options):
+        command = [sys.executable, "-c", "from server.cli import main; raise SystemExit(main())", "bring-up"]
+        command += ["--config", str(config), "--data", str(tmp_path / "data")]
+        done = subprocess.run(
+            command,
+            # Look who answers; do not repeat; then end.
+            input="\nn\nq\n",
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+            env=os.environ | {"PYTHONPATH": str(ROOT)},
+            check=False,
+        )
+    assert "BAD  IMU at 0x69: silent  An IMU answers at 0x68" in done.stdout, done.stdout + done.stderr
+    assert done.returncode == 1
+    assert "Not calibrated" in (tmp_path / "data/bring-up.html").read_text(encoding="utf-8")
+    assert not (tmp_path / "data/firmware-away").exists()
