@@ -97,10 +97,8 @@ off while the robot is disarmed, and such a resistor then pulls the whole bus do
 D12 has a pull-up in the chip, so that a missing encoder reads as ones, which the firmware refuses.
 """,
     Net.SIGNAL: """
-The firmware takes a high D4 or D5 for a tone that is heard. An LM567 is the other way round: its output is
-open collector, and **low** at its tone (data sheet). Put an NPN transistor behind it: 10 kΩ from +5 V to the
-output of the LM567, 10 kΩ from there to the base, emitter to ground, 10 kΩ from +5 V to the collector, which
-goes to D4 or D5.
+Detectors may be high or low at their tone: the [bring-up](../bring-up.md) finds which, and the board keeps
+it. An LM567 is open collector, and low at its tone (data sheet): it needs 10 kΩ from +5 V to its output.
 
 The enable input of the motor regulator must be off when it is open. Many regulator boards pull it up to their
 input: **that puts 8.4 V on A3**. Take that resistor off, or choose another board.
