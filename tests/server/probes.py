@@ -80,7 +80,7 @@ PROBES: dict[tuple[str, str], Probe] = {
     ("GET", "/api/bring-up/report"): Probe(
         NOT_THERE, words="There was no bring-up yet", because="A bring-up would upload to the board."
     ),
-    ("POST", "/api/bring-up"): Probe(409, words="bring_up.hex", because="It would upload to the board."),
+    ("POST", "/api/bring-up"): Probe(409, words="is being recorded", because="It would upload to the board."),
     ("POST", "/api/bring-up/actions"): Probe(
         409,
         {"step": "devices", "action": "scan"},

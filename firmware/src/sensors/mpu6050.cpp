@@ -1,6 +1,7 @@
 #include "sensors/mpu6050.h"
 
 #include "board/board.h"
+#include "board/flash.h"
 
 namespace mucat {
 namespace {
@@ -11,13 +12,13 @@ constexpr uint8_t kIdentityRegister = 0x75;
 
 // WHO_AM_I of chips whose registers agree where they are used here: MPU-6050, MPU-6500, MPU-9250, and copies
 // of the first that are sold under its name.
-constexpr uint8_t kIdentities[] = {kMpu6050, 0x70, 0x71, 0x72, 0x98};
+const uint8_t kIdentities[] PROGMEM = {kMpu6050, 0x70, 0x71, 0x72, 0x98};
 
 struct Setting {
   uint8_t address;
   uint8_t value;
 };
-constexpr Setting kSettings[] = {
+const Setting kSettings[] PROGMEM = {
     {0x6B, 0x01},  // PWR_MGMT_1: awake, clock from the gyroscope, more stable than the internal one
     {0x19, 0x00},  // SMPLRT_DIV: 1 kHz, so that a reading is at most 1 ms old
     {0x1A, 0x03},  // CONFIG: low-pass 44 Hz, below half of the 100 Hz at which it is read
@@ -33,8 +34,8 @@ constexpr uint8_t kSettle = 5;
 constexpr uint8_t kRetry = 10;
 
 bool known(uint8_t identity) {
-  for (uint8_t one : kIdentities) {
-    if (one == identity) return true;
+  for (const uint8_t& one : kIdentities) {
+    if (pgm_read_byte(&one) == identity) return true;
   }
   return false;
 }
@@ -52,7 +53,7 @@ bool Mpu6050::set_up() {
   identity_ = 0;
   if (!board::exchange_i2c(kAddress, &kIdentityRegister, 1, &identity_, 1) || !known(identity_)) return false;
   for (const Setting& setting : kSettings) {
-    if (!write(setting)) return false;
+    if (!write({pgm_read_byte(&setting.address), pgm_read_byte(&setting.value)})) return false;
   }
   return identity_ == kMpu6050 || write(kForceFilter);
 }

@@ -70,7 +70,9 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
     command = ["make", "--silent", "-C", str(_SOURCES), *sketches, f"BAUD={baud}", f"BUILD={product.parent}"]
     command += ["HIL=1"] if hil else []
     with build_lock():
-        made = subprocess.run(command, capture_output=True, text=True, check=False)
+        # Another make's flags are not for this one: to keep going would bury the compiler's words.
+        alone = os.environ | {"MAKEFLAGS": ""}
+        made = subprocess.run(command, capture_output=True, text=True, check=False, env=alone)
     if made.returncode != 0:
         last = " ".join((made.stderr or made.stdout).split("\n")[-_LINES_SHOWN:]).strip()
         raise FirmwareBuildError(f"The firmware for {baud} baud could not be built: {last}")
