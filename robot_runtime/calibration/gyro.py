@@ -10,7 +10,7 @@ SECONDS = 3.0
 """s over which the turn rate is averaged."""
 _PATIENCE = 3.0
 """s beyond, in which the readings must have come."""
-_STILL = 0.02
+STILL = 0.02
 """rad/s, standard deviation at rest: ten times the noise of an MPU-6050 behind its 44 Hz filter."""
 _STEADY = 0.01
 """rad/s between the means of both halves: something that begins or ends to turn."""
@@ -47,7 +47,7 @@ class GyroMeasurement:
             rates = [rate[axis] for rate in self._rates]
             half = len(rates) // 2
             drift = abs(fmean(rates[:half]) - fmean(rates[half:]))
-            if pstdev(rates) > _STILL or drift > _STEADY:
+            if pstdev(rates) > STILL or drift > _STEADY:
                 raise RefusedError(
                     f"The robot moved about its {name} axis. Lay it down where nothing shakes it; try again."
                 )

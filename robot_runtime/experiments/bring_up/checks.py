@@ -4,8 +4,11 @@ from collections.abc import Collection, Sequence
 from math import degrees
 from statistics import fmean, pstdev
 
+from robot_runtime.calibration.gyro import STILL
 from robot_runtime.contract.calibration import GYRO_BIAS, Axis
 from robot_runtime.contract.packets import FIN_COUNT, Raw
+from robot_runtime.contract.wiring import FINS as WIRED_FINS
+from robot_runtime.contract.wiring import IMU_ADDRESS, PRESSURE_ADDRESS
 from robot_runtime.control.fin_check import FINS
 from robot_runtime.experiments.bring_up.readings import (
     Three,
@@ -17,16 +20,13 @@ from robot_runtime.experiments.bring_up.readings import (
 )
 from robot_runtime.experiments.bring_up.results import Result
 
-IMU, PRESSURE = 0x69, 0x76
-BRIDGES = (0x64, 0x60, 0x61, 0x63)
-"""By fin, as firmware/src/sensors/drv8830.cpp addresses them."""
 DEVICES = {
-    IMU: "IMU",
-    PRESSURE: "pressure sensor",
-    **{address: f"H-bridge of the {fin} fin" for address, fin in zip(BRIDGES, FINS, strict=True)},
+    IMU_ADDRESS: "IMU",
+    PRESSURE_ADDRESS: "pressure sensor",
+    **{fin.address: f"H-bridge of the {fin.place} fin" for fin in WIRED_FINS},
 }
 _BRIDGE_RANGE = range(0x60, 0x69)
-"""What the DRV8830's two straps can choose."""
+"""The addresses that the two straps of a DRV8830 can choose."""
 IDENTITIES = {
     0x68: "an MPU-6050",
     0x70: "an MPU-6500 or a clone of the MPU-6050",
@@ -50,8 +50,6 @@ SENSOR_TOLERANCE = 5_000
 DEPTH_TOLERANCE = 0.02
 """m, and as much as a twentieth of the depth."""
 PRESSURE_PER_METRE = 9_810
-_STILL = 0.02
-"""rad/s, standard deviation at rest: ten times the noise of an MPU-6050 behind its 44 Hz filter."""
 
 
 def check_devices(found: Collection[int]) -> list[Result]:
@@ -88,11 +86,11 @@ def _missing(address: int, strangers: Sequence[int], found: Collection[int]) -> 
         return (
             "Nothing answers: check SDA (A4), SCL (A5), their pull-ups, and that no device holds them down."
         )
-    if address == IMU:
+    if address == IMU_ADDRESS:
         if 0x68 in strangers:
             return "An IMU answers at 0x68: its strap AD0 must lie at its supply."
         return "Check the IMU's supply and its two wires."
-    if address == PRESSURE:
+    if address == PRESSURE_ADDRESS:
         if 0x77 in strangers:
             return "A sensor answers at 0x77: it is an MS5837-02BA or of another make; the robot needs 0x76."
         return "Check the pressure sensor's supply and its two wires."
@@ -345,7 +343,7 @@ def check_rest(rate: Three, noise: float) -> tuple[Result, bool]:
     """The turn rate (rad/s) of a hull at rest and its standard deviation; whether it can be trusted."""
     shown = ", ".join(f"{degrees(part):+.2f}" for part in rate)
     largest = max(abs(part) for part in rate)
-    if noise > _STILL:
+    if noise > STILL:
         advice = "The hull moved. Lay it down where nothing shakes it, and measure again."
     elif largest > GYRO_BIAS.maximum:
         advice = "No sound gyroscope is off by so much: the hull turned, or the chip is broken."

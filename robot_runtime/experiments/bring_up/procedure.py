@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Literal, TypeVar
 
+from robot_runtime.calibration.gyro import SECONDS as REST_SECONDS
 from robot_runtime.contract.calibration import STEPS as STEPS_IN_WORDS
 from robot_runtime.contract.calibration import Axis, CalibrationValues, StepName
 from robot_runtime.contract.packets import FIN_COUNT, Raw
@@ -23,8 +24,6 @@ JOG_DRIVE = 12
 """H-bridge command: a fin turns by 200 ° a second, and a hand holds it."""
 _LOOK = 0.4
 """s over which a reading is averaged."""
-_REST = 3.0
-"""s at rest for the gyroscope."""
 
 
 class BringUp:
@@ -189,7 +188,7 @@ class BringUp:
         if self._axes is None:
             raise RefusedError("First measure how the IMU lies: the offset belongs to the robot's axes.")
         self._bias = None
-        rate, noise = checks.rest_rate(self._bench.readings(_REST))
+        rate, noise = checks.rest_rate(self._bench.readings(REST_SECONDS))
         result, still = checks.check_rest(rate, noise)
         self._note("gyro", result)
         if still:
