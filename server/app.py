@@ -13,6 +13,7 @@ from server.features.backup import routes as backup
 from server.features.bring_up import routes as bring_up
 from server.features.comm_tests import routes as comm_tests
 from server.features.comparison import routes as compare
+from server.features.doctor import routes as doctor
 from server.features.exports import routes as exports
 from server.features.identification import routes as identification
 from server.features.layouts import routes as layouts
@@ -42,8 +43,8 @@ from server.platform.settings import Settings
 from server.processes.supervisor import ProcessCommand
 
 ROUTES = (
-    *(access, audit, backup, bring_up, comm_tests, compare, control, exports, identification, layouts, live),
-    *(panels, parameters, robot, scenarios, sessions, simulator, tuning, vision),
+    *(access, audit, backup, bring_up, comm_tests, compare, control, doctor, exports, identification),
+    *(layouts, live, panels, parameters, robot, scenarios, sessions, simulator, tuning, vision),
 )
 
 

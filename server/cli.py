@@ -13,6 +13,7 @@ from server.platform.terminal import PlainFormatter
 
 COMMANDS = {
     "run": "server.startup:run",
+    "doctor": "server.features.doctor.command:doctor",
     "bring-up": "server.features.bring_up.command:bring_up",
     "upload": "server.features.board.command:upload",
     "commtest": "server.features.comm_tests.command:commtest",

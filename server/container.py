@@ -19,6 +19,7 @@ from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import import_samples
 from server.features.comparison.worker import ComparisonWorker
+from server.features.doctor.examination import Examination
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
 from server.features.identification.adoption import CraftAdoption
@@ -105,6 +106,7 @@ class Container:
         self.alarms = Alarms(self.clock, FAULTS, self.notices.add_event, changed=self._notify_alarms)
         self.processes = ProcessSupervisor(commands, self.settings.data, self.clock, self._see_down)
         self.monitor = HealthMonitor(self.settings, self.clock, self.store, self.processes)
+        self.examination = Examination(self.settings, self.monitor, self.notices)
         self.watchdog = Watchdog(
             self.settings, self.clock, self.monitor, self.processes, self.store, self.alarms
         )
@@ -208,6 +210,7 @@ class Container:
                     self.arbiter.run(),
                     self.lease_sync.run(),
                     self.watchdog.run(),
+                    self.examination.at_start(),
                     self.tuning.run(),
                     self._notify_health(),
                 )

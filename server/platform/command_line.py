@@ -14,6 +14,10 @@ from server.platform.settings import SetupError, read_settings
 from server.platform.terminal import plain
 
 FILE = click.Path(path_type=Path)
+data_option = click.option("--data", type=FILE, help="The data folder.  [default: $MUCAT_DATA, or data]")
+config_option = click.option(
+    "--config", type=FILE, envvar="MUCAT_CONFIG", default="robot.toml", help="The robot's configuration."
+)
 
 
 class CommandError(click.ClickException):
@@ -48,8 +52,8 @@ def with_settings(command: Callable[..., int | None]) -> Callable[..., int | Non
     The function returns the exit status, or None for 0. An error of the server ends it with status 1.
     """
 
-    @click.option("--data", type=FILE, help="The data folder.  [default: $MUCAT_DATA, or data]")
-    @click.option("--config", type=FILE, default="robot.toml", help="The robot's configuration.")
+    @data_option
+    @config_option
     @wraps(command)
     def run(*, data: Path | None, config: Path, **options: Any) -> int | None:
         host, port = options.pop("host", None), options.pop("port", None)

@@ -11,9 +11,14 @@ DIVE_BYTES = 20_000_000
 """An hour of recording without pictures; with less free space a dive cannot be recorded."""
 
 
+def free_bytes(path: Path) -> int:
+    """Free bytes of the disk that holds this path."""
+    return shutil.disk_usage(path).free
+
+
 def check_room(folder: DataFolder) -> None:
     """Raises RefusedError where there is no room to record a dive."""
-    free = shutil.disk_usage(folder.path).free
+    free = free_bytes(folder.path)
     if free < DIVE_BYTES:
         raise RefusedError(
             f"The disk is full: {free / 1e6:.0f} MB are free, and a dive that is recorded needs "

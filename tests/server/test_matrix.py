@@ -65,6 +65,8 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/control/release"): "operator",
     ("GET", "/api/alive"): "anyone",
     ("GET", "/api/health"): "viewer",
+    ("GET", "/api/doctor"): "operator",
+    ("POST", "/api/doctor"): "operator",
     ("GET", "/api/robot"): "viewer",
     ("POST", "/api/robot/stop"): "viewer",
     ("GET", "/api/bring-up"): "viewer",

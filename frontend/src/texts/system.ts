@@ -81,6 +81,17 @@ export const system = {
       stored: 'Stored on the board.',
     },
   },
+  doctor: {
+    title: 'This computer',
+    about: 'Checks of the computer that the robot runs on. In a shell: mucat doctor',
+    good: (count: number) => `All ${count} checks are good.`,
+    passed: (count: number) => (count === 1 ? '1 good check' : `${count} good checks`),
+    verdicts: { ok: 'ok', look: 'look', wrong: 'wrong' },
+    mend: 'To mend it:',
+    again: 'Check again',
+    looking: 'Checking',
+    armed: 'The robot is armed. Disarm it to check again.',
+  },
   finCheck: {
     title: 'Fin check',
     about: 'Moves one fin after the other, eight seconds in all, and checks with the encoders that each one follows. Keep your hands away.',

@@ -1,0 +1,327 @@
+"""The doctor's checks: each is a function from the facts to a finding, None where it does not apply."""
+
+from collections.abc import Callable
+
+from server.features.doctor.findings import Finding, Reporter
+from server.features.doctor.machine import SERVICE, Machine
+from server.platform.disk_space import DIVE_BYTES
+
+PYTHON_LEAST = (3, 11)
+DISK_LOW = 500_000_000
+"""Bytes; below them the server's alarm `disk_low` begins."""
+BUILT = 1_760_000_000
+"""s since 1970, October 2025; a clock before that has not been set since the computer started."""
+SMALL_MEMORY = 1_000_000_000
+"""Bytes; with less a Raspberry Pi needs compressed swap."""
+GROUPS = ("dialout", "gpio", "video")
+UNDERVOLTAGE_NOW, UNDERVOLTAGE_SINCE = 1, 1 << 16
+"""Bits of `vcgencmd get_throttled`: the supply is too low, and was since the start."""
+RESET_LABELS = ("pinctrl-bcm", "pinctrl-rp1")
+"""Beginnings of the labels of a Raspberry Pi's own GPIO chips."""
+
+Check = Callable[[Machine], Finding | None]
+
+
+def check_configuration(machine: Machine) -> Finding | None:
+    """The configuration can be used."""
+    report = Reporter("configuration", "Configuration")
+    if machine.configuration_problem:
+        return report.wrong(machine.configuration_problem, "Correct it: docs/run/configure.md")
+    return report.ok(f"Mode “{machine.mode}”.")
+
+
+def check_versions(machine: Machine) -> Finding | None:
+    """Python and the operating system are of versions that µ-CAT was tried on."""
+    report = Reporter("versions", "Versions")
+    found = f"Python {machine.python[0]}.{machine.python[1]}, {machine.system or 'unknown system'}"
+    if machine.python < PYTHON_LEAST:
+        return report.wrong(f"{found}: µ-CAT needs Python 3.11.", "Install Raspberry Pi OS 12 or newer.")
+    if machine.architecture in ("armv6l", "armv7l"):
+        text = f"{found}, {machine.architecture}: a 32-bit system, without rendered water and MCAP files."
+        return report.look(text, "On a 64-bit Raspberry Pi, install the 64-bit Raspberry Pi OS.")
+    return report.ok(f"{found}, {machine.architecture}.")
+
+
+def check_libraries(machine: Machine) -> Finding | None:
+    """The libraries with compiled parts can be imported."""
+    report = Reporter("libraries", "Libraries")
+    if machine.broken_libraries is None:
+        return None
+    if machine.broken_libraries:
+        words = "; ".join(f"{name}: {why}" for name, why in sorted(machine.broken_libraries.items()))
+        return report.wrong(f"Cannot be imported: {words}.", "sudo mucat install RELEASE, or make setup")
+    return report.ok("All can be imported.")
+
+
+def check_data(machine: Machine) -> Finding | None:
+    """The data folder can be written, and its disk has room."""
+    report = Reporter("data", "Data folder")
+    if machine.disk_read_only:
+        text = f"The disk of {machine.data} is read-only: the card may be worn out or damaged."
+        return report.wrong(text, "sudo mount -o remount,rw / ; if it fails: back up, and take another card")
+    if not machine.data_writable:
+        return report.wrong(
+            f"{machine.data} cannot be written.", f"sudo chown -R {machine.user} {machine.data}"
+        )
+    free = f"{machine.disk_free / 1e6:.0f} MB are free for {machine.data}"
+    if machine.disk_free < DIVE_BYTES:
+        return report.wrong(
+            f"{free}: an hour cannot be recorded.", "Delete sessions on the page, or: mucat sessions"
+        )
+    if machine.disk_free < DISK_LOW:
+        return report.look(f"{free}.", "Delete sessions on the page, or: mucat sessions")
+    return report.ok(f"{free}.")
+
+
+def check_database(machine: Machine) -> Finding | None:
+    """The database can be read, and this version knows it."""
+    report = Reporter("database", "Database")
+    if machine.database_problem:
+        return report.wrong(machine.database_problem, "mucat restore FILE; docs/run/backup.md")
+    return report.ok("Can be read.")
+
+
+def check_firmware(machine: Machine) -> Finding | None:
+    """The firmware for this speed is on the computer."""
+    report = Reporter("firmware", "Firmware file")
+    if not machine.firmware_there:
+        text = f"There is no {machine.firmware}, so that the board cannot get its firmware."
+        return report.wrong(text, "make firmware, or another link.baud in robot.toml")
+    return report.ok(machine.firmware)
+
+
+def check_port(machine: Machine) -> Finding | None:
+    """The serial port is there, and opens at the line's speed."""
+    report = Reporter("port", "Serial port")
+    if machine.mode == "emulated":
+        return None
+    if not machine.port_there:
+        text = f"There is no {machine.port}."
+        return report.wrong(text, "Set link.port in robot.toml; for the Pi's UART: sudo mucat install")
+    if machine.port_problem:
+        return report.wrong(machine.port_problem, f"sudo usermod -aG dialout {machine.user}; fuser the port")
+    target = f" leads to {machine.port_target}" if machine.port_target else " is there"
+    return report.ok(f"{machine.port}{target}.")
+
+
+def check_uart(machine: Machine) -> Finding | None:
+    """The Pi's serial port is the full UART: the small one follows the processor's clock."""
+    report = Reporter("uart", "UART")
+    if not machine.model or machine.mode == "emulated" or not machine.port.startswith("/dev/serial"):
+        return None
+    lines = {line.split("#")[0].replace(" ", "") for line in machine.boot_settings.splitlines()}
+    missing = [one for one in ("enable_uart=1", "dtoverlay=disable-bt") if one not in lines]
+    if machine.port_target == "ttyS0":
+        text = f"{machine.port} is the small UART (ttyS0), whose speed follows the processor's clock."
+        return report.wrong(text, "sudo mucat install, then restart the Raspberry Pi")
+    if machine.port_target.startswith("ttyAMA"):
+        return report.ok(f"{machine.port} is the full UART ({machine.port_target}).")
+    if missing:
+        text = f"{machine.boot_folder}/config.txt lacks {' and '.join(missing)}."
+        return report.wrong(text, "sudo mucat install, then restart the Raspberry Pi")
+    return report.look("The settings are there, and come into force at the next start.", "sudo reboot")
+
+
+def check_console(machine: Machine) -> Finding | None:
+    """Neither kernel nor login prompt writes to the board's line."""
+    report = Reporter("console", "Console")
+    if machine.mode == "emulated" or not machine.port_there:
+        return None
+    names = {machine.port.removeprefix("/dev/"), machine.port_target} - {""}
+    consoles = [
+        word
+        for word in machine.kernel_line.split()
+        if word.startswith("console=") and word[8:].split(",")[0] in names
+    ]
+    if consoles:
+        text = f"The kernel writes its messages to the board's line ({consoles[0]})."
+        return report.wrong(text, "sudo mucat install, then restart the Raspberry Pi")
+    if machine.login_on_port:
+        name = machine.port_target or machine.port.removeprefix("/dev/")
+        return report.wrong(
+            "A login prompt runs on the board's line.",
+            f"sudo systemctl disable --now serial-getty@{name}",
+        )
+    return report.ok("Neither kernel nor login uses the board's line.")
+
+
+def check_board(machine: Machine) -> Finding | None:
+    """The board answers, with the definitions of this version."""
+    report = Reporter("board", "Board")
+    if machine.mode == "emulated":
+        return None
+    if not machine.link_state:
+        return report.look("Not asked: the server does not run.", "mucat run, or sudo systemctl start mucat")
+    if machine.link_state == "ok":
+        return report.ok(machine.link_text)
+    return report.wrong(
+        machine.link_text or "It does not answer.",
+        "Check power and cable; another version's firmware: mucat upload",
+    )
+
+
+def check_groups(machine: Machine) -> Finding | None:
+    """The user of the service may use line, pins and camera."""
+    report = Reporter("groups", "Groups")
+    if machine.mode == "emulated" or machine.user == "root":
+        return None
+    needed = [
+        one
+        for one in GROUPS
+        if one == "dialout"
+        or (one == "gpio" and machine.reset.startswith("gpio:"))
+        or (one == "video" and machine.camera == "pi")
+    ]
+    missing = [one for one in needed if one not in machine.groups]
+    if missing:
+        text = f"{machine.user} is not in {', '.join(missing)}."
+        return report.wrong(text, f"sudo usermod -aG {','.join(missing)} {machine.user}, then start again")
+    return report.ok(f"{machine.user} is in {', '.join(needed)}.")
+
+
+def check_reset(machine: Machine) -> Finding | None:
+    """The reset line is one of the Pi's own pins."""
+    report = Reporter("reset", "Reset line")
+    if machine.mode == "emulated" or not machine.reset.startswith("gpio:"):
+        return None
+    if machine.reset_problem:
+        return report.wrong(
+            f"The board cannot be reset for an upload: {machine.reset_problem}.",
+            f"Set link.reset in robot.toml (gpiodetect lists chips); sudo usermod -aG gpio {machine.user}",
+        )
+    if not machine.reset_label.startswith(RESET_LABELS):
+        text = f"{machine.reset} is a chip named “{machine.reset_label}”, not the Raspberry Pi's pins."
+        return report.look(text, "gpiodetect lists the chips; set link.reset in robot.toml")
+    return report.ok(f"{machine.reset} ({machine.reset_label}).")
+
+
+def check_camera(machine: Machine) -> Finding | None:
+    """The Raspberry Pi's camera is connected, and its library there."""
+    report = Reporter("camera", "Camera")
+    if machine.camera != "pi":
+        return None
+    if not machine.camera_library:
+        return report.wrong(
+            "The library picamera2 is missing.",
+            "sudo apt install python3-picamera2, then sudo mucat install RELEASE",
+        )
+    if not machine.cameras:
+        text = "No camera is found: vision sees nothing, everything else works."
+        return report.look(text, "Check its ribbon cable; rpicam-hello --list-cameras")
+    return report.ok(", ".join(machine.cameras))
+
+
+def check_clock(machine: Machine) -> Finding | None:
+    """The clock is right; a Raspberry Pi has none of its own while it is off."""
+    report = Reporter("clock", "Clock")
+    if machine.now < BUILT:
+        return report.look(
+            "The clock has not been set: recordings get a wrong date. Control does not depend on it.",
+            "sudo date -u -s '2026-11-24 12:00', or a network with a time server",
+        )
+    if not machine.clock_synchronised:
+        return report.look(
+            "The clock is not synchronised: recordings may get a wrong date.",
+            "timedatectl; a network with a time server",
+        )
+    return report.ok("Synchronised.")
+
+
+def check_voltage(machine: Machine) -> Finding | None:
+    """The supply of the Raspberry Pi holds its voltage."""
+    report = Reporter("voltage", "Supply")
+    if machine.throttled is None:
+        return None
+    if machine.throttled & UNDERVOLTAGE_NOW:
+        return report.wrong(
+            "The voltage is too low now: the processor is slowed, and the card may be damaged.",
+            "Take a better supply or cable, or charge the battery",
+        )
+    if machine.throttled & UNDERVOLTAGE_SINCE:
+        return report.look(
+            "The voltage has been too low since the start.",
+            "Take a better supply or cable, or charge the battery",
+        )
+    return report.ok("The voltage has been high enough since the start.")
+
+
+def check_memory_limit(machine: Machine) -> Finding | None:
+    """The kernel can limit the server's memory."""
+    report = Reporter("memory_limit", "Memory limit")
+    if SERVICE not in machine.units:
+        return None
+    if not machine.memory_cgroup:
+        return report.look(
+            "The kernel does not limit memory: a server that grows could slow the robot down.",
+            f"sudo mucat install adds cgroup_enable=memory to {machine.boot_folder}/cmdline.txt; reboot",
+        )
+    return report.ok("The kernel limits the server's memory.")
+
+
+def check_swap(machine: Machine) -> Finding | None:
+    """A small computer has compressed swap, which spares the card."""
+    report = Reporter("swap", "Compressed swap")
+    if machine.memory >= SMALL_MEMORY:
+        return None
+    if any("zram" in one for one in machine.swaps):
+        return report.ok(f"{machine.memory / 1e6:.0f} MB of memory, and zram.")
+    return report.look(
+        f"{machine.memory / 1e6:.0f} MB of memory, without compressed swap.",
+        "sudo apt install zram-tools",
+    )
+
+
+def check_address(machine: Machine) -> Finding | None:
+    """The page's address is free for the server."""
+    report = Reporter("address", "Address of the page")
+    if machine.server_runs:
+        return report.ok(f"The server answers at {machine.address}.")
+    if machine.address_problem:
+        return report.wrong(
+            f"The server cannot listen at {machine.address}: {machine.address_problem}.",
+            "ss -ltnp shows who does; or another server.port in robot.toml",
+        )
+    return report.ok(f"{machine.address} is free.")
+
+
+def check_service(machine: Machine) -> Finding | None:
+    """The installed service goes on when a part of it is killed."""
+    report = Reporter("service", "Service")
+    unit = machine.units.get(SERVICE)
+    if unit is None:
+        return None
+    lines = {line.strip() for line in unit.splitlines()}
+    missing = [one for one in ("ExitType=cgroup", "OOMPolicy=continue", "Restart=always") if one not in lines]
+    if missing:
+        text = f"{SERVICE} lacks {', '.join(missing)}: a part that is killed would end all of it."
+        return report.wrong(text, "sudo mucat install")
+    return report.ok("Server and runtime are services of their own.")
+
+
+CHECKS: tuple[Check, ...] = (
+    check_configuration,
+    check_versions,
+    check_libraries,
+    check_data,
+    check_database,
+    check_firmware,
+    check_port,
+    check_uart,
+    check_console,
+    check_board,
+    check_groups,
+    check_reset,
+    check_camera,
+    check_clock,
+    check_voltage,
+    check_memory_limit,
+    check_swap,
+    check_address,
+    check_service,
+)
+"""In the order of the report: what everything else needs comes first."""
+
+
+def examine(machine: Machine) -> list[Finding]:
+    """The findings of all checks that apply."""
+    return [finding for check in CHECKS if (finding := check(machine)) is not None]

@@ -1,0 +1,56 @@
+"""`mucat doctor`: looks through the computer, and says what is wrong and how it is mended."""
+
+import json
+import os
+import time
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import click
+
+from server.features.doctor.checks import examine
+from server.features.doctor.findings import print_findings, worst
+from server.features.doctor.machine import Machine, read_machine
+from server.platform.command_line import config_option, data_option
+from server.platform.folder_lock import runner_of
+from server.platform.running_server import ask
+from server.platform.settings import DataFolder, Settings, SetupError, read_settings
+from server.platform.terminal import echo
+
+
+@click.command()
+@data_option
+@config_option
+@click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON, for programs.")
+def doctor(data: Path | None, config: Path, *, as_json: bool) -> int:
+    """Look through this computer: what is wrong, what it means, and what mends it.
+
+    It changes nothing. The exit status is 1 where something is wrong.
+    """
+    findings = examine(_look(config, data))
+    if as_json:
+        echo(json.dumps([asdict(one) for one in findings], indent=2))
+    else:
+        print_findings(findings, echo)
+    return 1 if worst(findings) == "wrong" else 0
+
+
+def _look(config: Path, data: Path | None) -> Machine:
+    try:
+        settings = read_settings(config, data, None, None, os.environ)
+    except SetupError as problem:
+        folder = DataFolder((data or Path(os.environ.get("MUCAT_DATA") or "data")).absolute())
+        settings = Settings(data=folder, config=config.absolute())
+        return replace(read_machine(settings, time.time()), configuration_problem=str(problem))
+    return read_machine(settings, time.time(), _ask_link(settings))
+
+
+def _ask_link(settings: Settings) -> tuple[str, str]:
+    """State and text of the link, by the running server; empty without one."""
+    if runner_of(settings.data) is None:
+        return "", ""
+    try:
+        health = ask(settings.data, "GET", "/health")
+    except SetupError as problem:
+        return "failed", str(problem)
+    return next((part["state"], part["text"]) for part in health["parts"] if part["name"] == "link")

@@ -1,0 +1,51 @@
+"""The doctor of a running server: looks at its start, and whenever somebody asks."""
+
+import asyncio
+import logging
+import time
+
+from server.features.doctor.checks import examine
+from server.features.doctor.findings import Finding
+from server.features.doctor.machine import read_machine
+from server.health.monitor import HealthMonitor
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+
+log = logging.getLogger(__name__)
+
+
+class Examination:
+    """The newest findings of this server's computer."""
+
+    def __init__(self, settings: Settings, monitor: HealthMonitor, notices: Notices) -> None:
+        self._settings = settings
+        self._monitor = monitor
+        self._notices = notices
+        self._busy = asyncio.Lock()
+        self._findings: list[Finding] = []
+
+    async def at_start(self) -> None:
+        """Look at what is quickly seen, and report what is wrong."""
+        for one in await self._examine(thorough=False):
+            # The link has only just been opened: its own alarm comes when it fails.
+            if one.verdict == "wrong" and one.name != "board":
+                log.warning("%s: %s Remedy: %s", one.title, one.text, one.mend)
+                self._notices.notify("doctor", "caution", f"{one.title}: {one.text} Remedy: {one.mend}")
+
+    async def repeat(self) -> list[Finding]:
+        """Look again, at everything; one at a time."""
+        return await self._examine(thorough=True)
+
+    def newest(self) -> list[Finding]:
+        """The newest findings."""
+        return self._findings
+
+    async def _examine(self, *, thorough: bool) -> list[Finding]:
+        async with self._busy:
+            health = self._monitor.health()
+            link = next((part.state, part.text) for part in health.parts if part.name == "link")
+            machine = await asyncio.to_thread(
+                read_machine, self._settings, time.time(), link, thorough=thorough
+            )
+            self._findings = examine(machine)
+            return self._findings

@@ -1,0 +1,344 @@
+"""The computer as the doctor sees it: plain facts, read once, which the checks judge."""
+
+import ctypes
+import fcntl
+import grp
+import os
+import platform
+import pwd
+import re
+import socket
+import struct
+import subprocess
+import sys
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from server.platform.disk_space import free_bytes
+from server.platform.settings import Settings
+
+GPIO_GET_CHIPINFO = 0x8044B401
+"""ioctl of a GPIO character device (linux/gpio.h): name and label, 32 bytes each, and a number."""
+TIME_ERROR = 5
+"""Answer of adjtimex(2) while the clock is not synchronised."""
+TIMEX_BYTES = 512
+"""At least the size of `struct timex` on every architecture."""
+IMPORT_SECONDS = 120.0
+"""The longest import of all libraries, on a Raspberry Pi Zero."""
+LIBRARIES = ("zenoh", "numpy", "cv2", "pydantic_core", "sqlalchemy", "serial", "cobs")
+"""Modules with compiled parts, and those that speak with the board: importing them shows a wrong wheel."""
+SERVICE = "mucat.service"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Machine:
+    """The facts. An empty text, None or an empty list is a thing that this computer does not have.
+
+    Sizes in bytes, times in s since 1970 (UTC).
+    """
+
+    mode: str = "robot"
+    python: tuple[int, int] = (3, 11)
+    system: str = ""
+    architecture: str = ""
+    model: str = ""
+    """Name of the Raspberry Pi; empty for another computer."""
+    broken_libraries: dict[str, str] | None = field(default_factory=dict)
+    """Why a library cannot be imported, by its name; None where that was not tried."""
+    configuration_problem: str = ""
+    data: str = ""
+    data_writable: bool = True
+    disk_free: int = 10**10
+    disk_read_only: bool = False
+    database_problem: str = ""
+    firmware: str = ""
+    firmware_there: bool = True
+    port: str = "/dev/serial0"
+    port_there: bool = True
+    port_target: str = ""
+    """Device that the port's link leads to."""
+    port_problem: str = ""
+    link_state: str = ""
+    """State of the link by the running server's health; empty without a server."""
+    link_text: str = ""
+    boot_settings: str = ""
+    """Text of config.txt."""
+    kernel_line: str = ""
+    """Text of cmdline.txt."""
+    login_on_port: bool = False
+    boot_folder: str = "/boot/firmware"
+    user: str = "mucat"
+    groups: frozenset[str] = frozenset()
+    reset: str = "dtr"
+    reset_label: str = ""
+    reset_problem: str = ""
+    camera: str = "pi"
+    camera_library: bool = True
+    cameras: tuple[str, ...] = ()
+    now: float = 0.0
+    clock_synchronised: bool = True
+    throttled: int | None = None
+    """The bits of `vcgencmd get_throttled`; None where there is no such file."""
+    memory_cgroup: bool = True
+    memory: int = 10**9
+    swaps: tuple[str, ...] = ()
+    address: str = "127.0.0.1:8000"
+    address_problem: str = ""
+    server_runs: bool = False
+    units: dict[str, str] = field(default_factory=dict)
+    """Texts of the installed units, by name."""
+
+
+def read_machine(
+    settings: Settings,
+    now: float,
+    link: tuple[str, str] = ("", ""),
+    *,
+    thorough: bool = True,
+    root: Path = Path("/"),
+) -> Machine:
+    """Read the facts of this computer; nothing is changed. `link`: its state and text, by the server.
+
+    Only a thorough look imports the libraries, in another process, and opens a serial port that nobody uses.
+    """
+    from server.platform.folder_lock import runner_of
+    from server.platform.pidfile import running_parts
+
+    boot = next((one for one in ("boot/firmware", "boot") if (root / one / "config.txt").exists()), "")
+    units = {one.name: _read(one) for one in (root / "etc/systemd/system").glob("mucat*.*")}
+    user = _service_user(units.get(SERVICE, ""))
+    port = Path(settings.link.port)
+    busy = bool(running_parts(settings.data.run).keys() & {"runtime"})
+    serves = runner_of(settings.data) is not None
+    reset_label, reset_problem = _read_reset(settings.link.reset)
+    firmware = _firmware(settings)
+    return Machine(
+        mode=settings.mode if not settings.emulated_board else "emulated",
+        python=sys.version_info[:2],
+        system=_pretty_name(_read(root / "etc/os-release")),
+        architecture=platform.machine(),
+        model=_read(root / "proc/device-tree/model").strip("\0\n "),
+        broken_libraries=_try_libraries() if thorough else None,
+        data=str(settings.data.path),
+        data_writable=os.access(_existing(settings.data.path), os.W_OK),
+        disk_free=free_bytes(_existing(settings.data.path)),
+        disk_read_only=bool(os.statvfs(_existing(settings.data.path)).f_flag & os.ST_RDONLY),
+        database_problem=_try_database(settings),
+        firmware=str(firmware),
+        firmware_there=firmware.exists(),
+        port=str(port),
+        port_there=port.exists(),
+        port_target=port.resolve().name if port.is_symlink() else "",
+        port_problem="" if busy or not thorough else _try_port(port, settings.link.baud),
+        link_state=link[0],
+        link_text=link[1],
+        boot_settings=_read(root / boot / "config.txt") if boot else "",
+        kernel_line=_read(root / boot / "cmdline.txt") if boot else "",
+        login_on_port=_has_login(root, port),
+        boot_folder=f"/{boot}",
+        user=user,
+        groups=_groups_of(user),
+        reset=settings.link.reset,
+        reset_label=reset_label,
+        reset_problem=reset_problem,
+        camera=_camera(settings),
+        camera_library=_has_picamera(),
+        cameras=_list_cameras(root),
+        now=now,
+        clock_synchronised=_is_synchronised(),
+        throttled=_read_throttled(root),
+        memory_cgroup=_has_memory_cgroup(root),
+        memory=os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"),
+        swaps=tuple(line.split()[0] for line in _read(root / "proc/swaps").splitlines()[1:] if line),
+        address=f"{settings.host}:{settings.port}",
+        address_problem="" if serves else _try_address(settings.host, settings.port),
+        server_runs=serves,
+        units=units,
+    )
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
+def _existing(path: Path) -> Path:
+    """The path, or the nearest of its parents that exists."""
+    while not path.exists():
+        path = path.parent
+    return path
+
+
+def _pretty_name(release: str) -> str:
+    found = re.search(r'^PRETTY_NAME="?([^"\n]*)', release, re.MULTILINE)
+    return found[1] if found else ""
+
+
+def _service_user(unit: str) -> str:
+    """The user of the installed service, or the present one without a service."""
+    found = re.search(r"^User=(\S+)", unit, re.MULTILINE)
+    if found:
+        return found[1]
+    with suppress(KeyError):
+        return pwd.getpwuid(os.geteuid()).pw_name
+    return str(os.geteuid())
+
+
+def _groups_of(user: str) -> frozenset[str]:
+    names = {group.gr_name for group in grp.getgrall() if user in group.gr_mem}
+    with suppress(KeyError):
+        names.add(grp.getgrgid(pwd.getpwnam(user).pw_gid).gr_name)
+    return frozenset(names)
+
+
+def _firmware(settings: Settings) -> Path:
+    from robot_runtime.simulation.boards.firmware import firmware_path
+
+    ending = ".elf" if settings.emulated_board else ".hex"
+    return firmware_path(settings.build, settings.link.baud, ending, hil=settings.in_the_loop)
+
+
+def _try_libraries() -> dict[str, str]:
+    """Import each library in another process; returns the errors by library."""
+    program = (
+        "import importlib, sys\n"
+        "for name in sys.argv[1:]:\n"
+        "    try:\n"
+        "        importlib.import_module(name)\n"
+        "    except Exception as problem:\n"
+        "        print(name, ' '.join(str(problem).split()) or type(problem).__name__, flush=True)\n"
+        "    else:\n"
+        "        print(name, flush=True)\n"
+    )
+    found = dict.fromkeys(LIBRARIES, "the process that imports it was ended")
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", program, *LIBRARIES],
+            capture_output=True,
+            text=True,
+            timeout=IMPORT_SECONDS,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return dict.fromkeys(LIBRARIES, f"it takes more than {IMPORT_SECONDS:g} s")
+    for line in done.stdout.splitlines():
+        name, _, problem = line.partition(" ")
+        found[name] = problem
+    return {name: problem for name, problem in found.items() if problem}
+
+
+def _try_database(settings: Settings) -> str:
+    """Reason why this version cannot use the database; empty if it can, or there is none yet."""
+    import sqlite3
+
+    from server.platform.schema import explain, read_revision, refuse_unknown
+    from server.platform.settings import SetupError
+
+    try:
+        revision = read_revision(settings.data.database)
+        if revision is not None:
+            refuse_unknown(revision, settings.data.database, settings.data)
+    except SetupError as problem:
+        return str(problem)
+    except (sqlite3.DatabaseError, OSError) as problem:
+        return f"The database cannot be read: {explain(problem, settings.data.path)}"
+    return ""
+
+
+def _try_port(port: Path, baud: int) -> str:
+    """Reason why the port cannot be opened at this speed; empty if it can, or is not there."""
+    from robot_runtime.link.link_driver import PortError
+    from robot_runtime.link.port import Port
+
+    if not port.exists():
+        return ""
+    try:
+        with Port(str(port), baud):
+            return ""
+    except PortError as problem:
+        return str(problem)
+
+
+def _has_login(root: Path, port: Path) -> bool:
+    """True where a login prompt is started on this port."""
+    names = {port.name, port.resolve().name}
+    wants = (root / "etc/systemd/system").glob("*.wants/serial-getty@*.service")
+    return any(one.name.removeprefix("serial-getty@").removesuffix(".service") in names for one in wants)
+
+
+def _read_reset(spec: str) -> tuple[str, str]:
+    """Label of the reset line's chip, and why it cannot be read; both empty for another kind of reset."""
+    kind, _, where = spec.partition(":")
+    chip = where.rpartition(":")[0]
+    if kind != "gpio" or not chip:
+        return "", ""
+    answer = bytearray(68)
+    try:
+        handle = os.open(chip, os.O_RDONLY | os.O_CLOEXEC)
+        try:
+            fcntl.ioctl(handle, GPIO_GET_CHIPINFO, answer)
+        finally:
+            os.close(handle)
+    except OSError as problem:
+        return "", f"{chip}: {problem.strerror}"
+    _, label, _ = struct.unpack("=32s32sI", answer)
+    return label.rstrip(b"\0").decode("ascii", "replace"), ""
+
+
+def _camera(settings: Settings) -> str:
+    from robot_runtime.config import load
+    from robot_runtime.contract.limits import ConfigError
+
+    try:
+        return load(settings.config).vision.camera
+    except ConfigError:
+        return ""
+
+
+def _has_picamera() -> bool:
+    from importlib.util import find_spec
+
+    return find_spec("picamera2") is not None
+
+
+def _list_cameras(root: Path) -> tuple[str, ...]:
+    names = (_read(one).strip() for one in (root / "sys/class/video4linux").glob("*/name"))
+    return tuple(sorted({one for one in names if one.startswith(("unicam", "rp1-cfe"))}))
+
+
+def _is_synchronised() -> bool:
+    """True where the kernel says so; asking for it needs no right (adjtimex(2) without a mode)."""
+    state = int(ctypes.CDLL(None).adjtimex(ctypes.create_string_buffer(TIMEX_BYTES)))
+    return state != TIME_ERROR
+
+
+def _read_throttled(root: Path) -> int | None:
+    text = _read(root / "sys/devices/platform/soc/soc:firmware/get_throttled").strip()
+    try:
+        return int(text, 16)
+    except ValueError:
+        return None
+
+
+def _has_memory_cgroup(root: Path) -> bool:
+    if "memory" in _read(root / "sys/fs/cgroup/cgroup.controllers").split():
+        return True
+    return any(
+        line.split()[0] == "memory" and line.split()[-1] == "1"
+        for line in _read(root / "proc/cgroups").splitlines()
+        if line and not line.startswith("#")
+    )
+
+
+def _try_address(host: str, port: int) -> str:
+    """Reason why the server cannot listen there; empty if it can."""
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as problem:
+            return problem.strerror or str(problem)
+    return ""

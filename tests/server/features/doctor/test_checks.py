@@ -1,0 +1,145 @@
+"""Each check of the doctor, with every outcome that it can have."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from server.features.doctor.checks import BUILT, CHECKS, examine
+from server.features.doctor.findings import worst
+from server.features.doctor.machine import SERVICE, Machine
+
+UART = "enable_uart=1\ndtoverlay=disable-bt\n"
+UNIT = "[Service]\nExitType=cgroup\nOOMPolicy=continue\nRestart=always\n"
+GOOD = Machine(
+    system="Debian GNU/Linux 13 (trixie)",
+    architecture="aarch64",
+    model="Raspberry Pi Zero 2 W Rev 1.0",
+    data="/var/lib/mucat",
+    firmware="/opt/robot.hex",
+    port_target="ttyAMA0",
+    link_state="ok",
+    link_text="Connected.",
+    boot_settings=UART,
+    kernel_line="console=tty1 root=PARTUUID=1 rootwait",
+    groups=frozenset({"dialout", "gpio", "video"}),
+    reset="gpio:/dev/gpiochip0:4",
+    reset_label="pinctrl-bcm2835",
+    cameras=("unicam",),
+    now=BUILT + 1,
+    throttled=0,
+    memory=512_000_000,
+    swaps=("/dev/zram0",),
+    units={SERVICE: UNIT},
+)
+"""A Raspberry Pi on which nothing is wrong."""
+EMULATED = replace(
+    GOOD, mode="emulated", model="", port_there=False, camera="scene", throttled=None, units={}
+)
+
+CASES: dict[str, tuple[dict[str, Any], str, str]] = {
+    "configuration: broken": ({"configuration_problem": "robot.toml cannot be read"}, "wrong", "robot.toml"),
+    "versions: old Python": ({"python": (3, 9)}, "wrong", "needs Python 3.11"),
+    "versions: 32 bits": ({"architecture": "armv6l"}, "look", "32-bit"),
+    "libraries: wrong wheel": ({"broken_libraries": {"cv2": "no libGL"}}, "wrong", "cv2: no libGL"),
+    "data: read-only": ({"disk_read_only": True}, "wrong", "read-only"),
+    "data: no right": ({"data_writable": False}, "wrong", "cannot be written"),
+    "data: full": ({"disk_free": 1_000_000}, "wrong", "1 MB"),
+    "data: low": ({"disk_free": 100_000_000}, "look", "100 MB"),
+    "database: newer": ({"database_problem": "written by a newer version"}, "wrong", "newer"),
+    "firmware: missing": ({"firmware_there": False}, "wrong", "/opt/robot.hex"),
+    "port: missing": ({"port_there": False}, "wrong", "no /dev/serial0"),
+    "port: refused": ({"port_problem": "Permission denied"}, "wrong", "Permission"),
+    "uart: the small one": ({"port_target": "ttyS0"}, "wrong", "small UART"),
+    "uart: not set": ({"port_target": "", "boot_settings": "enable_uart=1"}, "wrong", "lacks dtoverlay"),
+    "uart: commented out": (
+        {"port_target": "", "boot_settings": UART.replace("dt", "#dt")},
+        "wrong",
+        "lacks dtoverlay",
+    ),
+    "uart: not yet in force": ({"port_target": ""}, "look", "next start"),
+    "console: kernel": ({"kernel_line": "console=serial0,115200 console=tty1"}, "wrong", "console=serial0"),
+    "console: kernel, by device": ({"kernel_line": "console=ttyAMA0,115200"}, "wrong", "console=ttyAMA0"),
+    "console: login": ({"login_on_port": True}, "wrong", "login prompt"),
+    "board: other firmware": (
+        {"link_state": "failed", "link_text": "Definitions differ."},
+        "wrong",
+        "differ",
+    ),
+    "board: not asked": ({"link_state": "", "link_text": ""}, "look", "does not run"),
+    "groups: missing": ({"groups": frozenset({"dialout"})}, "wrong", "not in gpio, video"),
+    "reset: no chip": ({"reset_problem": "/dev/gpiochip0: No such file"}, "wrong", "No such file"),
+    "reset: other chip": ({"reset_label": "raspberrypi-exp-gpio"}, "look", "raspberrypi-exp-gpio"),
+    "camera: no library": ({"camera_library": False}, "wrong", "picamera2"),
+    "camera: not connected": ({"cameras": ()}, "look", "No camera"),
+    "clock: 1970": ({"now": 12.0}, "look", "has not been set"),
+    "clock: not synchronised": ({"clock_synchronised": False}, "look", "not synchronised"),
+    "voltage: low now": ({"throttled": 0x50005}, "wrong", "too low now"),
+    "voltage: was low": ({"throttled": 0x50000}, "look", "since the start"),
+    "memory_limit: off": ({"memory_cgroup": False}, "look", "does not limit"),
+    "swap: none": ({"swaps": ("/var/swap",)}, "look", "without compressed swap"),
+    "address: taken": ({"address_problem": "Address already in use"}, "wrong", "already in use"),
+    "service: lacks lines": ({"units": {SERVICE: "[Service]\nRestart=always\n"}}, "wrong", "ExitType=cgroup"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_check_finds_it_and_says_what_mends_it(case: str) -> None:
+    changed, verdict, words = CASES[case]
+    name = case.partition(":")[0]
+    found = {one.name: one for one in examine(replace(GOOD, **changed))}
+    assert (found[name].verdict, words in found[name].text) == (verdict, True), found[name]
+    assert found[name].mend
+    # Nothing else is found.
+    assert {one.name for one in found.values() if one.verdict != "ok"} == {name}
+
+
+def test_every_check_is_good_on_a_good_computer_and_has_a_case_with_every_other_verdict() -> None:
+    good = examine(GOOD)
+    assert [one.name for one in good if one.verdict != "ok"] == []
+    assert len(good) == len(CHECKS) == len({one.name for one in good})
+    assert {case.partition(":")[0] for case in CASES} == {one.name for one in good}
+    assert not any(one.mend for one in good)
+
+
+def test_an_emulated_robot_is_asked_nothing_about_pins() -> None:
+    names = {one.name for one in examine(EMULATED)}
+    assert names == {
+        "configuration",
+        "versions",
+        "libraries",
+        "data",
+        "database",
+        "firmware",
+        "clock",
+        "address",
+        "swap",
+    }
+    assert worst(examine(EMULATED)) == "ok"
+
+
+@pytest.mark.parametrize(
+    ("changed", "check"),
+    [
+        ({"model": ""}, "uart"),
+        ({"port": "/dev/ttyUSB0", "port_target": ""}, "uart"),
+        ({"broken_libraries": None}, "libraries"),
+        ({"reset": "dtr"}, "reset"),
+        ({"camera": "file"}, "camera"),
+        ({"throttled": None}, "voltage"),
+        ({"units": {}}, "service"),
+        ({"memory": 4_000_000_000}, "swap"),
+    ],
+)
+def test_a_check_that_does_not_apply_says_nothing(changed: dict[str, Any], check: str) -> None:
+    assert check not in {one.name for one in examine(replace(GOOD, **changed))}
+
+
+def test_groups_are_those_that_the_configuration_needs() -> None:
+    modest = replace(GOOD, reset="dtr", camera="card", groups=frozenset({"dialout"}))
+    assert worst(examine(modest)) == "ok"
+
+
+def test_a_server_that_runs_holds_the_address_itself() -> None:
+    held = replace(GOOD, server_runs=True, address_problem="Address already in use")
+    assert worst(examine(held)) == "ok"

@@ -1,0 +1,149 @@
+"""The doctor from a shell and in a server, on this computer and on one made of files."""
+
+import json
+import os
+import pty
+import socket
+import sqlite3
+import sys
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from server.cli import main
+from server.features.doctor.checks import examine
+from server.features.doctor.findings import Finding
+from server.features.doctor.machine import Machine, read_machine
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+
+ROBOT = '[robot]\nmode = "robot"\n[link]\nport = "{port}"\nreset = "dtr"\n[server]\nport = {web}\n'
+
+
+@pytest.fixture
+def web() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        number: int = probe.getsockname()[1]
+        return number
+
+
+def doctor(settings: Settings, *more: str) -> int:
+    return main(["doctor", "--data", str(settings.data.path), "--config", str(settings.config), *more])
+
+
+def found(capsys: pytest.CaptureFixture[str]) -> dict[str, Finding]:
+    return {one["name"]: Finding(**one) for one in json.loads(capsys.readouterr().out)}
+
+
+def test_it_tells_a_person_and_a_program_the_same(
+    settings: Settings, web: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings.config.write_text(ROBOT.format(port="/dev/nowhere", web=web))
+    assert doctor(settings) == 1
+    text = capsys.readouterr().out
+    assert "wrong Serial port: There is no /dev/nowhere.\n      → Set link.port" in text
+    assert doctor(settings, "--json") == 1
+    findings = found(capsys)
+    assert findings["port"].verdict == "wrong"
+    assert all(f"{one.verdict:6}{one.title}: " in text for one in findings.values())
+
+
+def test_a_port_that_opens_is_good_and_stays_free(
+    settings: Settings, web: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    board, line = pty.openpty()
+    settings.config.write_text(ROBOT.format(port=os.ttyname(line), web=web))
+    doctor(settings, "--json")
+    findings = found(capsys)
+    assert (findings["port"].verdict, findings["board"].verdict) == ("ok", "look")
+    assert findings["libraries"].verdict == "ok"
+    os.close(board)
+    os.close(line)
+
+
+def test_a_configuration_that_cannot_be_read_is_a_finding(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings.config.write_text("[robot\n")
+    assert doctor(settings, "--json") == 1
+    findings = found(capsys)
+    assert findings["configuration"].verdict == "wrong"
+    assert "robot.toml" in findings["configuration"].text
+    assert findings["data"].verdict != "wrong"
+
+
+def test_a_database_of_a_newer_version_is_wrong(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    prepare(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as connection, connection:
+        connection.execute("UPDATE alembic_version SET version_num = '9999'")
+    assert doctor(settings, "--json") == 1
+    assert "newer version" in found(capsys)["database"].text
+
+
+def test_it_changes_nothing(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
+    settings.data.run.rmdir()
+    before = sorted(settings.data.path.rglob("*"))
+    doctor(settings)
+    capsys.readouterr()
+    assert sorted(settings.data.path.rglob("*")) == before
+
+
+def test_an_address_that_is_taken_is_wrong(settings: Settings) -> None:
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        taken = replace(settings, port=other.getsockname()[1])
+        machine = read_machine(taken, 0.0, thorough=False)
+    assert "in use" in machine.address_problem
+    assert read_machine(taken, 0.0, thorough=False).address_problem == ""
+
+
+def write(root: Path, name: str, text: str) -> None:
+    (root / name).parent.mkdir(parents=True, exist_ok=True)
+    (root / name).write_text(text)
+
+
+def look(settings: Settings, root: Path) -> Machine:
+    return read_machine(settings, 0.0, thorough=False, root=root)
+
+
+def test_a_raspberry_pi_is_read_from_its_files(settings: Settings, tmp_path: Path) -> None:
+    write(tmp_path, "etc/os-release", 'NAME="Debian"\nPRETTY_NAME="Debian GNU/Linux 13 (trixie)"\n')
+    write(tmp_path, "proc/device-tree/model", "Raspberry Pi Zero 2 W Rev 1.0\0")
+    write(tmp_path, "boot/firmware/config.txt", "enable_uart=1\n")
+    write(tmp_path, "boot/firmware/cmdline.txt", "console=tty1\n")
+    write(tmp_path, "proc/swaps", "Filename Type Size\n/dev/zram0 partition 1 2 3\n")
+    write(tmp_path, "proc/cgroups", "#subsys_name hierarchy num_cgroups enabled\nmemory 0 1 0\n")
+    write(tmp_path, "sys/devices/platform/soc/soc:firmware/get_throttled", "50005\n")
+    write(tmp_path, "sys/class/video4linux/video0/name", "unicam-image\n")
+    write(tmp_path, "sys/class/video4linux/video1/name", "bcm2835-codec\n")
+    write(tmp_path, "etc/systemd/system/mucat.service", "[Service]\nUser=nobody\n")
+    write(tmp_path, "etc/systemd/system/getty.target.wants/serial-getty@serial0.service", "")
+    machine = look(settings, tmp_path)
+    assert machine.system == "Debian GNU/Linux 13 (trixie)"
+    assert machine.model == "Raspberry Pi Zero 2 W Rev 1.0"
+    assert (machine.boot_settings, machine.kernel_line) == ("enable_uart=1\n", "console=tty1\n")
+    assert machine.boot_folder == "/boot/firmware"
+    assert machine.swaps == ("/dev/zram0",)
+    assert machine.throttled == 0x50005
+    assert machine.cameras == ("unicam-image",)
+    assert machine.user == "nobody"
+    assert machine.login_on_port
+    assert not machine.memory_cgroup
+    write(tmp_path, "sys/fs/cgroup/cgroup.controllers", "cpu memory pids\n")
+    assert look(settings, tmp_path).memory_cgroup
+
+
+def test_a_library_that_cannot_be_imported_is_named(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, "cv2.py", "raise ImportError('libGL.so.1 is missing')")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), *filter(None, sys.path)]))
+    machine = read_machine(settings, 0.0)
+    assert machine.broken_libraries == {"cv2": "libGL.so.1 is missing"}
+    assert "cv2: libGL.so.1 is missing" in {one.name: one for one in examine(machine)}["libraries"].text
