@@ -16,8 +16,6 @@ RAM_BYTES = 2048
 _SECTIONS_IN_RAM = (".data", ".bss", ".noinit")
 _SECTIONS_IN_FLASH = (".text", ".data")
 
-GUARDED_RECURSION = ("4Link5flushEv",)
-"""Link::flush adds an acknowledgement, and what adds may flush: but that one is added only where it fits."""
 BAUD = 250_000
 _FASTEST_BAUD = 500_000
 _SECONDS = 600.0

@@ -3,7 +3,7 @@
 import tempfile
 from pathlib import Path
 
-from bench.firmware import BAUD, GUARDED_RECURSION, RAM_BYTES, FloodHost, count_flash, count_static
+from bench.firmware import BAUD, RAM_BYTES, FloodHost, count_flash, count_static
 from bench.stack_bound import stack_bound
 from robot_runtime.contract.packets import StatusFlag
 from robot_runtime.simulation.boards.emulator_process import FaultKind
@@ -43,7 +43,7 @@ def measure() -> dict[str, float]:
     """
     elf = FIRMWARE / "robot.elf"
     static = count_static(elf)
-    bound = stack_bound(elf, GUARDED_RECURSION)
+    bound = stack_bound(elf)
     worst, missed, stack_free = _sweep(elf)
     return {
         "firmware.flash_bytes": count_flash(elf),

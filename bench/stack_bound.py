@@ -7,7 +7,6 @@ pointers to functions, a computed stack pointer.
 
 import re
 import subprocess
-from collections.abc import Collection
 from pathlib import Path
 from typing import NamedTuple
 
@@ -117,34 +116,24 @@ class _Program:
 class _Bound:
     """The deepest stack of each function."""
 
-    def __init__(self, program: _Program, once: Collection[str] = ()) -> None:
+    def __init__(self, program: _Program) -> None:
         self._program = program
-        self._once = once
         self._found: dict[int, int] = {}
         self._open: list[int] = []
-        self._cut: set[int] = set()
 
     def of(self, entry: int) -> int:
         """Bytes below the function's return address. Raises StackBoundError."""
         if entry in self._found:
             return self._found[entry]
         if entry in self._open:
-            self._check_cut(entry)
-            self._cut.add(entry)
-            return 0
+            chain = [*self._open[self._open.index(entry) :], entry]
+            names = [self._program.place(one) for one in chain]
+            raise StackBoundError(f"functions that call each other: {' -> '.join(names)}")
         self._open.append(entry)
         deepest = self._follow(entry)
         self._open.pop()
-        self._cut.discard(entry)
-        if not self._cut:  # otherwise it holds only for this caller
-            self._found[entry] = deepest
+        self._found[entry] = deepest
         return deepest
-
-    def _check_cut(self, entry: int) -> None:
-        chain = [*self._open[self._open.index(entry) :], entry]
-        names = [self._program.place(one) for one in chain]
-        if not any(known in name for known in self._once for name in names):
-            raise StackBoundError(f"functions that call each other: {' -> '.join(names)}")
 
     def _follow(self, entry: int) -> int:
         deepest = 0
@@ -239,14 +228,13 @@ class _Bound:
         return frame + (number + 0x8000) % 0x10000 - 0x8000, address + high.size
 
 
-def stack_bound(elf: Path, once: Collection[str] = ()) -> int:
+def stack_bound(elf: Path) -> int:
     """Returns the most bytes that the program can have on its stack, in its deepest interrupt.
 
-    `once` are parts of the names of functions whose calls of each other never come round to them, although
-    the program's text allows it. Raises StackBoundError where there is no bound.
+    Raises StackBoundError where there is no bound.
     """
     program = _Program(elf)
-    bound = _Bound(program, once)
+    bound = _Bound(program)
     _check_tables(program)
     unused = program.find("__bad_interrupt")
     interrupts = []

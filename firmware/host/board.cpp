@@ -112,7 +112,7 @@ void set_motor_power(bool on) { the_board.motor_power = on; }
 
 uint16_t next_epoch() { return ++the_board.epoch; }
 
-void read_kept(void* bytes, uint8_t size) { memcpy(bytes, the_board.kept, size); }
+void read_kept(uint8_t index, void* bytes, uint8_t size) { memcpy(bytes, the_board.kept + index, size); }
 
 void write_kept(uint8_t index, uint8_t byte) { the_board.kept[index] = byte; }
 

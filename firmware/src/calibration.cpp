@@ -44,7 +44,7 @@ uint32_t CalibrationStore::checksum() const {
 }
 
 void CalibrationStore::start() {
-  board::read_kept(&record_, sizeof record_);
+  board::read_kept(0, &record_, sizeof record_);
   const bool valid = record_.version == kCalibrationVersion && record_.checksum == checksum();
   if (valid && possible(value()) && !in_the_loop()) return;
   Calibration& none = record_.calibration;

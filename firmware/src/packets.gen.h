@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0x554575d8UL;
+constexpr uint32_t kDefinitionsHash = 0xe47854faUL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
@@ -44,6 +44,7 @@ enum class DeviceFault : uint16_t {
   kTrackingBackLeft = 4096,
   kTrackingFrontLeft = 8192,
   kMagnet = 16384,
+  kSurface = 32768,
 };
 
 enum class ResetCause : uint8_t {

@@ -101,7 +101,8 @@ void Robot::arm(const Start& start) {
   if (start.epoch == kNoBoot) return;
   const bool was_armed = armed();
   const uint8_t missing = calibration_.missing();
-  const Refusal refusal = arming_.start(start, !missing, board::milliseconds());
+  const Refusal refusal =
+      arming_.start(start, !missing, !sensors_.surface_uncertain(), board::milliseconds());
   if (refusal != Refusal::kNone) {
     DebugLine line(DebugLevel::kWarning);
     line << FLASH_TEXT("START refused: ") << describe(refusal);
@@ -118,7 +119,7 @@ void Robot::tick(uint8_t ticks) {
   watch_battery(now);
   // First, so that a command takes effect with the least delay.
   fins_.step(motion(now), parameters_);
-  sensors_.step(ticks, !armed());
+  sensors_.step(ticks, armed());
   calibration_.step();
   board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
   tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;

@@ -23,8 +23,10 @@ FlashText describe(ResetCause cause) {
 
 constexpr uint8_t kFirstFin = 2;  // the number of the first bit of DeviceFault that belongs to a fin
 constexpr uint8_t kMagnet = kFirstFin + 3 * kFinCount;
-constexpr uint8_t kFaultCount = kMagnet + 1;
+constexpr uint8_t kSurface = kMagnet + 1;
+constexpr uint8_t kFaultCount = kSurface + 1;
 static_assert(static_cast<uint16_t>(DeviceFault::kMagnet) == 1 << kMagnet, "the bits moved");
+static_assert(static_cast<uint16_t>(DeviceFault::kSurface) == 1U << kSurface, "the bits moved");
 
 FlashText describe_fin(uint8_t fin) {
   switch (fin) {
@@ -44,6 +46,11 @@ void describe(uint8_t number, bool failed, DebugLine* line) {
   if (number == kMagnet) {
     *line << (failed ? FLASH_TEXT("encoders: a magnet out of place")
                      : FLASH_TEXT("encoders: magnets in place"));
+    return;
+  }
+  if (number == kSurface) {
+    *line << (failed ? FLASH_TEXT("depth uncertain: supply failed below")
+                     : FLASH_TEXT("depth certain again"));
     return;
   }
   const uint8_t kind = (number - kFirstFin) / kFinCount;

@@ -205,7 +205,9 @@ class FaultDetector:
         if self._depth_is_frozen():
             return ["The pressure reading is frozen. Check the sensor, or the simulator."]
         if self._age(self._depth_sane) > self._depth_stale:
-            return [f"The depth of {self._depth:.1f} m is out of range. Restart the board at the surface."]
+            return [f"The depth of {self._depth:.1f} m is out of range. Zero the depth at the surface."]
+        if self._faults & DeviceFault.SURFACE:
+            return [_DEPTH_UNCERTAIN]
         return []
 
     def _other_refusals(self, status: Status) -> list[str]:
@@ -300,6 +302,10 @@ _FIN_PARTS = {
 }
 _TRACKING = sum(DeviceFault.TRACKING_FRONT_RIGHT << fin for fin in range(FIN_COUNT))
 """Only the next arming clears these, so they do not forbid it."""
+_DEPTH_UNCERTAIN = (
+    "The depth is uncertain, since the board's supply failed while the robot was armed or under water. "
+    "Let it rise, or zero the depth at the surface."
+)
 _WRONG_FIRMWARE = (
     "The board runs the firmware for hardware in the loop, which drives no motors. Upload the "
     "robot's own, or set robot.mode to hil."

@@ -110,7 +110,7 @@ FAULTS = (
         automatic_only=True,
         what="The depth is out of this robot's range.",
         cause="The pressure sensor is damaged, or the board was started under water.",
-        remedy="Switch the board off and on at the surface, so that it measures the surface pressure again.",
+        remedy="Zero the depth at the surface, on the page System.",
     ),
     FaultRule(
         name="imu_stale",

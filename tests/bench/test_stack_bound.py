@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bench.firmware import GUARDED_RECURSION, RAM_BYTES, count_static
+from bench.firmware import RAM_BYTES, count_static
 from bench.stack_bound import StackBoundError, stack_bound
 from tests.board.host import Robot, start
 from tests.board.rig import ROOT, build
@@ -79,7 +79,7 @@ def test_the_firmware_s_stack_fits_and_is_not_deeper_than_its_bound(tmp_path: Pa
     build(ROOT / "firmware/emulator")
     build(ROOT / "firmware/bootloader")
     elf = ROOT / "build/firmware/robot.elf"
-    bound = stack_bound(elf, GUARDED_RECURSION)
+    bound = stack_bound(elf)
     room = RAM_BYTES - count_static(elf)
     with start("robot", tmp_path) as rig:
         robot = Robot(rig)

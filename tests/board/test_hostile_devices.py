@@ -116,19 +116,36 @@ def test_a_brown_out_stops_the_fins_at_once_and_the_board_comes_back(robot: Robo
     assert robot.board.stats()["watchdog_resets"] == 0
 
 
-def test_a_brown_out_under_water_shows_the_depth_or_begins_anew_but_nothing_else(robot: Robot) -> None:
-    """The surface's pressure in the memory may be damaged."""
-    depths = set()
-    for _ in range(10):
-        robot.board.sense(STILL_WATER)
-        robot.board.brown_out(1.0)
-        robot.listen(1.0)  # at the surface, whose pressure it takes as zero depth
-        robot.board.sense(STILL_WATER._replace(pressure=STILL_WATER.pressure + 1.5 * 9810))
-        robot.board.brown_out(0.2)
+@pytest.mark.parametrize("lost", [0.1, 0.2, 1.0])
+def test_no_brown_out_under_water_moves_the_surface(robot: Robot, lost: float) -> None:
+    """The surface's pressure in the memory may be damaged; that in EEPROM is not."""
+    robot.board.sense(STILL_WATER._replace(pressure=STILL_WATER.pressure + 1.5 * 9810))
+    robot.converse(0.1, DOWN)
+    for _ in range(4):
+        robot.board.brown_out(lost)
         robot.listen(0.5)
         robot.greet()
-        depths.add(round(last(robot.listen(0.5), Depth).depth, 2))
-    assert depths <= {0.0, 1.5}
+        packets = robot.listen(0.5)
+        assert last(packets, Depth).depth == pytest.approx(1.5, abs=0.01)
+        # Only where memory lost it, it is uncertain.
+        assert last(packets, Status).faults in (
+            {DeviceFault.SURFACE} if lost == 1 else {0, DeviceFault.SURFACE}
+        )
+    robot.board.sense(STILL_WATER)
+    robot.listen(0.1)
+    assert last(robot.listen(0.5), Status).faults == 0
+    robot.arm()
+
+
+def test_a_brown_out_is_never_called_a_hang(robot: Robot) -> None:
+    """The memory that tells a hang may be damaged, while the mark that it was running survives."""
+    causes = set()
+    for _ in range(60):
+        robot.board.brown_out(0.1)
+        robot.listen(0.4)
+        robot.greet()
+        causes.add(last(robot.listen(0.3), Status).reset_cause)
+    assert causes == {ResetCause.POWER_ON, ResetCause.EXTERNAL}
 
 
 @pytest.mark.parametrize("kind", ["refused", "stretched", "contested"])

@@ -20,6 +20,7 @@ from robot_runtime.contract.packets import (
     Status,
     StatusFlag,
     Stop,
+    ZeroDepth,
 )
 from tests.firmware.robot import BRIDGES, IMU, PRESSURE, SURFACE, Robot, hello, navigation
 
@@ -113,6 +114,60 @@ def test_surface_outlives_a_reset_under_water(robot: Robot, cause: ResetCause) -
     robot.reset(cause)
     assert any(isinstance(packet, Depth) for packet in robot.run(100))
     assert robot.last(Depth).depth == pytest.approx(2, abs=2e-3)
+
+
+def lose_power_under_water(robot: Robot, depth: float = 2.0) -> None:
+    """Memory and its copy of the surface are lost; EEPROM is not."""
+    robot.run(1000)
+    robot.pressure.show(SURFACE + depth * WATER)
+    robot.run(200)
+    robot.reset(ResetCause.POWER_ON)
+    robot.greet()
+    robot.run(1000)
+
+
+@pytest.mark.parametrize("depth", [0.15, 2.0])
+def test_surface_is_never_measured_under_water(robot: Robot, depth: float) -> None:
+    lose_power_under_water(robot, depth)
+    assert robot.last(Depth).depth == pytest.approx(depth, abs=2e-3)
+    assert robot.status().faults == DeviceFault.SURFACE
+    assert "depth uncertain: supply failed below" in robot.texts
+    robot.greet()
+    robot.say(Start(epoch=2))
+    robot.run(200)
+    assert not robot.status().flags & StatusFlag.ARMED
+    assert "START refused: depth uncertain" in robot.texts
+    robot.pressure.show(SURFACE + 0.02 * WATER)
+    robot.run(200)
+    assert robot.status().faults == 0
+    assert robot.last(Depth).depth == pytest.approx(0.02, abs=2e-3)
+    assert "depth certain again" in robot.texts
+    robot.arm()
+
+
+def test_zero_depth_ends_the_doubt_of_a_surface(robot: Robot) -> None:
+    lose_power_under_water(robot, 0.3)  # or the air is heavier now
+    robot.say(ZeroDepth())
+    robot.run(600)
+    assert robot.last(Depth).depth == pytest.approx(0, abs=2e-3)
+    assert robot.status().faults == 0
+    robot.reset(ResetCause.POWER_ON)
+    robot.pressure.show(SURFACE)
+    robot.greet()
+    robot.run(600)
+    assert robot.last(Depth).depth == pytest.approx(0, abs=2e-3)
+    assert robot.status().faults == 0
+
+
+def test_surface_of_an_armed_robot_outlives_a_power_cut(robot: Robot) -> None:
+    robot.run(500)
+    robot.arm()
+    robot.run(50)
+    robot.reset(ResetCause.POWER_ON)
+    robot.pressure.show(SURFACE + 0.08 * WATER)
+    robot.greet()
+    robot.run(600)
+    assert robot.last(Depth).depth == pytest.approx(0.08, abs=2e-3)
 
 
 def test_surface_is_taken_anew_at_power_on(robot: Robot) -> None:

@@ -155,7 +155,7 @@ uint16_t next_epoch() {
   return current->epoch;
 }
 
-void read_kept(void* bytes, uint8_t size) { memcpy(bytes, current->kept, size); }
+void read_kept(uint8_t index, void* bytes, uint8_t size) { memcpy(bytes, current->kept + index, size); }
 
 void write_kept(uint8_t index, uint8_t byte) { current->kept[index] = byte; }
 

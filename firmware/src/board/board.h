@@ -50,7 +50,7 @@ void set_motor_power(bool on);
 // Number of this boot, from memory that survives a power cycle; never 0.
 uint16_t next_epoch();
 // More memory that survives a power cycle, at most 100 bytes.
-void read_kept(void* bytes, uint8_t size);
+void read_kept(uint8_t index, void* bytes, uint8_t size);
 // Begins to write a byte, which takes 4 ms; waits while the one before it is written.
 void write_kept(uint8_t index, uint8_t byte);
 // Memory that survives a reset but not a power cycle; its content at power-on is random.

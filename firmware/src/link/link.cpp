@@ -170,7 +170,10 @@ void Link::flush() {
 
 // Adds the numbers of stored frames to the frame being packed, if there is room.
 void Link::add_selective_acknowledgement() {
-  if (reorder_buffer_.any() && !packer_.empty() && packer_.fits(sizeof(Acknowledge))) send(state());
+  if (!reorder_buffer_.any() || packer_.empty() || !packer_.fits(sizeof(Acknowledge))) return;
+  // Not by send(), which may flush.
+  const Acknowledge acknowledge = state();
+  packer_.add(Acknowledge::kType, &acknowledge, sizeof acknowledge);
 }
 
 void Link::flush(uint32_t key) {

@@ -24,6 +24,8 @@ FlashText describe(Refusal refusal) {
       return FLASH_TEXT("battery is low");
     case Refusal::kCalibration:
       return FLASH_TEXT("not calibrated: ");
+    case Refusal::kSurface:
+      return FLASH_TEXT("depth uncertain");
     case Refusal::kNone:
       break;
   }
@@ -75,18 +77,19 @@ Disarming Arming::tick(uint32_t now_ms) {
   return disarm(Disarming::kSilence);
 }
 
-Refusal Arming::refusal(const Start& start, bool calibrated, uint32_t now_ms) const {
+Refusal Arming::refusal(const Start& start, bool calibrated, bool surface_certain, uint32_t now_ms) const {
   if (!greeted_) return Refusal::kNoHello;
   if (!agreed_) return Refusal::kDefinitions;
   if (start.epoch != epoch_) return Refusal::kEpoch;
   if (now_ms - steady_since_ms_ < kTrafficMs) return Refusal::kTraffic;
   if (battery_failed_) return Refusal::kBattery;
   if (!calibrated) return Refusal::kCalibration;
+  if (!surface_certain) return Refusal::kSurface;
   return Refusal::kNone;
 }
 
-Refusal Arming::start(const Start& start, bool calibrated, uint32_t now_ms) {
-  const Refusal reason = refusal(start, calibrated, now_ms);
+Refusal Arming::start(const Start& start, bool calibrated, bool surface_certain, uint32_t now_ms) {
+  const Refusal reason = refusal(start, calibrated, surface_certain, now_ms);
   if (reason == Refusal::kNone) armed_ = true;
   return reason;
 }

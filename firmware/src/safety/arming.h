@@ -11,7 +11,16 @@
 
 namespace mucat {
 
-enum class Refusal : uint8_t { kNone, kNoHello, kDefinitions, kEpoch, kTraffic, kBattery, kCalibration };
+enum class Refusal : uint8_t {
+  kNone,
+  kNoHello,
+  kDefinitions,
+  kEpoch,
+  kTraffic,
+  kBattery,
+  kCalibration,
+  kSurface
+};
 enum class Disarming : uint8_t { kNone, kStop, kSilence, kBattery, kDefinitions, kHost };
 
 FlashText describe(Refusal refusal);
@@ -29,7 +38,7 @@ class Arming {
   Disarming fail_battery();
   Disarming tick(uint32_t now_ms);
 
-  Refusal start(const Start& start, bool calibrated, uint32_t now_ms);
+  Refusal start(const Start& start, bool calibrated, bool surface_certain, uint32_t now_ms);
   // True if the command may be carried out.
   bool navigate(uint32_t now_ms);
 
@@ -42,7 +51,7 @@ class Arming {
 
  private:
   Disarming disarm(Disarming reason);
-  Refusal refusal(const Start& start, bool calibrated, uint32_t now_ms) const;
+  Refusal refusal(const Start& start, bool calibrated, bool surface_certain, uint32_t now_ms) const;
 
   uint32_t received_ms_ = 0;
   uint32_t steady_since_ms_ = 0;

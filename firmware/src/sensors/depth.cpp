@@ -12,6 +12,11 @@ constexpr int32_t kSurfaceMin = 50000;
 constexpr int32_t kSurfaceMax = 120000;
 // m: the limit of a depth of 16 bits.
 constexpr int32_t kDepthMax = 32;
+// Pa: 5 and 10 cm of water. A cell of EEPROM lasts for 100,000 writes, so that waves must not cause them.
+constexpr int32_t kAtSurface = 500;
+constexpr int32_t kSubmerged = 1000;
+// Behind the calibration.
+constexpr uint8_t kRecordAt = 32;
 
 bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <= kSurfaceMax; }
 
@@ -19,8 +24,17 @@ bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <=
 
 void Surface::start() {
   const board::RetainedMemory& retained = board::retained_memory();
-  const int32_t pressure = static_cast<int32_t>(retained.value);
-  if (retained.complement != ~retained.value || !plausible(pressure)) return;
+  if (retained.complement == ~retained.value) restore(retained.value);
+  Record record;
+  board::read_kept(kRecordAt, &record, sizeof record);
+  kept_ = record.complement == static_cast<uint16_t>(~record.value);
+  if (known() || !kept_) return;
+  restore(2 * static_cast<int32_t>(record.value));
+  uncertain_ = known();
+}
+
+void Surface::restore(int32_t pressure) {
+  if (!plausible(pressure)) return;
   pressure_ = pressure;
   readings_ = kReadings;
 }
@@ -32,6 +46,28 @@ void Surface::add(int32_t pressure) {
   pressure_ /= kReadings;
   board::retained_memory().value = pressure_;
   board::retained_memory().complement = ~static_cast<uint32_t>(pressure_);
+  uncertain_ = false;
+  // EEPROM may hold the one before it.
+  keep(false);
+}
+
+void Surface::step(int32_t pressure, bool armed) {
+  if (!known()) return;
+  const int32_t below = pressure - pressure_;
+  const bool at_surface = below > -kAtSurface && below < kAtSurface;
+  if (at_surface) uncertain_ = false;
+  const bool kept = armed || below >= kSubmerged || (kept_ && !at_surface);
+  if (kept != kept_) keep(kept);
+  if (next_byte_ == sizeof(Record)) return;
+  const uint16_t value = pressure_ / 2;
+  const Record record = {value, kept_ ? static_cast<uint16_t>(~value) : value};
+  board::write_kept(kRecordAt + next_byte_, reinterpret_cast<const uint8_t*>(&record)[next_byte_]);
+  ++next_byte_;
+}
+
+void Surface::keep(bool kept) {
+  kept_ = kept;
+  next_byte_ = 0;
 }
 
 void Surface::forget() {

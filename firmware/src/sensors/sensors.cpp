@@ -22,9 +22,9 @@ int16_t limited(int32_t value) {
 
 }  // namespace
 
-void Sensors::step(uint8_t ticks, bool at_surface) {
+void Sensors::step(uint8_t ticks, bool armed) {
   read_imu(ticks);
-  read_pressure(at_surface);
+  read_pressure(armed);
   read_battery();
 }
 
@@ -46,12 +46,14 @@ void Sensors::read_imu(uint8_t ticks) {
   attitude_.update(rate, force, ticks * kTickSeconds);
 }
 
-void Sensors::read_pressure(bool at_surface) {
+void Sensors::read_pressure(bool armed) {
   const uint32_t now = board::microseconds();
-  if (!pressure_.step(&pressure_reading_)) return;
-  pressure_time_ = now;
-  if (at_surface) surface_.add(pressure_reading_.pressure);
-  depth_fresh_ = surface_.known();
+  if (pressure_.step(&pressure_reading_)) {
+    pressure_time_ = now;
+    if (!armed) surface_.add(pressure_reading_.pressure);
+    depth_fresh_ = surface_.known();
+  }
+  surface_.step(pressure_reading_.pressure, armed);
 }
 
 // The converter runs from one tick to the next, ten times a second.
@@ -91,9 +93,10 @@ void Sensors::read(Beacon* packet) const {
   packet->left = board::beacon_left() != calibration_.beacons_inverted;
 }
 
-uint8_t Sensors::faults() const {
-  return (imu_.faulty() ? static_cast<uint8_t>(DeviceFault::kImu) : 0) |
-         (pressure_.faulty() ? static_cast<uint8_t>(DeviceFault::kPressure) : 0);
+uint16_t Sensors::faults() const {
+  return (imu_.faulty() ? static_cast<uint16_t>(DeviceFault::kImu) : 0) |
+         (pressure_.faulty() ? static_cast<uint16_t>(DeviceFault::kPressure) : 0) |
+         (surface_.uncertain() ? static_cast<uint16_t>(DeviceFault::kSurface) : 0);
 }
 
 }  // namespace mucat

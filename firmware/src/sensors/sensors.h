@@ -15,25 +15,25 @@ class Sensors {
  public:
   explicit Sensors(const Calibration& calibration) : calibration_(calibration) {}
   void start() { surface_.start(); }
-  // Call every tick; `ticks` have passed since the last call. The surface is measured only while
-  // `at_surface`.
-  void step(uint8_t ticks, bool at_surface);
+  // Call every tick; `ticks` have passed since the last call. The surface is measured only while disarmed.
+  void step(uint8_t ticks, bool armed);
 
   // Takes the newest reading; false if there is no new one. The water's density is in kg/m³.
   bool take(Imu* packet);
   bool take(Depth* packet, uint16_t density);
   void read(Beacon* packet) const;
+  bool surface_uncertain() const { return surface_.uncertain(); }
   // The surface is measured anew.
   void zero_depth() { surface_.forget(); }
 
   uint16_t battery_millivolts() const { return battery_millivolts_; }
   uint8_t imu_identity() const { return imu_.identity(); }
   // Bits of DeviceFault.
-  uint8_t faults() const;
+  uint16_t faults() const;
 
  private:
   void read_imu(uint8_t ticks);
-  void read_pressure(bool at_surface);
+  void read_pressure(bool armed);
   void read_battery();
 
   const Calibration& calibration_;

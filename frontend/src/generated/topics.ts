@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = '554575d8';
+export const DEFINITIONS_HASH = 'e47854fa';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -57,6 +57,7 @@ export const DeviceFault = {
   TRACKING_BACK_LEFT: 4096,
   TRACKING_FRONT_LEFT: 8192,
   MAGNET: 16384,
+  SURFACE: 32768,
 } as const;
 
 export const ResetCause = {

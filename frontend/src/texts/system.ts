@@ -131,6 +131,7 @@ export const system = {
       bridge: (fin: string) => `H-bridge ${fin}`,
       tracking: (fin: string) => `motor ${fin}`,
       magnet: 'an encoder’s magnet out of place',
+      surface: 'depth uncertain since the supply failed',
     },
     fins: { frontRight: 'front right', backRight: 'back right', backLeft: 'back left', frontLeft: 'front left' },
     flags: {

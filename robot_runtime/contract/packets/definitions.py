@@ -52,7 +52,8 @@ class DeviceFault(IntFlag):
 
     The last reading of an IMU, a pressure sensor or an encoder failed or was invalid; a powered H-bridge does
     not answer or reports a fault; a fin turned against its drive or not at all, and is not driven until the
-    next arming; the magnet of an encoder is too near or too far, and the fin's angle is less exact.
+    next arming; the magnet of an encoder is too near or too far, and the fin's angle is less exact; the depth
+    is that below the surface before the supply failed under water, and the board does not arm.
     """
 
     IMU = 1
@@ -70,6 +71,7 @@ class DeviceFault(IntFlag):
     TRACKING_BACK_LEFT = 4096
     TRACKING_FRONT_LEFT = 8192
     MAGNET = 16384
+    SURFACE = 32768
 
 
 class ResetCause(IntEnum):

@@ -118,6 +118,15 @@ def test_on_a_slow_line_a_few_equal_readings_are_not_frozen() -> None:
     assert wrong(rig) == {"depth_frozen"}
 
 
+def test_an_uncertain_depth_forbids_to_arm(rig: Rig) -> None:
+    rig.board.faults = DeviceFault.SURFACE
+    rig.report()
+    assert "zero the depth" in rig.supervisor.detector.refusals()[0]
+    rig.board.faults = 0
+    rig.report()
+    assert rig.supervisor.detector.refusals() == []
+
+
 @pytest.mark.parametrize("depth", [-1.01, 20.01, 32.767])
 def test_an_impossible_depth_is_a_fault_and_a_single_jump_is_not(rig: Rig, depth: float) -> None:
     live(rig, 0.38, lambda: rig.sense(depth))

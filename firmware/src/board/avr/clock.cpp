@@ -22,10 +22,11 @@ volatile uint8_t ticks;
 // Here, not beside the reset's cause, whose start-up code switches the watchdog on in every program that
 // links it.
 __attribute__((section(".noinit"))) volatile uint8_t unfed_ticks;
+__attribute__((section(".noinit"))) volatile uint8_t unfed_complement;
 
 ISR(TIMER1_COMPA_vect) {
   if (ticks != UINT8_MAX) ++ticks;
-  if (unfed_ticks != UINT8_MAX) ++unfed_ticks;
+  if (unfed_ticks != UINT8_MAX) unfed_complement = ~++unfed_ticks;
 }
 
 void start_clock() {

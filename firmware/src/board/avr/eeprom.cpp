@@ -1,4 +1,5 @@
-// The EEPROM, which survives a power cycle: the boot counter, and the calibration. A cell lasts for 100,000
+// The EEPROM, which survives a power cycle: the boot counter, and the calibration, and the
+// surface. A cell lasts for 100,000
 // writes.
 #ifdef __AVR__
 #include <avr/eeprom.h>
@@ -21,7 +22,9 @@ uint16_t next_epoch() {
   return epoch;
 }
 
-void read_kept(void* bytes, uint8_t size) { eeprom_read_block(bytes, kKeptAddress, size); }
+void read_kept(uint8_t index, void* bytes, uint8_t size) {
+  eeprom_read_block(bytes, kKeptAddress + index, size);
+}
 
 void write_kept(uint8_t index, uint8_t byte) { eeprom_update_byte(kKeptAddress + index, byte); }
 

@@ -13,6 +13,8 @@ void start_spi();
 
 // Ticks since the watchdog was fed, from before the reset until start() has found its cause.
 extern volatile uint8_t unfed_ticks;
+// Its complement: where a brown-out damaged one of both, neither counts.
+extern volatile uint8_t unfed_complement;
 
 }  // namespace board
 }  // namespace mucat

@@ -35,7 +35,8 @@ ResetCause find_cause() {
   if (reset_flags & _BV(WDRF)) return ResetCause::kWatchdog;
   const bool survived = mark == kMark && mark_complement == static_cast<uint16_t>(~kMark);
   if (!survived) return ResetCause::kPowerOn;
-  return unfed_ticks >= kHungTicks ? ResetCause::kWatchdog : ResetCause::kExternal;
+  const bool hung = unfed_ticks >= kHungTicks && (unfed_ticks ^ unfed_complement) == UINT8_MAX;
+  return hung ? ResetCause::kWatchdog : ResetCause::kExternal;
 }
 
 }  // namespace
@@ -73,6 +74,7 @@ ResetCause reset_cause() { return cause; }
 
 void feed_watchdog() {
   unfed_ticks = 0;
+  unfed_complement = UINT8_MAX;
   wdt_reset();
 }
 

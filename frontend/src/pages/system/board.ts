@@ -27,6 +27,7 @@ const FAULTS: readonly (readonly [number, string])[] = [
   [DeviceFault.TRACKING_BACK_LEFT, texts.sensors.tracking(texts.fins.backLeft)],
   [DeviceFault.TRACKING_FRONT_LEFT, texts.sensors.tracking(texts.fins.frontLeft)],
   [DeviceFault.MAGNET, texts.sensors.magnet],
+  [DeviceFault.SURFACE, texts.sensors.surface],
 ];
 
 const FLAGS: readonly (readonly [number, string])[] = [
