@@ -31,7 +31,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware \
+.PHONY: help run test test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -165,6 +165,7 @@ setup-test: build/.packages-test setup
 
 # Two at once would wait for each other's apt.
 build/.packages-test: build/.packages-run
+build/.packages-packages: build/.packages-run
 
 build/.packages-%: setup.sh
 	@./setup.sh $*
@@ -201,5 +202,11 @@ server/help/index.html: .venv/.ready mkdocs.yml $(HELP_SOURCES)
 	@rm -r server/help/assets/javascripts/lunr && find server/help -name '*.map' -delete
 	@touch $@
 
+wheels: setup ## build the wheels into dist/, with the emulated board for this computer
+	@$(PYTHON) -m packages.wheels
+
+all-wheels: build/.packages-packages setup ## the same with the emulated board for every architecture
+	@$(PYTHON) -m packages.wheels x86_64 aarch64 i686
+
 clean: ## remove everything that was built
-	rm -rf build .venv frontend/node_modules server/page server/help
+	rm -rf build dist .venv frontend/node_modules server/page server/help

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Says what this machine lacks to build and run the robot, and installs Debian's part of it where it may.
-# usage: ./setup.sh run|test
+# usage: ./setup.sh run|test|packages
 set -eu
 
 fail() { printf '%s\n' "$1" >&2; exit 1; }
@@ -48,6 +48,18 @@ if [ "${1:-run}" = test ]; then
     need iproute2 ip
     need clang clang
     ls /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*.a >/dev/null 2>&1 || missing="$missing libclang-rt-dev"
+fi
+# What builds the emulated board for other computers, and runs the packages in systems of their own.
+if [ "${1:-run}" = packages ]; then
+    need mmdebstrap mmdebstrap
+    need gcc-aarch64-linux-gnu aarch64-linux-gnu-gcc
+    need g++-aarch64-linux-gnu aarch64-linux-gnu-g++
+    need gcc-i686-linux-gnu i686-linux-gnu-gcc
+    need g++-i686-linux-gnu i686-linux-gnu-g++
+    need qemu-user-static qemu-aarch64-static
+    need binfmt-support update-binfmts
+    need arch-test arch-test
+    need buildah buildah
 fi
 [ -n "$missing$wished" ] || exit 0
 

@@ -10,7 +10,7 @@ import click
 from robot_runtime.simulation.boards.mistakes import check_mistake, write_list
 from server.platform.command_line import CommandError, with_settings
 from server.platform.folder_lock import claim
-from server.platform.settings import Settings, SetupError
+from server.platform.settings import Settings, SetupError, keep_config
 
 if TYPE_CHECKING:
     from server.container import Container
@@ -54,11 +54,12 @@ def run(settings: Settings, mistakes: tuple[str, ...], *, uncalibrated: bool) ->
     with claim(settings.data):
         if uncalibrated:
             settings.data.board_eeprom.unlink(missing_ok=True)
-        return _serve(settings)
+        return _serve(keep_config(settings))
 
 
 def _serve(settings: Settings) -> int:
     # Loaded only now: an error in robot.toml is reported at once, also on a slow computer.
+    from robot_runtime.simulation.boards.emulator_process import BoardError, check_emulator
     from robot_runtime.simulation.boards.firmware import FirmwareBuildError, build_firmware
     from server.app import create_app
     from server.http.serving import make_server, open_socket
@@ -74,7 +75,8 @@ def _serve(settings: Settings) -> int:
     if settings.emulated_board:
         try:
             build_firmware(settings.build, settings.link.baud, hil=settings.in_the_loop)
-        except FirmwareBuildError as problem:
+            check_emulator(settings.build / "board")
+        except (FirmwareBuildError, BoardError) as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
         certificate = prepare_certificate(settings) if settings.tls else None

@@ -6,6 +6,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -35,6 +36,10 @@ def free_port() -> int:
 
 class Stack:
     """A running robot; leaving the context ends it and everything it started."""
+
+    program = Path(sys.executable).parent / "mucat"
+    folder = ROOT
+    environment: Mapping[str, str] = {}
 
     def __init__(self, data: Path, *options: str) -> None:
         self.data = data
@@ -81,17 +86,17 @@ class Stack:
         """Start `mucat run` without waiting for anything."""
         self.data.mkdir(parents=True, exist_ok=True)
         command = [
-            str(Path(sys.executable).parent / "mucat"),
+            str(self.program),
             "run",
             "--port",
             str(self.port),
             *self._options,
         ]
-        environment = os.environ | {"MUCAT_DATA": str(self.data), "PYTHONUNBUFFERED": "1"}
+        environment = os.environ | {"MUCAT_DATA": str(self.data), "PYTHONUNBUFFERED": "1"} | self.environment
         with self.log.open("ab") as log:
             self._process = subprocess.Popen(
                 command,
-                cwd=ROOT,
+                cwd=self.folder,
                 env=environment,
                 stdout=log,
                 stderr=subprocess.STDOUT,

@@ -11,6 +11,7 @@ from robot_runtime.contract.packets import Hello, Packet, Status, Stop
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.link.frame_ring import RecordedFrame
 from robot_runtime.link.session import BoardMessage, LinkSession, SessionStage
+from robot_runtime.places import UPLOAD_REMEDY
 
 log = logging.getLogger(__name__)
 
@@ -184,11 +185,11 @@ def _words(stage: SessionStage, session: LinkSession) -> str:
     if stage is SessionStage.GREETING and session.garbled:
         return (
             "bytes come from the board, but no valid frame: its firmware may run at another speed than"
-            f" link.baud, {session.baud} baud. Build it with `make firmware` and upload it"
+            f" link.baud, {session.baud} baud. Upload it anew: {UPLOAD_REMEDY}"
         )
     if stage is not SessionStage.REFUSED or session.board is None:
         return stage.value
     return (
-        f"{stage.value} (board {session.board.definitions:08x}): build and upload the firmware that"
-        " belongs to this software with `make firmware`"
+        f"{stage.value} (board {session.board.definitions:08x}): upload the firmware that belongs"
+        f" to this software: {UPLOAD_REMEDY}"
     )

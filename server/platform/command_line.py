@@ -16,7 +16,10 @@ from server.platform.terminal import plain
 FILE = click.Path(path_type=Path)
 data_option = click.option("--data", type=FILE, help="The data folder.  [default: $MUCAT_DATA, or data]")
 config_option = click.option(
-    "--config", type=FILE, envvar="MUCAT_CONFIG", default="robot.toml", help="The robot's configuration."
+    "--config",
+    type=FILE,
+    envvar="MUCAT_CONFIG",
+    help="The robot's configuration.  [default: $MUCAT_CONFIG, or robot.toml here or in the data folder]",
 )
 
 
@@ -55,7 +58,7 @@ def with_settings(command: Callable[..., int | None]) -> Callable[..., int | Non
     @data_option
     @config_option
     @wraps(command)
-    def run(*, data: Path | None, config: Path, **options: Any) -> int | None:
+    def run(*, data: Path | None, config: Path | None, **options: Any) -> int | None:
         host, port = options.pop("host", None), options.pop("port", None)
         try:
             return command(read_settings(config, data, host, port, os.environ), **options)

@@ -6,7 +6,7 @@ import socket
 import stat
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Literal
@@ -23,7 +23,8 @@ from robot_runtime.config import (
 )
 from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
-from robot_runtime.durable_files import make_folder
+from robot_runtime.durable_files import make_folder, write_whole
+from robot_runtime.places import BUILD, DEFAULT_CONFIG, IN_REPOSITORY
 from server.platform.pidfile import running_parts
 from server.platform.reverse_proxy import Network, read_proxies, read_public_url
 
@@ -96,6 +97,8 @@ class DataFolder:
         """Exists while a scenario runs on the robot: the settings before it."""
         self.scenarios = path / "scenarios"
         """Your own scenarios."""
+        self.config = path / "robot.toml"
+        """The robot's configuration, unless the present folder has one."""
         self.craft = path / ADOPTED_CRAFT
         """The adopted craft (docs/use/identify.md)."""
         self.craft_before = path / "craft-before.toml"
@@ -130,7 +133,7 @@ class Settings:
     """Of the emulated board; see robot_runtime/simulation/boards/mistakes.py."""
     uncalibrated: bool = False
     """The emulated board begins without a calibration."""
-    build: Path = Path(__file__).parents[2] / "build"
+    build: Path = BUILD
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"
 
@@ -176,14 +179,22 @@ class Settings:
 
 
 def read_settings(
-    config: Path, data: Path | None, host: str | None, port: int | None, environment: Mapping[str, str]
+    config: Path | None,
+    data: Path | None,
+    host: str | None,
+    port: int | None,
+    environment: Mapping[str, str],
 ) -> Settings:
-    """Command line before environment before `robot.toml`. Raises SetupError on what is not valid."""
+    """Command line before environment before `robot.toml`. Raises SetupError on what is not valid.
+
+    Without a `config` it is robot.toml in the present folder, else the data folder's, else the default one.
+    """
+    folder = DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
+    config = config or find_config(folder)
     try:
         loaded = load(config)
     except ConfigError as problem:
         raise SetupError(f"{problem}. Correct the file, or name another with --config.") from problem
-    folder = DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
     _check_socket_paths(folder)
     try:
         craft = craft_path(loaded, config, folder.path)
@@ -218,6 +229,26 @@ def read_settings(
         public_url=public_url,
         trusted_proxies=trusted_proxies,
     )
+
+
+def find_config(folder: DataFolder) -> Path:
+    """Returns the configuration where the command line names none."""
+    found = (path for path in (Path("robot.toml"), folder.config) if path.exists())
+    return next(found, DEFAULT_CONFIG)
+
+
+def keep_config(settings: Settings) -> Settings:
+    """Puts the default configuration into the data folder, where nobody has one, so that it can be edited.
+
+    Raises SetupError where it cannot.
+    """
+    if settings.config != DEFAULT_CONFIG or IN_REPOSITORY:
+        return settings
+    try:
+        write_whole(settings.data.config, DEFAULT_CONFIG.read_bytes())
+    except OSError as problem:
+        raise SetupError(f"{settings.data.config} cannot be written: {problem.strerror}.") from problem
+    return replace(settings, config=settings.data.config)
 
 
 def make_folders(folder: DataFolder) -> None:

@@ -20,6 +20,7 @@ from typing import Literal
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Severity
 from robot_runtime.contract.packets import DEFINITIONS_HASH
+from robot_runtime.places import EMULATOR_REMEDY
 from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
 from server.platform.pidfile import end_parts, pid_file
@@ -140,7 +141,7 @@ class ManagedProcess:
             process = self._process = self._process or self._start()
         except OSError as problem:
             program = self.command.arguments[0]
-            return f"cannot be started: {program}: {problem.strerror}. Build it with “make firmware”", False
+            return f"cannot be started: {program}: {problem.strerror}; {EMULATOR_REMEDY}", False
         if self.state != "running":
             self._set("running")
         trimming = asyncio.create_task(self._trim())

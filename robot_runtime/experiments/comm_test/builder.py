@@ -16,13 +16,14 @@ from pathlib import Path
 
 from robot_runtime.experiments.comm_test.document import SKETCH, CommTest
 from robot_runtime.experiments.comm_test.framings import FRAMINGS
+from robot_runtime.places import FIRMWARE_SOURCES
 
 COMPILE_TIMEOUT = 60.0
 """s for one call of the compiler."""
 HASH_CHARACTERS = 16
 ARDUINO = Path("/usr/share/arduino/hardware/arduino/avr")
-SKETCHES = Path(__file__).resolve().parents[3] / "firmware/examples"
-LIBRARY = Path(__file__).resolve().parents[3] / "firmware/src"
+SKETCHES = FIRMWARE_SOURCES / "examples"
+LIBRARY = FIRMWARE_SOURCES / "src"
 LINK_PARTS = ("link", "board/avr")
 """The folders of the library that the sketch needs."""
 

@@ -21,6 +21,7 @@ from robot_runtime.experiments.comm_test.results import CellResult
 from robot_runtime.experiments.comm_test.runner import BOOTLOADER, Phase, Runner, run_cell
 from robot_runtime.experiments.comm_test.upload import BOOT_BAUD, UploadError, avrdude_version, upload
 from robot_runtime.link.link_driver import PortError
+from robot_runtime.places import EMULATOR_REMEDY, FIRMWARE_REMEDY
 from robot_runtime.simulation.boards.emulator_process import BoardError
 
 TEST_ERRORS = (SketchBuildError, UploadError, ResetError, BoardError, PortError)
@@ -68,10 +69,10 @@ class EmulatedLab:
         """See Lab."""
         program = self._build / "board"
         if not program.exists():
-            raise BoardError(f"there is no emulated board at {program}; `make firmware` builds it")
+            raise BoardError(f"there is no emulated board at {program}; {EMULATOR_REMEDY}")
         bootloader = self._build / BOOTLOADER
         if not bootloader.exists():
-            raise BoardError(f"there is no boot loader at {bootloader}; `make firmware` builds it")
+            raise BoardError(f"there is no boot loader at {bootloader}; {FIRMWARE_REMEDY}")
         builder = Builder(self._build / "comm_test")
         self._runner = Runner(builder, program, os.cpu_count() or 1, self._stop)
         tools = {

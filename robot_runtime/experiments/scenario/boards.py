@@ -4,13 +4,14 @@ import os
 from functools import partial
 from pathlib import Path
 
+from robot_runtime import places
 from robot_runtime.config import LinkConfig
 from robot_runtime.experiments.scenario.rig import MakeBoard
 from robot_runtime.simulation.boards.emulated_board import EmulatedBoard
 from robot_runtime.simulation.boards.firmware import firmware_path
 from robot_runtime.simulation.boards.host_board import HostBoard
 
-BUILD = Path(os.environ.get("MUCAT_BUILD", Path(__file__).parents[3] / "build"))
+BUILD = Path(os.environ.get("MUCAT_BUILD", places.BUILD))
 """The folder of everything built."""
 
 

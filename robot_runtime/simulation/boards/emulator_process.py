@@ -1,5 +1,6 @@
 """The emulated board as a process, and a connection to its socket. See docs/reference/emulator.md."""
 
+import platform
 import select
 import socket
 import subprocess
@@ -9,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Literal, Self
 
+from robot_runtime.places import EMULATOR_REMEDY
 from robot_runtime.simulation.boards.board_protocol import LineBuffer, read_fins, write_sense
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
@@ -205,6 +207,18 @@ class EmulatorClient:
         return self._pending.pop(0)
 
 
+def check_emulator(program: Path) -> None:
+    """Raises BoardError where the emulated board is missing or made for another kind of computer."""
+    try:
+        subprocess.run([program, "--help"], capture_output=True, check=True, timeout=START_TIMEOUT)
+    except FileNotFoundError as problem:
+        raise BoardError(f"There is no emulated board ({program}): {EMULATOR_REMEDY}.") from problem
+    except (OSError, subprocess.SubprocessError) as problem:
+        why = problem.strerror if isinstance(problem, OSError) else str(problem)
+        where = f"{program} on {platform.machine()}"
+        raise BoardError(f"The emulated board cannot run ({where}): {why}; {EMULATOR_REMEDY}.") from problem
+
+
 class EmulatorProcess:
     """The emulator's process; ends with the `with` statement. It creates the paths `tty` and `socket`."""
 
@@ -223,7 +237,7 @@ class EmulatorProcess:
             self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self._errors)
         except OSError as problem:
             self._errors.close()
-            raise BoardError(f"cannot start {program}: {problem}; `make firmware` builds it") from problem
+            raise BoardError(f"cannot start {program}: {problem}; {EMULATOR_REMEDY}") from problem
         if self._first_line() != b"ready\n":
             self.stop()
             raise BoardError(self._output or "the emulated board ended without a message")

@@ -16,8 +16,8 @@ from pathlib import Path
 
 from robot_runtime.config import LinkConfig, load
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.places import BUILD, FIRMWARE_REMEDY, FIRMWARE_SOURCES
 
-_SOURCES = Path(__file__).parents[3] / "firmware"
 _LINES_SHOWN = 5
 
 
@@ -45,7 +45,7 @@ def bring_up_path(build: Path, baud: int) -> Path:
 @contextmanager
 def build_lock() -> Iterator[None]:
     """Waits for other builds: make does not notice another make that writes the same files."""
-    sources = os.open(_SOURCES, os.O_RDONLY)
+    sources = os.open(FIRMWARE_SOURCES, os.O_RDONLY)
     try:
         fcntl.flock(sources, fcntl.LOCK_EX)
         yield
@@ -56,9 +56,13 @@ def build_lock() -> Iterator[None]:
 def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
     """Builds the firmware for this many bit/s if it is out of date. Raises FirmwareBuildError.
 
-    Without a compiler an existing file is used as it is.
+    Without a compiler or the sources an existing file is used as it is.
     """
     product = firmware_path(build, baud, ".elf", hil=hil)
+    if not FIRMWARE_SOURCES.exists():
+        if not product.exists():
+            raise FirmwareBuildError(f"There is no firmware for {baud} baud: {FIRMWARE_REMEDY}.")
+        return
     if shutil.which("make") is None or shutil.which("avr-gcc") is None:
         if product.exists():
             return
@@ -67,7 +71,8 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
             "gcc-avr and arduino-core-avr, or set link.baud in robot.toml to what the firmware was built for."
         )
     sketches = ["robot"] if hil else ["robot", "bring_up"]
-    command = ["make", "--silent", "-C", str(_SOURCES), *sketches, f"BAUD={baud}", f"BUILD={product.parent}"]
+    command = ["make", "--silent", "-C", str(FIRMWARE_SOURCES), *sketches]
+    command += [f"BAUD={baud}", f"BUILD={product.parent}"]
     command += ["HIL=1"] if hil else []
     with build_lock():
         # Another make's flags are not for this one: to keep going would bury the compiler's words.
@@ -84,9 +89,7 @@ def main() -> int:
         prog="python -m robot_runtime.simulation.boards.firmware", description=__doc__
     )
     parser.add_argument("--config", type=Path, default=Path("robot.toml"), help="the robot's configuration")
-    parser.add_argument(
-        "--build", type=Path, default=_SOURCES.parent / "build", help="folder of all products"
-    )
+    parser.add_argument("--build", type=Path, default=BUILD, help="folder of all products")
     options = parser.parse_args()
     try:
         config = load(options.config)

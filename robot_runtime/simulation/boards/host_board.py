@@ -5,6 +5,7 @@ from ctypes import POINTER, c_bool, c_char_p, c_double, c_int, c_uint8, c_uint32
 from pathlib import Path
 from typing import Any
 
+from robot_runtime.places import EMULATOR_REMEDY
 from robot_runtime.simulation.boards.emulator_process import BoardError, FaultKind, Water
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.water.sensors import Reading
@@ -45,7 +46,7 @@ class HostBoard(SteppedBoard):
             self.firmware = path.read_bytes()
             self._library = ctypes.CDLL(str(path.absolute()))
         except OSError as problem:
-            raise BoardError(f"cannot load {path}: {problem}; `make firmware` builds it") from problem
+            raise BoardError(f"cannot load {path}: {problem}; {EMULATOR_REMEDY}") from problem
         for name, (result, *arguments) in _SIGNATURES.items():
             function = getattr(self._library, name)
             function.restype, function.argtypes = result, arguments

@@ -17,6 +17,7 @@ def upload(settings: Settings) -> None:
 
     The board's calibration stays. Beside a running server, press the button on the System page.
     """
+    from robot_runtime.places import FIRMWARE_REMEDY
     from robot_runtime.simulation.boards.firmware import firmware_path
     from server.features.board.reservation import RobotBoard
     from server.platform.pidfile import end_parts
@@ -27,7 +28,7 @@ def upload(settings: Settings) -> None:
         )
     firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
     if not firmware.exists():
-        raise SetupError(f"There is no {firmware}; `make firmware` builds it.")
+        raise SetupError(f"There is no {firmware}; {FIRMWARE_REMEDY}.")
     board = RobotBoard(settings, lambda *_: None)
     with claim(settings.data):
         end_parts(settings.data.run)

@@ -14,6 +14,7 @@ from robot_runtime.experiments.bring_up.bench import Bench, BenchError, SerialBe
 from robot_runtime.experiments.bring_up.guide import STEPS, Step
 from robot_runtime.experiments.bring_up.procedure import BringUp
 from robot_runtime.experiments.bring_up.readings import BATTERY_VOLTS, GRAVITY, counts, field
+from robot_runtime.places import FIRMWARE_REMEDY
 from robot_runtime.simulation.boards.firmware import bring_up_path
 from server.features.board.reservation import RobotBoard
 from server.features.bring_up.report import write_report
@@ -67,7 +68,7 @@ class BringUpRun:
             raise RefusedError("A bring-up is going on. End it first.")
         sketch = bring_up_path(self._settings.build, self._settings.link.baud)
         if not sketch.exists():
-            raise RefusedError(f"There is no {sketch}; `make firmware` builds it.")
+            raise RefusedError(f"There is no {sketch}; {FIRMWARE_REMEDY}.")
         self._over.clear()
         self._phase, self._problem = "starting", ""
         self._words = "The robot is disarmed and its board reserved."

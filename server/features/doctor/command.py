@@ -14,7 +14,7 @@ from server.features.doctor.machine import Machine, read_machine
 from server.platform.command_line import config_option, data_option
 from server.platform.folder_lock import runner_of
 from server.platform.running_server import ask
-from server.platform.settings import DataFolder, Settings, SetupError, read_settings
+from server.platform.settings import DataFolder, Settings, SetupError, find_config, read_settings
 from server.platform.terminal import echo
 
 
@@ -22,7 +22,7 @@ from server.platform.terminal import echo
 @data_option
 @config_option
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON, for programs.")
-def doctor(data: Path | None, config: Path, *, as_json: bool) -> int:
+def doctor(data: Path | None, config: Path | None, *, as_json: bool) -> int:
     """Look through this computer: what is wrong, what it means, and what mends it.
 
     It changes nothing. The exit status is 1 where something is wrong.
@@ -35,12 +35,12 @@ def doctor(data: Path | None, config: Path, *, as_json: bool) -> int:
     return 1 if worst(findings) == "wrong" else 0
 
 
-def _look(config: Path, data: Path | None) -> Machine:
+def _look(config: Path | None, data: Path | None) -> Machine:
     try:
         settings = read_settings(config, data, None, None, os.environ)
     except SetupError as problem:
         folder = DataFolder((data or Path(os.environ.get("MUCAT_DATA") or "data")).absolute())
-        settings = Settings(data=folder, config=config.absolute())
+        settings = Settings(data=folder, config=(config or find_config(folder)).absolute())
         return replace(read_machine(settings, time.time()), configuration_problem=str(problem))
     return read_machine(settings, time.time(), _ask_link(settings))
 

@@ -20,7 +20,11 @@ def welcome(
     stored in a log, and is not always read at the robot.
     """
     base = settings.base_url()
-    lines = [f"µ-CAT {VERSION} ({settings.mode}): {base}/ (data in {settings.data.path})", _reach(settings)]
+    lines = [
+        f"µ-CAT {VERSION} ({settings.mode}): {base}/ (data in {settings.data.path})",
+        f"Its configuration is {settings.config}.",
+        _reach(settings),
+    ]
     if certificate is not None:
         lines += [
             "Browsers will not know its certificate. Compare the SHA-256 fingerprint before you trust it:",

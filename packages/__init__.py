@@ -1,0 +1,1 @@
+"""Builds what users install: the wheels and the container image."""

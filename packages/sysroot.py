@@ -1,0 +1,39 @@
+"""Headers and libraries of another architecture, for its cross compiler, from Debian's packages."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+from packages.architectures import Architecture, PackagingError
+from packages.mirror import find_mirror
+from robot_runtime.places import BUILD
+
+LIBRARIES = ("libsimavr-dev", "libelf-dev", "zlib1g-dev", "libc6-dev", "libstdc++-12-dev", "linux-libc-dev")
+WORDS_MAX = 500
+SUITE = "bookworm"
+"""The oldest Debian that is supported: what is built with its libraries runs on the later ones too."""
+
+
+def make_sysroot(architecture: Architecture) -> Path:
+    """Returns a folder with the architecture's libraries, made now or before. Raises PackagingError.
+
+    The packages are unpacked and none of their programs runs, so that no emulator is needed.
+    """
+    root = BUILD / "sysroots" / architecture.debian
+    if root.exists():
+        return root
+    root.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = root.with_name(f"{root.name}.unfinished")
+    shutil.rmtree(unfinished, ignore_errors=True)
+    command = ["mmdebstrap", "--quiet", "--variant=extract", f"--architectures={architecture.debian}"]
+    command += [f"--include={','.join(LIBRARIES)}", SUITE, str(unfinished)]
+    command += [f"deb {find_mirror()} {SUITE} main"]
+    try:
+        made = subprocess.run(command, capture_output=True, text=True, check=False)
+    except FileNotFoundError as problem:
+        raise PackagingError("There is no mmdebstrap; `make all-wheels` installs it.") from problem
+    if made.returncode:
+        words = made.stderr[-WORDS_MAX:].strip()
+        raise PackagingError(f"The libraries for {architecture.debian} could not be fetched: {words}")
+    unfinished.rename(root)
+    return root
