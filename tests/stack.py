@@ -92,7 +92,12 @@ class Stack:
             str(self.port),
             *self._options,
         ]
-        environment = os.environ | {"MUCAT_DATA": str(self.data), "PYTHONUNBUFFERED": "1"} | self.environment
+        environment = {
+            **os.environ,
+            "MUCAT_DATA": str(self.data),
+            "PYTHONUNBUFFERED": "1",
+            **self.environment,
+        }
         with self.log.open("ab") as log:
             self._process = subprocess.Popen(
                 command,

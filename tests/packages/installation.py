@@ -30,7 +30,7 @@ class Installation:
         return subprocess.run(
             [str(self.program), *words],
             cwd=cwd,
-            env=os.environ | self.environment | (environment or {}),
+            env={**os.environ, **self.environment, **(environment or {})},
             capture_output=True,
             text=True,
             check=False,
