@@ -40,7 +40,7 @@ from server.http.security import SecurityMiddleware
 from server.http.sign_in.middleware import SignInMiddleware
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.settings import Settings
-from server.processes.supervisor import ProcessCommand
+from server.processes.managed_process import ProcessCommand
 
 ROUTES = (
     *(access, audit, backup, bring_up, comm_tests, compare, control, doctor, exports, identification),

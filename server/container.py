@@ -53,7 +53,8 @@ from server.platform.notices import Notices
 from server.platform.pidfile import running_parts
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
-from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessCommand, ProcessSupervisor
+from server.processes.managed_process import ProcessCommand
+from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import Hub
 

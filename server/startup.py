@@ -43,14 +43,21 @@ def _read_mistakes(_: click.Context, __: click.Parameter, texts: tuple[str, ...]
     is_flag=True,
     help="The emulated board begins as the factory delivers it: not calibrated.",
 )
+@click.option(
+    "--external-runtime",
+    is_flag=True,
+    help="The robot's runtime is a service of its own (mucat runtime); this server does not start or end it.",
+)
 @with_settings
-def run(settings: Settings, mistakes: tuple[str, ...], *, uncalibrated: bool) -> int:
+def run(settings: Settings, mistakes: tuple[str, ...], *, uncalibrated: bool, external_runtime: bool) -> int:
     """Start everything and serve the page."""
     if mistakes and not settings.emulated_board:
         raise SetupError("--mistake is for the emulated board; robot.toml has a real one (robot.mode).")
     if uncalibrated and not settings.emulated_board:
         raise SetupError("--uncalibrated is for the emulated board; robot.toml has a real one (robot.mode).")
-    settings = replace(settings, mistakes=mistakes, uncalibrated=uncalibrated)
+    settings = replace(
+        settings, mistakes=mistakes, uncalibrated=uncalibrated, external_runtime=external_runtime
+    )
     with claim(settings.data):
         if uncalibrated:
             settings.data.board_eeprom.unlink(missing_ok=True)
@@ -59,6 +66,7 @@ def run(settings: Settings, mistakes: tuple[str, ...], *, uncalibrated: bool) ->
 
 def _serve(settings: Settings) -> int:
     # Loaded only now: an error in robot.toml is reported at once, also on a slow computer.
+    from robot_runtime.service_manager import ServiceManager
     from robot_runtime.simulation.boards.emulator_process import BoardError, check_emulator
     from robot_runtime.simulation.boards.firmware import FirmwareBuildError, build_firmware
     from server.app import create_app
@@ -83,6 +91,7 @@ def _serve(settings: Settings) -> int:
 
         def started(container: "Container") -> None:
             container.comparison.prepare()
+            ServiceManager().ready()
             if not app.state.ended:
                 _greet(settings, container.access, certificate)
 

@@ -14,7 +14,8 @@ from robot_runtime.transport.blocks import Block
 from server import VERSION
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.supervisor import ManagedProcess, ProcessSupervisor
+from server.processes.managed_process import ManagedProcess
+from server.processes.supervisor import ProcessSupervisor
 
 STATE_SECONDS = 2.5
 """The runtime sends its state every second."""

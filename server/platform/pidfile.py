@@ -1,16 +1,19 @@
 """PID files, by which the next server finds the processes of a killed one."""
 
+import fcntl
 import json
 import os
 import signal
 import time
-from collections.abc import Collection
-from contextlib import suppress
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 TERM_SECONDS = 3.0
 LOOK_SECONDS = 0.02
+RUNTIME_PAUSED = "runtime.paused"
+"""File of the folder `run`. A runtime that systemd starts waits while it exists and the data are claimed."""
 
 
 def started_at(pid: int) -> int | None:
@@ -76,9 +79,25 @@ def running_parts(run: Path) -> dict[str, Running]:
     return {name: running for name, running in found.items() if running is not None}
 
 
+@contextmanager
+def hold_still(run: Path) -> Iterator[None]:
+    """Keep other processes from entering themselves in this folder meanwhile. Raises OSError."""
+    handle = os.open(run, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
 def end_parts(run: Path, but: Collection[str] = ()) -> None:
-    """End what a killed server has left running, and wait for it; parts of the names in `but` stay."""
+    """End what a killed server has left running, and wait for it; parts of the names in `but` stay.
+
+    A runtime that systemd starts again waits as long as the caller has claimed the data folder.
+    """
     remaining = {name: running for name, running in running_parts(run).items() if name not in but}
+    if "runtime" in remaining:
+        (run / RUNTIME_PAUSED).touch()
     for running in remaining.values():
         _signal(running.pid, signal.SIGTERM)
     end = time.monotonic() + TERM_SECONDS

@@ -25,7 +25,7 @@ from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.places import BUILD, DEFAULT_CONFIG, IN_REPOSITORY
-from server.platform.pidfile import running_parts
+from server.platform.pidfile import RUNTIME_PAUSED, hold_still, running_parts
 from server.platform.reverse_proxy import Network, read_proxies, read_public_url
 
 SOCKET_PATH_BYTES_MAX = 107
@@ -81,6 +81,8 @@ class DataFolder:
         """The runtime's Zenoh endpoint."""
         self.server_socket = self.run / "server.sock"
         """The server's Zenoh endpoint."""
+        self.runtime_paused = self.run / RUNTIME_PAUSED
+        """Exists while something else uses the board of a runtime that systemd starts."""
         self.scene_socket = self.run / "scene.sock"
         """The scene's Zenoh endpoint: peers reach only those that they are connected to."""
         self.board_socket = self.run / "board.sock"
@@ -133,6 +135,8 @@ class Settings:
     """Of the emulated board; see robot_runtime/simulation/boards/mistakes.py."""
     uncalibrated: bool = False
     """The emulated board begins without a calibration."""
+    external_runtime: bool = False
+    """The runtime is a service of its own, which this server does not start and does not end."""
     build: Path = BUILD
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"
@@ -260,10 +264,11 @@ def make_folders(folder: DataFolder) -> None:
         for path in (folder.path, folder.logs, folder.run):
             make_folder(path)
         _make_private(folder)
-        # The files belong to processes of a killed server as long as one of them runs.
-        if not running_parts(folder.run):
-            for file in folder.run.iterdir():
-                file.unlink()
+        with hold_still(folder.run):
+            # The files belong to processes of a killed server as long as one of them runs.
+            if not running_parts(folder.run):
+                for file in folder.run.iterdir():
+                    file.unlink()
     except OSError as problem:
         raise SetupError(
             f"The data folder {folder.path} cannot be used: {problem.strerror}. Choose another with --data."

@@ -48,6 +48,13 @@ class ProcessGroup(ABC):
         if not self._ended.done():
             self._end()
 
+    def leave(self) -> None:
+        """Watch the process no longer; it runs on."""
+        if not self._ended.done():
+            self._loop.remove_reader(self._handle)
+            os.close(self._handle)
+            self._ended.cancel()
+
     @abstractmethod
     def _reap(self) -> int | None:
         """Returns the exit status of the process, which has just ended or been killed."""

@@ -21,7 +21,7 @@ from server.http.serving import make_server, open_socket
 from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.schema import prepare
 from server.platform.settings import Settings
-from server.processes.supervisor import ProcessCommand
+from server.processes.managed_process import ProcessCommand
 from server.stream.bridge import RuntimeSilentError
 from tests.server.new_database import place_with_samples
 from tests.server.runtime_end import RuntimeEnd

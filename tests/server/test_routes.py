@@ -14,7 +14,7 @@ import server.stream.bridge as bridge_module
 from robot_runtime.transport.blocks import read_blocks
 from server.openapi import main as print_openapi
 from server.platform.settings import Settings
-from server.processes.supervisor import ProcessCommand
+from server.processes.managed_process import ProcessCommand
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
 from tests.server.serving import Served, play, serve
 from tests.server.waiting import SECONDS, until

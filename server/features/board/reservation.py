@@ -17,8 +17,9 @@ from robot_runtime.simulation.boards.firmware import firmware_path
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.processes.logs import ProcessLog
+from server.processes.managed_process import Notify
 from server.processes.process import Process, describe_status
-from server.processes.supervisor import Notify, ProcessSupervisor
+from server.processes.supervisor import ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 DISARM_SECONDS = 3.0

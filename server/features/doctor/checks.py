@@ -298,6 +298,19 @@ def check_service(machine: Machine) -> Finding | None:
     return report.ok("Server and runtime are services of their own.")
 
 
+def check_runtime(machine: Machine) -> Finding | None:
+    """The runtime that is a service of its own has this version and configuration."""
+    report = Reporter("runtime", "Runtime")
+    if SERVICE not in machine.units:
+        return None
+    if machine.runtime_outdated:
+        return report.look(
+            "It was started with another version or configuration than the present one.",
+            "Disarm the robot, then: sudo systemctl restart mucat-runtime",
+        )
+    return report.ok("It has the present version and configuration.")
+
+
 CHECKS: tuple[Check, ...] = (
     check_configuration,
     check_versions,
@@ -318,6 +331,7 @@ CHECKS: tuple[Check, ...] = (
     check_swap,
     check_address,
     check_service,
+    check_runtime,
 )
 """In the order of the report: what everything else needs comes first."""
 

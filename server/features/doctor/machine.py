@@ -86,6 +86,8 @@ class Machine:
     address: str = "127.0.0.1:8000"
     address_problem: str = ""
     server_runs: bool = False
+    runtime_outdated: bool = False
+    """The running runtime was started by another version, or with another configuration."""
     units: dict[str, str] = field(default_factory=dict)
     """Texts of the installed units, by name."""
 
@@ -109,7 +111,7 @@ def read_machine(
     units = {one.name: _read(one) for one in (root / "etc/systemd/system").glob("mucat*.*")}
     user = _service_user(units.get(SERVICE, ""))
     port = Path(settings.link.port)
-    busy = bool(running_parts(settings.data.run).keys() & {"runtime"})
+    runtime = running_parts(settings.data.run).get("runtime")
     serves = runner_of(settings.data) is not None
     reset_label, reset_problem = _read_reset(settings.link.reset)
     firmware = _firmware(settings)
@@ -130,7 +132,7 @@ def read_machine(
         port=str(port),
         port_there=port.exists(),
         port_target=port.resolve().name if port.is_symlink() else "",
-        port_problem="" if busy or not thorough else _try_port(port, settings.link.baud),
+        port_problem="" if runtime or not thorough else _try_port(port, settings.link.baud),
         link_state=link[0],
         link_text=link[1],
         boot_settings=_read(root / boot / "config.txt") if boot else "",
@@ -154,6 +156,7 @@ def read_machine(
         address=f"{settings.host}:{settings.port}",
         address_problem="" if serves else _try_address(settings.host, settings.port),
         server_runs=serves,
+        runtime_outdated=runtime is not None and runtime.made != _fingerprint(settings),
         units=units,
     )
 
@@ -199,6 +202,13 @@ def _firmware(settings: Settings) -> Path:
 
     ending = ".elf" if settings.emulated_board else ".hex"
     return firmware_path(settings.build, settings.link.baud, ending, hil=settings.in_the_loop)
+
+
+def _fingerprint(settings: Settings) -> str:
+    """The fingerprint of a runtime that would be started now."""
+    from server.processes.supervisor import plan
+
+    return next(one.fingerprint() for one in plan(settings) if one.name == "runtime")
 
 
 def _try_libraries() -> dict[str, str]:

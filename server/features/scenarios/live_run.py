@@ -18,7 +18,8 @@ from server.features.sessions.recorder import Recorder
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.supervisor import Notify, ProcessSupervisor
+from server.processes.managed_process import Notify
+from server.processes.supervisor import ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 POLL_SECONDS = 0.1

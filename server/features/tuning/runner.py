@@ -28,7 +28,7 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.platform.store import StoreError
-from server.processes.supervisor import Notify
+from server.processes.managed_process import Notify
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 log = logging.getLogger(__name__)

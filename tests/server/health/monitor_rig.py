@@ -7,7 +7,7 @@ from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.logs import ProcessLog
-from server.processes.supervisor import ManagedProcess, ProcessCommand
+from server.processes.managed_process import ManagedProcess, ProcessCommand
 from tests.server.blocks import link_block, state_block, truth_block
 
 

@@ -12,7 +12,7 @@ from server.health.faults import FAULTS
 from server.health.watchdog import DOWN, HUNG_SECONDS, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Watchdog
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.supervisor import ManagedProcess
+from server.processes.managed_process import ManagedProcess
 from tests.server.health.monitor_rig import MonitorRig
 from tests.server.new_database import place_with_samples
 

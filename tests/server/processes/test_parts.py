@@ -12,13 +12,14 @@ import psutil
 import pytest
 
 import server.processes.backoff as backoff_module
-import server.processes.supervisor as parts_module
+import server.processes.managed_process as parts_module
 from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.config import LinkConfig
 from server.platform.pidfile import end_parts, pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.processes.logs import ProcessLog
-from server.processes.supervisor import ManagedProcess, ProcessCommand, ProcessSupervisor, plan
+from server.processes.managed_process import ManagedProcess, ProcessCommand
+from server.processes.supervisor import ProcessSupervisor, plan
 from tests.server.waiting import alive, until
 
 

@@ -15,7 +15,7 @@ import server.stream.bridge as bridge_module
 from robot_runtime.config import LinkConfig
 from robot_runtime.errors import RefusedError
 from server.platform.settings import Settings
-from server.processes.supervisor import ProcessCommand
+from server.processes.managed_process import ProcessCommand
 from tests.server.blocks import state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until

@@ -80,6 +80,7 @@ CASES: dict[str, tuple[dict[str, Any], str, str]] = {
     "swap: none": ({"swaps": ("/var/swap",)}, "look", "without compressed swap"),
     "address: taken": ({"address_problem": "Address already in use"}, "wrong", "already in use"),
     "service: lacks lines": ({"units": {SERVICE: "[Service]\nRestart=always\n"}}, "wrong", "ExitType=cgroup"),
+    "runtime: older": ({"runtime_outdated": True}, "look", "another version or configuration"),
 }
 
 

@@ -1,0 +1,53 @@
+"""`mucat runtime`: the robot's runtime as a service of its own, apart from the server."""
+
+import os
+import time
+from pathlib import Path
+
+import click
+
+from robot_runtime.durable_files import make_folder
+from robot_runtime.service_manager import ServiceManager
+from robot_runtime.transport.lifetime import is_served
+from server.platform.command_line import with_settings
+from server.platform.pidfile import hold_still, pid_file, running_parts
+from server.platform.settings import Settings, SetupError
+
+WAIT_SECONDS = 0.2
+PATIENCE_SECONDS = 30.0
+"""systemd is asked for this time again and again while the runtime waits."""
+
+
+@click.command("runtime")
+@with_settings
+def run_runtime(settings: Settings) -> None:
+    """Run the robot's runtime alone; systemd starts this.
+
+    `mucat run --external-runtime` is the server beside it.
+    """
+    from server.processes.supervisor import plan
+
+    (command,) = (one for one in plan(settings) if one.name == "runtime")
+    folder = settings.data
+    try:
+        make_folder(folder.run)
+        _wait_for_turn(folder.runtime_paused, folder.lock, command.needs)
+        with hold_still(folder.run):
+            if "runtime" in running_parts(folder.run):
+                raise SetupError(f"A runtime works on {folder.path} already. End it first.")
+            folder.runtime_socket.unlink(missing_ok=True)
+            pid_file(folder.run, "runtime").write(os.getpid(), command.fingerprint())
+    except OSError as problem:
+        raise SetupError(
+            f"The data folder {folder.path} cannot be used: {problem.strerror}. Look at it with mucat doctor."
+        ) from problem
+    # The same process: systemd and the server know it by its number.
+    os.execv(command.arguments[0], command.arguments)
+
+
+def _wait_for_turn(paused: Path, lock: Path, needs: tuple[Path, ...]) -> None:
+    """Wait until the files exist that the runtime needs, and nobody else uses its board."""
+    service = ServiceManager()
+    while (paused.exists() and is_served(lock)) or not all(path.exists() for path in needs):
+        service.still_starting(PATIENCE_SECONDS)
+        time.sleep(WAIT_SECONDS)

@@ -1,0 +1,199 @@
+"""A runtime that is a service of its own: it outlives servers, waits for its board, and feeds systemd."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.service_manager import ServiceManager
+from server.platform.folder_lock import claim
+from server.platform.pidfile import end_parts, pid_file, running_parts
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.processes.managed_process import ProcessCommand
+from tests.server.processes.test_parts import Crew, run
+from tests.server.waiting import alive, until
+from tests.stack import ROOT
+
+CONFIG = '[robot]\nname = "tested"\nmode = "robot"\n[link]\nport = "/nowhere"\n'
+
+
+def wait_for(condition: Callable[[], bool], seconds: float = 20.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def runtime_of(folder: DataFolder) -> int | None:
+    found = running_parts(folder.run).get("runtime")
+    return None if found is None else found.pid
+
+
+@contextmanager
+def service(settings: Settings, notify: Path | None = None) -> Iterator[subprocess.Popen[str]]:
+    """`mucat runtime` as systemd starts it."""
+    settings.config.write_text(CONFIG)
+    command = [sys.executable, "-m", "server.cli", "runtime"]
+    command += ["--config", str(settings.config), "--data", str(settings.data.path)]
+    environment = os.environ | ({"NOTIFY_SOCKET": str(notify)} if notify else {})
+    with subprocess.Popen(
+        command,
+        cwd=ROOT,
+        env=environment,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.terminate()
+            process.wait(15)
+
+
+def external(name: str = "engine") -> ProcessCommand:
+    return ProcessCommand(name, f"part {name}", (), external=True)
+
+
+@contextmanager
+def engine(crew_folder: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """A process that somebody else starts, and that enters itself."""
+    with subprocess.Popen(
+        [sys.executable, "-c", "import time; time.sleep(600)"], start_new_session=True
+    ) as one:
+        pid_file(crew_folder / "run", "engine").write(one.pid, "made")
+        try:
+            yield one
+        finally:
+            one.kill()
+
+
+def test_a_server_watches_it_and_leaves_it_running(tmp_path: Path) -> None:
+    crew = Crew(tmp_path, external())
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").state == "running", "running")
+        assert crew.part("engine").pid == first.pid
+
+    with engine(tmp_path) as first:
+        run(crew, scenario)
+        assert first.poll() is None
+        assert crew.told == []
+
+
+def test_its_death_is_reported_and_the_next_one_watched(tmp_path: Path) -> None:
+    crew = Crew(tmp_path, external())
+
+    async def scenario() -> None:
+        with engine(tmp_path) as first:
+            await until(lambda: crew.part("engine").state == "running", "running")
+            first.kill()
+            first.wait()
+            await until(lambda: crew.part("engine").state == "failed", "failed")
+        with engine(tmp_path) as second:
+            await until(lambda: crew.part("engine").state == "running", "running")
+            assert crew.part("engine").pid == second.pid
+        assert [name for name, _ in crew.told][:1] == ["engine"]
+        assert "systemd starts it again" in crew.told[0][1]
+
+    run(crew, scenario)
+
+
+def test_a_pause_ends_it_and_marks_the_folder_until_it_is_resumed(tmp_path: Path) -> None:
+    crew = Crew(tmp_path, external())
+    marker = DataFolder(tmp_path).runtime_paused
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").state == "running", "running")
+        await crew.parts.pause("engine", "The board is used.")
+        assert crew.part("engine").state == "paused"
+        assert marker.exists()
+        crew.parts.resume("engine")
+        await until(lambda: crew.part("engine").state == "waiting", "waiting")
+        assert not marker.exists()
+
+    with engine(tmp_path) as one:
+        run(crew, scenario)
+        assert one.wait(5) == -signal.SIGTERM
+
+
+def test_it_enters_itself_and_its_number_stays(settings: Settings) -> None:
+    with service(settings) as process:
+        wait_for(lambda: runtime_of(settings.data) == process.pid)
+        wait_for(settings.data.runtime_socket.exists)
+        # An emptied folder would cut it off from the server.
+        make_folders(settings.data)
+        assert settings.data.runtime_socket.exists()
+
+
+def test_there_is_one_at_a_time(settings: Settings) -> None:
+    with service(settings) as first:
+        wait_for(lambda: runtime_of(settings.data) == first.pid)
+        with service(settings) as second:
+            assert second.wait(20) == 1
+            assert second.stderr is not None
+            assert "A runtime works on" in second.stderr.read()
+        assert alive(first.pid)
+
+
+def test_it_waits_while_another_program_uses_its_board(settings: Settings) -> None:
+    folder = settings.data
+    with service(settings) as first:
+        wait_for(lambda: runtime_of(folder) == first.pid)
+        with claim(folder):
+            end_parts(folder.run)
+            first.wait(10)
+            path = folder.path.parent / "notify"
+            with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+                manager.bind(str(path))
+                manager.settimeout(20)
+                with service(settings, path) as second:
+                    assert [manager.recv(100) for _ in range(3)] == [b"EXTEND_TIMEOUT_USEC=30000000"] * 3
+                    assert runtime_of(folder) is None
+                    folder.runtime_paused.unlink()
+                    wait_for(lambda: runtime_of(folder) == second.pid)
+
+
+def test_a_mark_that_a_killed_program_has_left_does_not_hold_it(settings: Settings) -> None:
+    settings.data.runtime_paused.touch()
+    with service(settings) as process:
+        wait_for(lambda: runtime_of(settings.data) == process.pid)
+
+
+def test_it_feeds_systemd_from_the_control_loop(settings: Settings) -> None:
+    path = settings.data.path.parent / "notify"
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+        manager.bind(str(path))
+        manager.settimeout(20)
+        with service(settings, path):
+            assert manager.recv(100) == b"READY=1"
+            assert [manager.recv(100) for _ in range(2)] == [b"WATCHDOG=1"] * 2
+
+
+def test_systemd_is_fed_once_a_second_and_without_it_nothing_happens(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = settings.data.path.parent / "notify"
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+        manager.bind(str(path))
+        manager.setblocking(False)
+        monkeypatch.setenv("NOTIFY_SOCKET", str(path))
+        one = ServiceManager()
+        for tick in range(21):
+            one.feed(tick / 10)
+        assert [manager.recv(100) for _ in range(3)] == [b"WATCHDOG=1"] * 3
+        one.still_starting(1.5)
+        assert manager.recv(100) == b"EXTEND_TIMEOUT_USEC=1500000"
+        with pytest.raises(BlockingIOError):
+            manager.recv(100)
+    one.ready()  # to nobody
+    monkeypatch.delenv("NOTIFY_SOCKET")
+    ServiceManager().ready()
