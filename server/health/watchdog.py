@@ -20,6 +20,8 @@ STARTING_SECONDS = 10.0
 DISK_LOW_BYTES = 500_000_000
 DISK_LOW_SHARE = 0.05
 """The alarm limit is the smaller of both: hours of recording, less on a small disk."""
+DISK_WELL = 1.2
+"""Times the limit that must be free for the alarm to end, so that a file that comes and goes is one alarm."""
 DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scene")}
 """The alarms of ended processes."""
 
@@ -43,6 +45,7 @@ class Watchdog:
         self._store = store
         self._alarms = alarms
         self._checked = clock.now()
+        self._is_disk_low = False
         self._silent = 0.0
         """s; for which this server, itself awake, has heard nothing of the runtime, beyond what is normal."""
 
@@ -70,7 +73,9 @@ class Watchdog:
             runtime.end_hung(f"said nothing for {HUNG_SECONDS:g} s, and was ended")
         see("simulator_silent", self._settings.mode != "robot" and self._is_silent("simulator"))
         disk = shutil.disk_usage(self._settings.data.path)
-        see("disk_low", disk.free < min(DISK_LOW_BYTES, DISK_LOW_SHARE * disk.total))
+        limit = min(DISK_LOW_BYTES, DISK_LOW_SHARE * disk.total)
+        self._is_disk_low = disk.free < (DISK_WELL * limit if self._is_disk_low else limit)
+        see("disk_low", self._is_disk_low)
         see("store_failing", self._store.failing is not None)
         see("server_restarted", False)
 

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from statistics import median
+from statistics import mean, median
 from typing import Any
 
 import pytest
@@ -248,9 +248,9 @@ def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
     rig.board.wait(lambda: rig.board.count(Navigation.type) >= 21)
     times = [at for at, type_, _ in rig.board.heard if type_ == Navigation.type]
     gaps = [after - before for before, after in pairwise(times)]
+    # A busy computer is late now and then: the mean shows a tick that was left out, or one too many.
     assert median(gaps) == pytest.approx(0.1, rel=0.1)
-    # A busy computer is late now and then, which makes two gaps wrong.
-    assert sum(gap == pytest.approx(0.1, rel=0.3) for gap in gaps) >= 0.7 * len(gaps)
+    assert mean(gaps) == pytest.approx(0.1, rel=0.1)
     assert Navigation.from_bytes(rig.board.heard[-1][2]).z == pytest.approx(1.0)
     rig.ask("stop")
     rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])

@@ -127,10 +127,11 @@ async def change_device(
 
     A new role closes its live sockets; they open again in the new role.
     """
-    if body.role is not None:
-        await access.set_role(device, body.role, caller)
+    # A name that is refused leaves the role as it was.
     if body.name is not None:
         await access.devices.rename(device, body.name)
+    if body.role is not None:
+        await access.set_role(device, body.role, caller)
     return _describe(access, caller, access.devices.get(device))
 
 

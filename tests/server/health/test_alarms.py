@@ -169,10 +169,14 @@ def test_a_full_disk_is_an_alarm(rig: AlarmRig, monkeypatch: pytest.MonkeyPatch)
     disk = SimpleNamespace()
     monkeypatch.setattr(shutil, "disk_usage", lambda _: disk)
     for disk.total, disk.free, low in (
-        (10**12, 499_000_000, True),
         (10**12, 501_000_000, False),
-        (10**9, 49_000_000, True),
+        (10**12, 499_000_000, True),
+        (10**12, 599_000_000, True),
+        (10**12, 601_000_000, False),
         (10**9, 51_000_000, False),
+        (10**9, 49_000_000, True),
+        (10**9, 59_000_000, True),
+        (10**9, 61_000_000, False),
     ):
         rig.spend(PERIOD, all=rig.receive)
         assert rig.active() == ({"disk_low"} if low else set())
