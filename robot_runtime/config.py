@@ -88,7 +88,7 @@ class ControlConfig:
 class VisionConfig(VisionSettings):
     """The vision node; picture size in pixels."""
 
-    camera: Literal["scene", "card", "file", "pi"] = "scene"
+    camera: Literal["scene", "card", "file", "pi", "usb"] = "scene"
     file: str = ""
     width: Annotated[int, Range(64, 1920)] = 320
     height: Annotated[int, Range(48, 1080)] = 240

@@ -6,6 +6,9 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from robot_runtime.vision.picture import Picture
 
+STAMP_AGE_MAX = 1.0
+"""s between a picture and its reading; an older stamp, or one of the future, is of another clock."""
+
 
 class CameraError(Exception):
     """A camera gives no picture; the text says why and what to do.
@@ -18,6 +21,11 @@ class CameraError(Exception):
         self.patience = patience
 
 
+def taken_at(stamp: float, now: float) -> float:
+    """Returns the time of a picture (s) by its driver's stamp; `now` where that is of another clock."""
+    return stamp if now - STAMP_AGE_MAX < stamp <= now else now
+
+
 class CameraFrame(NamedTuple):
     """One picture, uint8 of shape (height, width, 3) in the order blue, green, red."""
 
@@ -28,6 +36,9 @@ class CameraFrame(NamedTuple):
 
 class Camera(ABC):
     """A source of pictures, open from construction until `close`. Construction may raise CameraError."""
+
+    rate: float | None = None
+    """Hz that the device was opened for; None where it gives a picture at any time."""
 
     @abstractmethod
     def read(self) -> CameraFrame:

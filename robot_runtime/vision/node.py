@@ -4,6 +4,7 @@ import importlib
 import logging
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -102,6 +103,7 @@ class VisionNode:
         self._detector: Detector | None = None
         self._camera: Camera | None = None
         self._failure: str | None = None
+        self._missing = ""
         self._failing_since: float | None = None
         self._retry_at = clock.now()
         self._ending = False
@@ -149,6 +151,8 @@ class VisionNode:
             raise RefusedError(f"there is no card of colour {colour!r}; there are {', '.join(self.cards)}")
         if colour is None:
             self.shown_card = None
+        elif self._missing:
+            raise RefusedError(f"there is no picture: {self._missing}")
         else:
             from robot_runtime.vision.pipeline import make_card
 
@@ -159,6 +163,8 @@ class VisionNode:
 
         `question` is a `PickPoint` as a table. No setting changes. Raises RefusedError, ConfigError.
         """
+        if self._missing:
+            raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
         from robot_runtime.vision.pipeline import Detector, PickPoint, propose
 
         place = parse(PickPoint, question)
@@ -204,8 +210,8 @@ class VisionNode:
         return 0.0
 
     def _run(self) -> None:
-        # Imported before the first picture, so that this one is not late.
-        importlib.import_module("robot_runtime.vision.pipeline")
+        if not self._load():
+            return
         while not self._ending:
             remaining = self.tick()
             if remaining > 0:
@@ -213,8 +219,25 @@ class VisionNode:
                 self._wake.clear()
         self._drop_camera()
 
+    def _load(self) -> bool:
+        """Imports OpenCV before the first picture, so that this one is not late; False where it cannot."""
+        try:
+            importlib.import_module("robot_runtime.vision.pipeline")
+        except Exception as problem:  # a NumPy that does not fit raises ValueError or AttributeError
+            log.warning("OpenCV cannot be loaded", exc_info=True)
+            self._missing = (
+                f"NumPy and OpenCV cannot be loaded ({problem}); install them (Debian: sudo apt install "
+                "python3-opencv), then start again. All but the camera works without"
+            )
+            self._failure = self._missing
+            self._report("caution", f"Camera: {self._missing}.")
+            return False
+        return True
+
     def _take(self) -> CameraFrame | None:
         """Returns the newest picture; None until a failed camera is to be tried again."""
+        if self._camera is not None and self._camera.rate not in (None, self._settings.rate):
+            self._drop_camera()
         if self._camera is None:
             if self._clock.now() < self._retry_at:
                 return None
@@ -297,4 +320,5 @@ class VisionNode:
         def report_missing(why: str) -> None:
             self._report("caution", f"Camera: the scene cannot be rendered: {why}. A drawn card stands in.")
 
-        return open_camera(self._config, self._clock, self._messages, lambda: self.shown_card, report_missing)
+        config = replace(self._config, rate=self._settings.rate)
+        return open_camera(config, self._clock, self._messages, lambda: self.shown_card, report_missing)

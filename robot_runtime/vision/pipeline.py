@@ -23,6 +23,7 @@ from robot_runtime.vision.patches import draw_mask as draw_mask
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
 from robot_runtime.vision.scene_camera import SceneCamera, SceneMissingError
+from robot_runtime.vision.usb_camera import UsbCamera
 
 JPEG_QUALITY = 80
 THUMBNAIL_WIDTH = 160
@@ -44,7 +45,9 @@ def open_camera(
     Raises CameraError.
     """
     if config.camera == "pi":
-        return PiCamera(config.width, config.height, clock)
+        return PiCamera(config.width, config.height, config.rate, clock)
+    if config.camera == "usb":
+        return UsbCamera(config.file, config.width, config.height, config.rate, clock)
     if config.camera == "file":
         return FileCamera(Path(config.file), config.width, config.height, clock)
     if config.camera == "scene" and messages is not None:

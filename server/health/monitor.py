@@ -24,7 +24,10 @@ LINK_SECONDS = 3.0
 GRACE_SECONDS = 10.0
 """The time for which a part that has just been started may be silent."""
 
-PartName = Literal["server", "database", "runtime", "link", "board", "simulator", "scene"]
+NO_PICTURE = "no picture"
+"""The beginning of the runtime's words for a camera that fails."""
+
+PartName = Literal["server", "database", "runtime", "link", "board", "simulator", "scene", "camera"]
 PartState = Literal["ok", "starting", "failed", "absent"]
 Condition = tuple[PartState, str]
 """The state of a part, and a sentence about it."""
@@ -47,7 +50,9 @@ class Health(BaseModel):
     status: Literal["ok", "starting", "failed"]
     version: str
     robot: str
-    parts: list[PartHealth] = Field(description="server, database, runtime, link, board, simulator, scene")
+    parts: list[PartHealth] = Field(
+        description="server, database, runtime, link, board, simulator, scene, camera"
+    )
 
 
 class HealthMonitor:
@@ -108,6 +113,7 @@ class HealthMonitor:
             "board": self._board(),
             "simulator": self._simulator(),
             "scene": self._scene(),
+            "camera": self._camera(),
         }
         parts = [PartHealth(name=name, state=state, text=text) for name, (state, text) in conditions.items()]
         simulator = self._processes.get("simulator")
@@ -194,6 +200,16 @@ class HealthMonitor:
         if process.state == "running":
             return "ok", "Renders on demand."
         return self._silent(process, "")
+
+    def _camera(self) -> Condition:
+        runtime = self._processes.get("runtime")
+        if not self._fresh("state", STATE_SECONDS, runtime):
+            return "absent", "Unknown: the runtime sends nothing."
+        text = str((self.state() or {}).get("camera", ""))
+        # A robot without pictures swims all the same.
+        return (
+            "absent" if text.startswith(NO_PICTURE) else "ok"
+        ), f"{text[:1].upper()}{text[1:]}." if text else "Starting."
 
     def _fresh(self, topic: str, seconds: float, process: ManagedProcess | None) -> bool:
         return topic in self._newest and self._is_recent(self._newest[topic][0], seconds, process)

@@ -38,11 +38,15 @@ def test_health_lists_every_part_with_its_text(settings: Settings) -> None:
             return {part["name"]: part["state"] for part in answer.json()["parts"]}
 
         heard = ["server", "database", "runtime", "link", "board", "simulator"]
-        assert list(await states()) == [*heard, "scene"]
+        assert list(await states()) == [*heard, "scene", "camera"]
         assert (await served.api.get("/health")).json()["status"] == "starting"
         served.runtime.publish(state_block(0), link_block(0, 10), link_block(1, 20), truth_block(0))
         await until(lambda: served.container.monitor.health().status == "ok", "all to be well")
-        assert await states() == dict.fromkeys(heard, "ok") | {"scene": "absent"}
+        assert await states() == dict.fromkeys(heard, "ok") | {"scene": "absent", "camera": "ok"}
+        served.runtime.publish(state_block(1, camera="no picture: there is no camera"))
+        await until(lambda: served.container.monitor.health().parts[-1].state == "absent", "the camera")
+        assert served.container.monitor.health().parts[-1].text == "No picture: there is no camera."
+        assert served.container.monitor.health().status == "ok"
 
     play(settings, scenario)
 

@@ -3470,7 +3470,7 @@ export interface components {
         Health: {
             /**
              * Parts
-             * @description server, database, runtime, link, board, simulator, scene
+             * @description server, database, runtime, link, board, simulator, scene, camera
              */
             parts: components["schemas"]["PartHealth"][];
             /** Robot */
@@ -4204,7 +4204,7 @@ export interface components {
              * Name
              * @enum {string}
              */
-            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene";
+            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene" | "camera";
             /**
              * State
              * @enum {string}

@@ -226,6 +226,7 @@ export const system = {
       board: 'Board',
       simulator: 'Simulator',
       scene: 'Scene',
+      camera: 'Camera',
     },
   },
   people: {

@@ -1,5 +1,7 @@
 """The cameras: drawn, from files, and the Pi's with a stand-in for its library."""
 
+import errno
+import os
 import sys
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -17,6 +19,7 @@ from robot_runtime.vision.cards import CameraCard, make_card
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
+from robot_runtime.vision.usb_camera import UsbCamera
 from tests.runtime.vision.harness import drawn, find
 
 FPS = 10.0
@@ -155,13 +158,19 @@ class StandIn:
     made: "list[StandIn]"
     picture: Picture
     failure: Exception | None
+    cameras: list[dict[str, Any]]
+    stamp: int | None
 
     def __init__(self) -> None:
         self.calls: list[Any] = []
         self.made.append(self)
 
-    def create_video_configuration(self, main: dict[str, Any]) -> dict[str, Any]:
-        return main
+    @classmethod
+    def global_camera_info(cls) -> list[dict[str, Any]]:
+        return cls.cameras
+
+    def create_video_configuration(self, **parts: Any) -> dict[str, Any]:
+        return parts
 
     def configure(self, configuration: dict[str, Any]) -> None:
         self.calls.append(configuration)
@@ -171,11 +180,20 @@ class StandIn:
             raise self.failure
         self.calls.append("start")
 
-    def capture_array(self, name: str) -> Picture:
-        self.calls.append(name)
+    def capture_request(self) -> "StandIn":
         if self.failure:
             raise self.failure
+        return self
+
+    def make_array(self, name: str) -> Picture:
+        self.calls.append(name)
         return self.picture
+
+    def get_metadata(self) -> dict[str, Any]:
+        return {} if self.stamp is None else {"SensorTimestamp": self.stamp}
+
+    def release(self) -> None:
+        self.calls.append("release")
 
     def close(self) -> None:
         self.calls.append("close")
@@ -187,6 +205,8 @@ def library(monkeypatch: pytest.MonkeyPatch) -> type[StandIn]:
         made: list[StandIn] = []  # noqa: RUF012 - one a test
         picture = drawn(1.0, "yellow")
         failure = None
+        cameras: list[dict[str, Any]] = [{"Model": "imx219"}]  # noqa: RUF012 - one a test
+        stamp = None
 
     module: Any = ModuleType("picamera2")
     module.Picamera2 = Fresh
@@ -196,30 +216,125 @@ def library(monkeypatch: pytest.MonkeyPatch) -> type[StandIn]:
 
 class TestPiCamera:
     def test_pictures_come_from_the_library(self, library: type[StandIn]) -> None:
-        camera = PiCamera(320, 240, SimulatedClock(4.0))
+        camera = PiCamera(320, 240, 4.0, SimulatedClock(4.0))
         frame = camera.read()
         camera.close()
         assert np.array_equal(frame.picture, library.picture)
         assert frame.taken == 4.0
-        assert library.made[0].calls == [{"size": (320, 240), "format": "RGB888"}, "start", "main", "close"]
+        configuration = {
+            "main": {"size": (320, 240), "format": "RGB888"},
+            "controls": {"FrameRate": 4.0},
+            "buffer_count": 2,
+        }
+        assert library.made[0].calls == [configuration, "start", "main", "release", "close"]
+
+    @pytest.mark.parametrize(
+        ("stamp", "taken"),
+        [(3_930_000_000, 3.93), (None, 4.0), (4_100_000_000, 4.0), (1_000_000_000, 4.0)],
+        ids=["sensor", "none", "of the future", "old"],
+    )
+    def test_a_picture_has_the_time_of_the_sensor(
+        self, library: type[StandIn], stamp: int | None, taken: float
+    ) -> None:
+        library.stamp = stamp
+        assert PiCamera(320, 240, 4.0, SimulatedClock(4.0)).read().taken == pytest.approx(taken)
 
     def test_a_missing_library_is_reported_with_its_installation(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setitem(sys.modules, "picamera2", None)
-        with pytest.raises(CameraError, match="needs picamera2, which is not installed: run"):
-            PiCamera(320, 240, SimulatedClock())
+        with pytest.raises(CameraError, match=r"needs picamera2, which cannot be loaded .*sudo apt install"):
+            PiCamera(320, 240, 4.0, SimulatedClock())
+
+    def test_a_library_for_another_numpy_is_reported(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        words = "numpy.dtype size changed, may indicate binary incompatibility"
+        (tmp_path / "picamera2.py").write_text(f"raise ValueError({words!r})")
+        monkeypatch.syspath_prepend(tmp_path)
+        monkeypatch.delitem(sys.modules, "picamera2", raising=False)
+        with pytest.raises(CameraError, match=r"another NumPy .*dtype size changed.*numpy<2"):
+            PiCamera(320, 240, 4.0, SimulatedClock())
 
     def test_a_missing_camera_is_reported(self, library: type[StandIn]) -> None:
-        library.failure = IndexError("list index out of range")
-        with pytest.raises(CameraError, match=r"does not start \(list index out of range\); check its cable"):
-            PiCamera(320, 240, SimulatedClock())
+        library.cameras = []
+        with pytest.raises(CameraError, match=r"no camera is connected to the Pi: check its cable"):
+            PiCamera(320, 240, 4.0, SimulatedClock())
+        assert library.made == []
+
+    @pytest.mark.parametrize(
+        ("failure", "remedy"),
+        [
+            (RuntimeError("Failed to acquire camera: Device or resource busy"), "another program uses it"),
+            (PermissionError(13, "Permission denied"), "group video"),
+            (RuntimeError("Camera configuration failed"), "check its cable"),
+        ],
+    )
+    def test_a_camera_that_does_not_start_is_closed_and_reported(
+        self, library: type[StandIn], failure: Exception, remedy: str
+    ) -> None:
+        library.failure = failure
+        with pytest.raises(CameraError, match=rf"does not start .*; .*{remedy}"):
+            PiCamera(320, 240, 4.0, SimulatedClock())
+        assert library.made[0].calls[-1] == "close"
 
     def test_a_disconnected_camera_is_reported(self, library: type[StandIn]) -> None:
-        camera = PiCamera(320, 240, SimulatedClock())
+        camera = PiCamera(320, 240, 4.0, SimulatedClock())
         library.failure = RuntimeError("timeout")
         with pytest.raises(CameraError, match=r"gives no picture \(timeout\)"):
             camera.read()
+
+
+class TestUsbCamera:
+    """The camera's device is a file, which OpenCV's other reader plays: the kernel here has no camera."""
+
+    def test_pictures_come_scaled_and_with_a_time_of_the_steady_clock(
+        self, video: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(cv2, "CAP_V4L2", cv2.CAP_FFMPEG)
+        camera = UsbCamera(str(video), 320, 240, 10.0, SimulatedClock(70.0))
+        frames = [camera.read() for _ in range(3)]
+        assert [round(float(frame.picture.mean()) / 20) for frame in frames] == [0, 1, 2]
+        assert frames[0].picture.shape == (240, 320, 3)
+        assert frames[0].picture.dtype == np.uint8
+        assert {frame.taken for frame in frames} == {70.0}  # the file counts from its own beginning
+        assert str(camera) == f"USB camera {video}"
+        camera.close()
+
+    def test_a_camera_that_ends_is_reported(self, video: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(cv2, "CAP_V4L2", cv2.CAP_FFMPEG)
+        camera = UsbCamera(str(video), 160, 120, 10.0, SimulatedClock())
+        for _ in range(12):
+            camera.read()
+        with pytest.raises(CameraError, match="gives no picture; check its plug"):
+            camera.read()
+
+    def test_a_missing_device_is_reported(self, tmp_path: Path) -> None:
+        with pytest.raises(CameraError, match=r"there is no camera .*video9 \(devices: .*\); plug it in"):
+            UsbCamera(str(tmp_path / "video9"), 320, 240, 4.0, SimulatedClock())
+
+    def test_a_device_that_is_no_camera_is_reported(self, tmp_path: Path) -> None:
+        (tmp_path / "video9").touch()
+        with pytest.raises(CameraError, match="gives no video: it is no camera, or another program uses it"):
+            UsbCamera(str(tmp_path / "video9"), 320, 240, 4.0, SimulatedClock())
+
+    @pytest.mark.parametrize(
+        ("problem", "words"),
+        [
+            (PermissionError(errno.EACCES, "Permission denied"), "put the user into the group video"),
+            (OSError(errno.EBUSY, "Device or resource busy"), "another program uses it"),
+            (OSError(errno.ENODEV, "No such device"), "cannot be opened: No such device"),
+        ],
+    )
+    def test_a_device_that_cannot_be_opened_is_reported(
+        self, monkeypatch: pytest.MonkeyPatch, problem: OSError, words: str
+    ) -> None:
+        def refuse(*_: object) -> int:
+            raise problem
+
+        monkeypatch.setattr(os, "open", refuse)
+        with pytest.raises(CameraError, match=words):
+            UsbCamera("", 320, 240, 4.0, SimulatedClock())
 
 
 def test_only_the_pi_camera_loads_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,6 @@
 """The vision node: its detections, their times, and its recovery from failing cameras."""
 
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -310,3 +311,34 @@ def test_a_thumbnail_is_sent_every_two_seconds_without_subscribers(
     assert picture is not None
     assert picture.shape == (120, 160, 3)
     assert listener.pictures == []
+
+
+def test_without_opencv_the_camera_says_so_and_all_else_goes_on(
+    listener: Listener, clock: SimulatedClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "robot_runtime.vision.pipeline", None)
+    node = listener.node(clock)
+    node.start()
+    wait_for(lambda: bool(listener.events), "event")
+    node.close()
+    assert node.text.startswith("no picture: NumPy and OpenCV cannot be loaded")
+    assert "sudo apt install python3-opencv" in node.text
+    assert [event.kind for event in listener.events] == ["camera"]
+    with pytest.raises(RefusedError, match="OpenCV cannot be loaded"):
+        node.show_card("yellow")
+    with pytest.raises(RefusedError, match="OpenCV cannot be loaded"):
+        node.pick({"time": 1.0, "x": 0.5, "y": 0.5})
+
+
+def test_a_camera_with_a_rate_of_its_own_is_opened_again_for_another(
+    listener: Listener, clock: SimulatedClock
+) -> None:
+    camera = ShakyCamera(drawn(1.0, None), clock)
+    camera.rate = 4.0
+    node = listener.node(clock, camera.open)
+    node.process_picture()
+    node.process_picture()
+    assert (camera.opened, camera.closed) == (1, 0)
+    node.settings = replace(node.settings, rate=8.0)
+    node.process_picture()
+    assert (camera.opened, camera.closed) == (2, 1)
