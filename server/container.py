@@ -135,7 +135,7 @@ class Container:
             self.board_reservation.reserve,
         )
 
-        self.bring_up = BringUpRun(self.settings, board, self.board_reservation.reserve)
+        self.bring_up = BringUpRun(self.settings, board, self.board_reservation.reserve, self.processes)
 
     def _add_scenarios(self) -> None:
         self._live = LiveExecutor(

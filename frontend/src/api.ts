@@ -74,6 +74,8 @@ export type BringUpStep = Schemas['BringUpStep'];
 export type BringUpAction = Schemas['BringUpAction'];
 export type BringUpResult = Schemas['BringUpResult'];
 export type BringUpReadings = Schemas['RawReadings'];
+export type BringUpHands = Schemas['BenchHands'];
+export type BringUpHandsOrder = Partial<Schemas['HandsOrder']>;
 export type BringUpInputs = NonNullable<Schemas['BringUpOrder']['inputs']>;
 
 export type Signal = Schemas['Signal'];
@@ -236,6 +238,7 @@ export const api = {
   bringUp: () => request<BringUpState>('GET', '/bring-up'),
   beginBringUp: () => orderFor<BringUpState>('POST', '/bring-up', undefined, TIMEOUT_COMM_TEST),
   endBringUp: () => request<BringUpState>('DELETE', '/bring-up'),
+  useHandsInBringUp: (order: BringUpHandsOrder) => orderFor<BringUpState>('POST', '/bring-up/hands', order),
   actInBringUp: (step: string, action: string, inputs: BringUpInputs) =>
     orderFor<BringUpState>('POST', '/bring-up/actions', { step, action, inputs }, TIMEOUT_CHECK),
   thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),

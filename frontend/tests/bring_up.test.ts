@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, test, vi } from 'vitest';
 import type { BringUpReadings, BringUpStep } from '../src/api';
 import { Hold } from '../src/pages/bring_up/hold';
-import { kindOf, openStep, readings, shownState } from '../src/pages/bring_up/steps';
+import { kindOf, openStep, readings } from '../src/pages/bring_up/steps';
 
 const EVERY = 100;
 
@@ -74,13 +74,6 @@ test('a step opens by its name, or else the first that is not done', () => {
   expect(openStep(steps.slice(0, 1), undefined)).toBe(0);
   expect(kindOf('fin_2')).toEqual({ kind: 'fin', fin: 2 });
   expect(kindOf('toString').kind).toBe('other');
-});
-
-test('a skipped step counts as skipped until it is done', () => {
-  const skipped = new Set(['fin_2', 'battery']);
-  expect(shownState(step('fin_2', 'open'), skipped)).toBe('skipped');
-  expect(shownState(step('battery', 'done'), skipped)).toBe('done');
-  expect(shownState(step('axes', 'open'), skipped)).toBe('open');
 });
 
 const RAW: BringUpReadings = {

@@ -23,10 +23,16 @@ describe('findBroken', () => {
     expect(findBroken({ ...all, silent: false })?.hop).toBe(2);
   });
 
-  it.each(['starting', 'failed', 'absent'] as const)('says in the words of the server that the runtime is %s', (state) => {
+  it.each(['starting', 'failed'] as const)('says in the words of the server that the runtime is %s', (state) => {
     const broken = findBroken({ ...WELL, parts: [{ name: 'runtime', state, text: 'Exit code 3' }] });
     expect(broken?.hop).toBe(1);
     expect(broken?.what).toContain('Exit code 3');
+  });
+
+  it('says calmly which work the board does instead of the runtime’s', () => {
+    const broken = findBroken({ ...WELL, silent: true, parts: [{ name: 'runtime', state: 'absent', text: 'The bring-up uses it.' }] });
+    expect(broken).toMatchObject({ what: 'The bring-up uses it.', reserved: true });
+    expect(findBroken({ ...WELL, silent: true })?.reserved).toBeUndefined();
   });
 
   it('passes on why the server ended the connection', () => {

@@ -1,30 +1,26 @@
 """A board with the bring-up's sketch in emulated time, and a person who does what each step asks."""
 
 from collections.abc import Callable
-from math import pi
 from pathlib import Path
-from random import Random
-from typing import Any
 
 from robot_runtime.contract.packets import Calibration, Jog, Raw, RequestScan, Scan
 from robot_runtime.control.fin_check import FINS
 from robot_runtime.experiments.bring_up.bench import addresses
 from robot_runtime.experiments.bring_up.guide import NO_FIN, STEPS
 from robot_runtime.experiments.bring_up.procedure import BringUp
-from robot_runtime.simulation.boards.emulator_process import STILL_WATER
-from robot_runtime.simulation.water.sensors import Reading
-from robot_runtime.simulation.water.simulator import FinMotion
+from robot_runtime.simulation.boards.workbench import (
+    ALONG,
+    BAROMETER,
+    BATTERY,
+    TIP_DOWN,
+    Lamp,
+    Pose,
+    Workbench,
+)
 from tests.board.host import BAUD, Host, P, start
 from tests.board.rig import Rig
 
-GRAVITY = 9.80665
-NOISE = 0.0006
-"""rad/s, of an MPU-6050 behind its filter."""
-POSES = {
-    "level": (0.0, 0.0, -GRAVITY),
-    "nose_up": (GRAVITY, 0.0, 0.0),
-    "right_down": (0.0, -GRAVITY, 0.0),
-}
+POSES: tuple[Pose, ...] = ("level", "nose_up", "right_down")
 SETTLE = 0.2
 """s that a person takes from a change to the press of a button, at least."""
 HOLD = 0.1
@@ -78,9 +74,8 @@ class Person:
     def __init__(self, folder: Path, *mistakes: str) -> None:
         options = [word for mistake in mistakes for word in ("--mistake", mistake)]
         self.rig = start("bring_up", folder, "--uncalibrated", *options)
-        self._water = STILL_WATER._replace(battery=7.6, beacon_right=False, beacon_left=False)
-        self._chance = Random(7)
-        self.rig.board.attach(0.01, self._give)
+        self._table = Workbench()
+        self.rig.board.attach(0.01, lambda _: self._table.read())
         self.bench = EmulatedBench(self.rig)
         self.work = BringUp(self.bench)
 
@@ -98,7 +93,7 @@ class Person:
         steps: dict[str, Callable[[int], None]] = {
             "devices": lambda _: self.press("devices", "scan"),
             "sensors": lambda _: self.press("sensors", "look"),
-            "battery": lambda _: self.press("battery", "compare", volts=7.6),
+            "battery": lambda _: self.press("battery", "compare", volts=BATTERY),
             "axes": lambda _: self.lay_down(),
             "gyro": lambda _: self.press("gyro", "rest"),
             "pressure": lambda _: self.press_deep(),
@@ -112,28 +107,27 @@ class Person:
     def press(self, step: str, action: str, **given: float | str) -> None:
         self.work.perform(step, action, given)
 
-    def change(self, **surroundings: Any) -> None:
+    def change(self, pose: Pose = "level", depth: float = 0.0, lamp: Lamp = "none") -> None:
         """Change what surrounds the board, and wait until it is so."""
-        self._water = self._water._replace(**surroundings)
+        self._table.pose, self._table.depth, self._table.lamp = pose, depth, lamp
         self.bench.host.run(SETTLE)
 
     def lay_down(self) -> None:
-        for pose, force in POSES.items():
-            self.change(force=force)
+        for pose in POSES:
+            self.change(pose=pose)
             self.press("axes", pose)
-        self.change(force=POSES["level"])
+        self.change()
 
     def press_deep(self) -> None:
-        air = self._water.pressure
-        self.press("pressure", "air", barometer=air / 100)
-        self.change(pressure=air + 0.3 * 9810)
+        self.press("pressure", "air", barometer=BAROMETER / 100)
+        self.change(depth=0.3)
         self.press("pressure", "bucket", depth=30)
-        self.change(pressure=air)
+        self.change()
 
     def turn_by_hand(self, fin: int) -> None:
-        self.rig.board.turn(fin, 0.0)
+        self.rig.board.turn(fin, ALONG)
         self.press(f"fin_{fin}", "along")
-        self.rig.board.turn(fin, pi / 2)
+        self.rig.board.turn(fin, TIP_DOWN)
         self.press(f"fin_{fin}", "down")
 
     def hold(self, fin: int) -> None:
@@ -149,16 +143,12 @@ class Person:
 
     def shine(self) -> None:
         self.press("beacons", "dark")
-        self.change(beacon_right=True)
+        self.change(lamp="right")
         self.press("beacons", "right")
-        self.change(beacon_right=False, beacon_left=True)
+        self.change(lamp="left")
         self.press("beacons", "left")
-        self.change(beacon_left=False)
+        self.change()
 
     def advice(self, step: str) -> str:
         """All advice of a step."""
         return " ".join(result.advice for result in self.work.results(step))
-
-    def _give(self, _: FinMotion) -> Reading:
-        x, y, z = (self._chance.gauss(0, NOISE) for _ in range(3))
-        return self._water._replace(rate=(x, y, z))

@@ -1,6 +1,7 @@
 """The bring-up on the emulated chip: of a fresh board, and of one with each mistake, which it names."""
 
 from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
 from math import radians
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from robot_runtime.contract.packets import Jog, Start
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.bring_up.guide import STEPS
 from robot_runtime.simulation.boards.mistakes import FINS as WRITTEN
+from server.features.bring_up.report import write_report
 from tests.board.bring_up import Person
 from tests.board.rig import ROOT, build
 
@@ -121,6 +123,17 @@ def test_an_imu_that_lies_otherwise_gets_its_axes(begin: Begin, axes: str) -> No
     where = {"xyz"[number]: axes[2 * number : 2 * number + 2] for number in range(3)}
     for axis, body in ((forward, "x"), (right, "y"), (down, "z")):
         assert where[axis[-1]] == ("-" if axis.startswith("-") else "+") + body
+
+
+def test_a_skipped_step_says_so_until_it_is_done(begin: Begin) -> None:
+    person = begin()
+    person.press("devices", "skip")
+    assert person.work.state("devices") == "skipped"
+    assert "Skipped: Devices on the bus." in write_report("turtle", datetime.now(UTC), person.work)
+    person.do("devices")
+    assert person.work.state("devices") == "done"
+    with pytest.raises(RefusedError, match="no step 'tail'"):
+        person.press("tail", "skip")
 
 
 def test_a_motor_stops_when_nobody_holds_it(begin: Begin) -> None:

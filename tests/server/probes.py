@@ -87,6 +87,9 @@ PROBES: dict[tuple[str, str], Probe] = {
         words="The board is not ready",
         because="It needs a board with the sketch.",
     ),
+    ("POST", "/api/bring-up/hands"): Probe(
+        409, {"lamp": "right"}, words="Only an emulated robot", because="It needs a bring-up that goes on."
+    ),
     ("DELETE", "/api/bring-up"): Probe(),
     ("POST", "/api/robot/commands/acknowledge"): Probe(204),
     ("POST", "/api/robot/commands/arm"): Probe(204),

@@ -73,6 +73,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/bring-up/report"): "viewer",
     ("POST", "/api/bring-up"): "control",
     ("POST", "/api/bring-up/actions"): "control",
+    ("POST", "/api/bring-up/hands"): "control",
     ("DELETE", "/api/bring-up"): "operator",
     ("POST", "/api/robot/commands/acknowledge"): "control",
     ("POST", "/api/robot/commands/arm"): "control",

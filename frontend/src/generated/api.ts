@@ -321,6 +321,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/bring-up/hands": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Do something to the emulated robot as a person does with hands; there are none at a real one
+         * @description Do something to the emulated robot as a person does with hands; there are none at a real one.
+         */
+        post: operations["useHandsInBringUp"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/bring-up/report": {
         parameters: {
             query?: never;
@@ -2304,6 +2324,40 @@ export interface components {
             right: boolean;
         };
         /**
+         * BenchHands
+         * @description The emulated robot on its workbench, as a person with it in their hands sees it.
+         */
+        BenchHands: {
+            /** Barometer Hpa */
+            barometer_hpa: number;
+            /**
+             * Depth Cm
+             * @description of its pressure sensor in a bucket
+             */
+            depth_cm: number;
+            /**
+             * Fins
+             * @description ° from along the mount to the tip down, as they are
+             */
+            fins: number[];
+            /**
+             * Lamp
+             * @description the detector that has a lamp before it
+             * @enum {string}
+             */
+            lamp: "none" | "right" | "left";
+            /**
+             * Multimeter Volts
+             * @description at the battery's plug
+             */
+            multimeter_volts: number;
+            /**
+             * Pose
+             * @enum {string}
+             */
+            pose: "level" | "nose_up" | "right_down";
+        };
+        /**
          * Bookmark
          * @description A moment of a session with a text.
          */
@@ -2356,7 +2410,10 @@ export interface components {
          * @description An action of a step, with what the person gives.
          */
         BringUpOrder: {
-            /** Action */
+            /**
+             * Action
+             * @description an action of this step, or skip
+             */
             action: string;
             /** Inputs */
             inputs?: {
@@ -2415,6 +2472,8 @@ export interface components {
          * @description The bring-up as a whole.
          */
         BringUpState: {
+            /** @description null on a real board, and before the board is ready */
+            hands: components["schemas"]["BenchHands"] | null;
             /**
              * Phase
              * @enum {string}
@@ -2456,9 +2515,10 @@ export interface components {
             results: components["schemas"]["BringUpResult"][];
             /**
              * State
+             * @description skipped: left out by a person, and not measured since
              * @enum {string}
              */
-            state: "open" | "done" | "wrong";
+            state: "open" | "done" | "wrong" | "skipped";
             /** Title */
             title: string;
         };
@@ -3404,6 +3464,20 @@ export interface components {
             unit: string;
         };
         /**
+         * FinTurn
+         * @description A fin that is turned by hand.
+         */
+        FinTurn: {
+            /** Fin */
+            fin: number;
+            /**
+             * To
+             * @description along its mount, or its tip down
+             * @enum {string}
+             */
+            to: "along" | "down";
+        };
+        /**
          * Finding
          * @description The outcome of one check: a sentence about what was found, and the command or act that mends it.
          */
@@ -3462,6 +3536,25 @@ export interface components {
             unit: string;
             /** Value */
             value: number;
+        };
+        /**
+         * HandsOrder
+         * @description Something that hands do at the emulated robot; what is not named stays as it is.
+         */
+        HandsOrder: {
+            /** Depth Cm */
+            depth_cm?: number | null;
+            /** Lamp */
+            lamp?: ("none" | "right" | "left") | null;
+            /**
+             * Mend
+             * @description make wiring and parts as the wiring table says
+             * @default false
+             */
+            mend: boolean;
+            /** Pose */
+            pose?: ("level" | "nose_up" | "right_down") | null;
+            turn?: components["schemas"]["FinTurn"] | null;
         };
         /**
          * Health
@@ -6544,6 +6637,66 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["BringUpOrder"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BringUpState"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    useHandsInBringUp: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HandsOrder"];
             };
         };
         responses: {

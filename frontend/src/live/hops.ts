@@ -15,6 +15,8 @@ export interface Broken {
   readonly hop: 0 | 1 | 2;
   readonly title: string;
   readonly what: string;
+  /** whether nothing is wrong: the board is at other work */
+  readonly reserved?: boolean;
 }
 
 export interface Heard {
@@ -42,7 +44,11 @@ export function findBroken({ connection, farewell, parts, silent, state }: Heard
   if (runtime?.state === 'starting') {
     return { hop: 1, title: texts.runtimeStarting, what: runtime.text };
   }
-  if (runtime?.state === 'failed' || runtime?.state === 'absent' || (runtime !== undefined && silent)) {
+  // The server ends the runtime while another program uses the board, and says which.
+  if (runtime?.state === 'absent') {
+    return { hop: 1, title: texts.boardReserved, what: runtime.text, reserved: true };
+  }
+  if (runtime?.state === 'failed' || (runtime !== undefined && silent)) {
     return {
       hop: 1,
       title: texts.runtimeSilent,

@@ -11,6 +11,7 @@ export const connection = {
       'The page reconnects by itself. If it does not, check that the robot is switched on, that its server runs and that this device is in its network.',
     runtimeStarting: 'The runtime is starting',
     runtimeSilent: 'The runtime does not answer the server',
+    boardReserved: 'The robot’s board is at other work',
     noData: 'No data from it for a while',
     serverRestarts: 'The server restarts it by itself. System has the details.',
     boardSilent: 'The board does not answer the runtime',

@@ -2,9 +2,8 @@
 
 from collections.abc import Collection, Sequence
 from math import degrees
-from statistics import fmean, pstdev
 
-from robot_runtime.calibration.gyro import STILL
+from robot_runtime.calibration.gyro import judge_rest
 from robot_runtime.contract.calibration import GYRO_BIAS, Axis
 from robot_runtime.contract.packets import FIN_COUNT, Raw
 from robot_runtime.contract.wiring import FINS as WIRED_FINS
@@ -333,31 +332,17 @@ def check_lamp(side: int, dark: Raw, lit: Raw) -> tuple[Result, bool | None]:
     return Result(what=what, expected=expected, measured=measured, verdict="wrong", advice=advice), None
 
 
-def rest_rate(raws: Sequence[Raw]) -> tuple[Three, float]:
-    """The mean turn rate about the chip's axes, and its largest standard deviation; rad/s."""
-    x, y, z = (fmean(raw.rate[axis] for raw in raws) for axis in range(3))
-    return (x, y, z), max(pstdev(raw.rate[axis] for raw in raws) for axis in range(3))
-
-
-def check_rest(rate: Three, noise: float) -> tuple[Result, bool]:
-    """The turn rate (rad/s) of a hull at rest and its standard deviation; whether it can be trusted."""
-    shown = ", ".join(f"{degrees(part):+.2f}" for part in rate)
-    largest = max(abs(part) for part in rate)
-    if noise > STILL:
+def check_rest(raws: Sequence[Raw]) -> tuple[Result, Three | None]:
+    """The turn rate of a hull at rest; its mean about the chip's axes (rad/s) where it can be trusted."""
+    rest = judge_rest([raw.rate for raw in raws])
+    shown = ", ".join(f"{degrees(part):+.2f}" for part in rest.rate)
+    what, expected, measured = "turn rate at rest", "below 20 °/s, and steady", f"{shown} °/s"
+    if rest.moved is not None:
         advice = "The hull moved. Lay it down where nothing shakes it, and measure again."
-    elif largest > GYRO_BIAS.maximum:
+    elif max(map(abs, rest.rate)) > GYRO_BIAS.maximum:
         advice = "No sound gyroscope is off by so much: the hull turned, or the chip is broken."
-    elif noise == 0:
+    elif rest.stuck:
         advice = "The readings do not change at all: the IMU does not answer, or has stopped."
     else:
-        return Result(what="turn rate at rest", expected="below 20 °/s", measured=f"{shown} °/s"), True
-    return (
-        Result(
-            what="turn rate at rest",
-            expected="below 20 °/s",
-            measured=f"{shown} °/s",
-            verdict="wrong",
-            advice=advice,
-        ),
-        False,
-    )
+        return Result(what=what, expected=expected, measured=measured), rest.rate
+    return Result(what=what, expected=expected, measured=measured, verdict="wrong", advice=advice), None

@@ -6,6 +6,8 @@ from typing import Literal
 from robot_runtime.control.fin_check import FINS
 
 NO_FIN = "none"
+SKIP = "skip"
+"""The action that every step has beside its own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

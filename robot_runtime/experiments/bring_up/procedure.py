@@ -12,11 +12,11 @@ from robot_runtime.control.fin_check import FINS
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.bring_up import checks
 from robot_runtime.experiments.bring_up.bench import Bench
-from robot_runtime.experiments.bring_up.guide import NO_FIN, STEPS, Action, Question
+from robot_runtime.experiments.bring_up.guide import NO_FIN, SKIP, STEPS, Action, Question
 from robot_runtime.experiments.bring_up.readings import counts, mean_pressure
 from robot_runtime.experiments.bring_up.results import Result
 
-StepState = Literal["open", "done", "wrong"]
+StepState = Literal["open", "done", "wrong", "skipped"]
 V = TypeVar("V")
 Given = Mapping[str, float | str]
 
@@ -32,6 +32,7 @@ class BringUp:
     def __init__(self, bench: Bench) -> None:
         self._bench = bench
         self._results: dict[str, dict[str, Result]] = {step.name: {} for step in STEPS}
+        self._skipped: set[str] = set()
         self._along: dict[int, Raw] = {}
         self._zeros: dict[int, int] = {}
         self._encoders: dict[int, bool] = {}
@@ -72,11 +73,15 @@ class BringUp:
             self._do[f"motor_{fin}", "seen"] = partial(self._see, fin)
 
     def perform(self, step: str, action: str, given: Given) -> None:
-        """Performs an action with what the person gave.
+        """Performs an action with what the person gave. `SKIP` leaves the step out until another.
 
         Raises RefusedError where that is not possible or out of range, and BenchError.
         """
+        if action == SKIP and step in self._results:
+            self._skipped.add(step)
+            return
         guide = _find(step, action)
+        self._skipped.discard(step)
         self._do[step, action]({**given, **_read(guide, given)})
 
     def results(self, step: str) -> list[Result]:
@@ -87,7 +92,9 @@ class BringUp:
         """The state of a step: wrong where any of its newest findings is."""
         if any(one.verdict == "wrong" for one in self._results[step].values()):
             return "wrong"
-        return "done" if self._is_done(step) else "open"
+        if self._is_done(step):
+            return "done"
+        return "skipped" if step in self._skipped else "open"
 
     def calibration(self) -> CalibrationValues:
         """The measurements until now; a step that was not measured is not done."""
@@ -188,10 +195,9 @@ class BringUp:
         if self._axes is None:
             raise RefusedError("First measure how the IMU lies: the offset belongs to the robot's axes.")
         self._bias = None
-        rate, noise = checks.rest_rate(self._bench.readings(REST_SECONDS))
-        result, still = checks.check_rest(rate, noise)
+        result, rate = checks.check_rest(self._bench.readings(REST_SECONDS))
         self._note("gyro", result)
-        if still:
+        if rate is not None:
             forward, right, down = (_along(axis, rate) for axis in self._axes)
             self._bias = forward, right, down
 

@@ -2,8 +2,8 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Mapping
-from contextlib import AbstractAsyncContextManager, suppress
+from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, suppress
 from datetime import UTC, datetime
 from math import degrees
 
@@ -15,28 +15,34 @@ from robot_runtime.experiments.bring_up.guide import STEPS, Step
 from robot_runtime.experiments.bring_up.procedure import BringUp
 from robot_runtime.experiments.bring_up.readings import BATTERY_VOLTS, GRAVITY, counts, field
 from robot_runtime.places import FIRMWARE_REMEDY
+from robot_runtime.simulation.boards.emulator_process import BoardError
 from robot_runtime.simulation.boards.firmware import bring_up_path
+from robot_runtime.simulation.boards.workbench import ALONG, BAROMETER, BATTERY, TIP_DOWN, Hands
 from server.features.board.reservation import RobotBoard
 from server.features.bring_up.report import write_report
 from server.features.bring_up.schemas import (
     BeaconLevels,
+    BenchHands,
     BringUpAction,
     BringUpQuestion,
     BringUpResult,
     BringUpState,
     BringUpStep,
     EncoderReading,
+    HandsOrder,
     ImuRaw,
     Phase,
     RawReadings,
 )
 from server.platform.errors import NotFoundError
 from server.platform.settings import Settings
+from server.processes.supervisor import ProcessSupervisor
 
 log = logging.getLogger(__name__)
 
 IDLE_SECONDS = 1800.0
 """Time without any action after which a bring-up ends by itself, so that the robot can be used again."""
+ON_THE_BENCH = "The emulated robot lies on a workbench while it is brought up."
 REPORT = "/api/bring-up/report"
 Reserve = Callable[[str], AbstractAsyncContextManager[list[str]]]
 
@@ -48,14 +54,18 @@ class NoReportError(NotFoundError):
 class BringUpRun:
     """The bring-up of this server's robot."""
 
-    def __init__(self, settings: Settings, board: RobotBoard, reserve: Reserve) -> None:
+    def __init__(
+        self, settings: Settings, board: RobotBoard, reserve: Reserve, processes: ProcessSupervisor
+    ) -> None:
         self._settings = settings
         self._board = board
         self._reserve = reserve
+        self._processes = processes
         self._phase: Phase = "idle"
         self._words = ""
         self._problem = ""
         self._bench: Bench | None = None
+        self._hands: Hands | None = None
         self._procedure: BringUp | None = None
         self._task: asyncio.Task[None] | None = None
         self._over = asyncio.Event()
@@ -106,6 +116,25 @@ class BringUpRun:
         if step == "store":
             await asyncio.to_thread(self._write_report, procedure)
 
+    async def use_hands(self, order: HandsOrder) -> None:
+        """Do something to the emulated robot. Raises RefusedError where there are no hands at it."""
+        hands = self._hands
+        if hands is None:
+            raise RefusedError("Only an emulated robot whose bring-up goes on can be handled from here.")
+        self._acted.set()
+        hands.bench.pose = order.pose or hands.bench.pose
+        hands.bench.lamp = order.lamp or hands.bench.lamp
+        if order.depth_cm is not None:
+            hands.bench.depth = order.depth_cm / 100
+        try:
+            if order.turn is not None:
+                angle = ALONG if order.turn.to == "along" else TIP_DOWN
+                await asyncio.to_thread(hands.turn, order.turn.fin, angle)
+            if order.mend:
+                await asyncio.to_thread(hands.mend)
+        except BoardError as problem:
+            raise RefusedError(str(problem)) from problem
+
     def report(self) -> str:
         """The newest report. Raises NoReportError."""
         try:
@@ -121,6 +150,7 @@ class BringUpRun:
             problem=self._problem,
             steps=[self._describe(step) for step in STEPS],
             raw=self._raw(),
+            hands=None if self._hands is None else _describe_hands(self._hands),
             report=REPORT if self._settings.data.bring_up.exists() else None,
         )
 
@@ -150,20 +180,41 @@ class BringUpRun:
                 self._problem = f"The sketch is not on the board: {problem}"
                 return
             self._words = "The board is expected to answer."
-            bench = SerialBench(port, self._settings.link.baud)
-            await asyncio.to_thread(bench.__enter__)
-            try:
-                self._bench, self._procedure = bench, BringUp(bench)
-                self._phase, self._words = "ready", "The board answers."
-                await self._wait()
-                await asyncio.to_thread(self._write_report, self._procedure)
-            finally:
-                self._bench = None
-                await asyncio.to_thread(bench.__exit__, None, None, None)
-        except BenchError as problem:
+            async with self._at_hand():
+                await self._measure(SerialBench(port, self._settings.link.baud))
+        except (BenchError, BoardError) as problem:
             self._problem = str(problem)
         finally:
             self._phase, self._words = "ending", "The robot's firmware is uploaded again."
+
+    async def _measure(self, bench: SerialBench) -> None:
+        await asyncio.to_thread(bench.__enter__)
+        try:
+            self._bench, self._procedure = bench, BringUp(bench)
+            self._phase, self._words = "ready", "The board answers."
+            await self._wait()
+            await asyncio.to_thread(self._write_report, self._procedure)
+        finally:
+            self._bench = None
+            await asyncio.to_thread(bench.__exit__, None, None, None)
+
+    @asynccontextmanager
+    async def _at_hand(self) -> AsyncIterator[None]:
+        """Take an emulated robot out of its water meanwhile, so that hands can turn it."""
+        if not self._settings.emulated_board:
+            yield
+            return
+        await self._processes.pause("simulator", ON_THE_BENCH)
+        try:
+            hands = await asyncio.to_thread(Hands(self._settings.data.board_socket).__enter__)
+            try:
+                self._hands = hands
+                yield
+            finally:
+                self._hands = None
+                await asyncio.to_thread(hands.__exit__, None, None, None)
+        finally:
+            self._processes.resume("simulator")
 
     async def _wait(self) -> None:
         while not self._over.is_set():
@@ -226,6 +277,17 @@ class BringUpRun:
     def _raw(self) -> RawReadings | None:
         raw = self._bench.newest() if self._bench is not None else None
         return None if raw is None else _describe_raw(raw)
+
+
+def _describe_hands(hands: Hands) -> BenchHands:
+    return BenchHands(
+        fins=[degrees(angle) for angle in hands.fins.angles],
+        pose=hands.bench.pose,
+        depth_cm=hands.bench.depth * 100,
+        lamp=hands.bench.lamp,
+        multimeter_volts=BATTERY,
+        barometer_hpa=BAROMETER / 100,
+    )
 
 
 def _describe_raw(raw: Raw) -> RawReadings:

@@ -88,6 +88,7 @@ def _guide(procedure: "BringUp") -> None:
 def _do_actions(procedure: "BringUp", step: "Step") -> bool:
     """All actions of a step; True where the person wants to end."""
     from robot_runtime.errors import RefusedError
+    from robot_runtime.experiments.bring_up.guide import SKIP
 
     for action in step.actions:
         if action.name == "keep":
@@ -97,6 +98,7 @@ def _do_actions(procedure: "BringUp", step: "Step") -> bool:
         if key == "q":
             return True
         if key == "s":
+            procedure.perform(step.name, SKIP, {})
             return False
         try:
             if key == "k" and _can_keep(step):

@@ -8,10 +8,10 @@ from robot_runtime.contract.calibration import STEPS as CALIBRATION_STEPS
 from robot_runtime.control.fin_check import FINS
 from robot_runtime.experiments.bring_up.guide import STEPS
 from robot_runtime.experiments.bring_up.procedure import BringUp
-from robot_runtime.experiments.bring_up.results import Result
+from robot_runtime.experiments.bring_up.results import Result, Verdict
 from server import VERSION
 
-STATES = {"open": "not done", "done": "done", "wrong": "something is wrong"}
+STATES = {"open": "not done", "done": "done", "wrong": "something is wrong", "skipped": "skipped"}
 MARKS = {"good": "✓", "note": "•", "wrong": "✗"}
 
 PAGE = """<!doctype html>
@@ -45,11 +45,13 @@ th {{ font-weight: 600; }}
 def write_report(robot: str, when: datetime, procedure: BringUp) -> str:
     """The report: the calibration, then each step with what was expected and measured."""
     wrong = [step.title for step in STEPS if procedure.state(step.name) == "wrong"]
+    skipped = [step.title for step in STEPS if procedure.state(step.name) == "skipped"]
     missing = [CALIBRATION_STEPS[name] for name in procedure.calibration().missing]
     parts = [
         f"<h1>Bring-up of {escape(robot)}</h1>",
         f"<p>{when:%Y-%m-%d %H:%M} UTC, µ-CAT {VERSION}.</p>",
         _sentence("Something is wrong", wrong) if wrong else "<p>Nothing was found wrong.</p>",
+        _sentence("Skipped", skipped, "note") if skipped else "",
         _sentence("Not calibrated", missing) if missing else "<p>The calibration is whole.</p>",
         "<h2>Calibration</h2>",
         _calibration(procedure),
@@ -61,8 +63,8 @@ def write_report(robot: str, when: datetime, procedure: BringUp) -> str:
     return PAGE.format(title=escape(f"Bring-up of {robot}"), body="\n".join(parts))
 
 
-def _sentence(words: str, things: list[str]) -> str:
-    return f'<p class="wrong">{words}: {escape("; ".join(things))}.</p>'
+def _sentence(words: str, things: list[str], kind: Verdict = "wrong") -> str:
+    return f'<p class="{kind}">{words}: {escape("; ".join(things))}.</p>'
 
 
 def _calibration(procedure: BringUp) -> str:

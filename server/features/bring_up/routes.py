@@ -3,7 +3,7 @@
 from fastapi.responses import HTMLResponse
 
 from server.features.bring_up.bring_up_run import BringUpRun, NoReportError
-from server.features.bring_up.schemas import BringUpOrder, BringUpState
+from server.features.bring_up.schemas import BringUpOrder, BringUpState, HandsOrder
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Operations
@@ -39,6 +39,13 @@ def end_bring_up(bring_up: Provided[BringUpRun]) -> BringUpState:
 async def act_in_bring_up(bring_up: Provided[BringUpRun], order: BringUpOrder) -> BringUpState:
     """Perform an action of a step; this answers with its results."""
     await bring_up.perform(order.step, order.action, order.inputs)
+    return bring_up.state()
+
+
+@router.operation("POST /hands", Need.CONTROL, REFUSED)
+async def use_hands_in_bring_up(bring_up: Provided[BringUpRun], order: HandsOrder) -> BringUpState:
+    """Do something to the emulated robot as a person does with hands; there are none at a real one."""
+    await bring_up.use_hands(order)
     return bring_up.state()
 
 

@@ -4,9 +4,11 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from robot_runtime.contract.packets import FIN_COUNT
 from robot_runtime.experiments.bring_up.procedure import StepState
 from robot_runtime.experiments.bring_up.readings import Field as MagneticField
 from robot_runtime.experiments.bring_up.results import Verdict
+from robot_runtime.simulation.boards.workbench import Lamp, Pose
 
 Phase = Literal["idle", "starting", "ready", "ending"]
 
@@ -49,7 +51,7 @@ class BringUpStep(BaseModel):
     title: str
     about: str
     expected: str
-    state: StepState
+    state: StepState = Field(description="skipped: left out by a person, and not measured since")
     actions: list[BringUpAction]
     results: list[BringUpResult]
 
@@ -87,6 +89,17 @@ class RawReadings(BaseModel):
     beacons: BeaconLevels
 
 
+class BenchHands(BaseModel):
+    """The emulated robot on its workbench, as a person with it in their hands sees it."""
+
+    fins: list[float] = Field(description="° from along the mount to the tip down, as they are")
+    pose: Pose
+    depth_cm: float = Field(description="of its pressure sensor in a bucket")
+    lamp: Lamp = Field(description="the detector that has a lamp before it")
+    multimeter_volts: float = Field(description="at the battery's plug")
+    barometer_hpa: float
+
+
 class BringUpState(BaseModel):
     """The bring-up as a whole."""
 
@@ -95,6 +108,7 @@ class BringUpState(BaseModel):
     problem: str = Field(description="why it could not go on; empty if it could")
     steps: list[BringUpStep]
     raw: RawReadings | None
+    hands: BenchHands | None = Field(description="null on a real board, and before the board is ready")
     report: str | None = Field(description="address of the newest report")
 
 
@@ -104,5 +118,26 @@ class BringUpOrder(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     step: str = Field(max_length=40)
-    action: str = Field(max_length=40)
+    action: str = Field(max_length=40, description="an action of this step, or skip")
     inputs: dict[str, float | str] = Field(default_factory=dict, max_length=4)
+
+
+class FinTurn(BaseModel):
+    """A fin that is turned by hand."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    fin: int = Field(ge=0, le=FIN_COUNT - 1)
+    to: Literal["along", "down"] = Field(description="along its mount, or its tip down")
+
+
+class HandsOrder(BaseModel):
+    """Something that hands do at the emulated robot; what is not named stays as it is."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    turn: FinTurn | None = None
+    pose: Pose | None = None
+    depth_cm: float | None = Field(None, ge=0, le=200)
+    lamp: Lamp | None = None
+    mend: bool = Field(False, description="make wiring and parts as the wiring table says")

@@ -7,17 +7,11 @@ const texts = bringUp.readings;
 const DEGREES_PER_COUNT = 360 / 1024;
 
 export type StepKind = keyof typeof bringUp.step.consequences;
-export type Shown = BringUpStep['state'] | 'skipped';
 
 /** fin_2 is of the kind `fin`, and of fin 2. */
 export function kindOf(name: string): { kind: StepKind; fin: number } {
   const [stem = '', number = '0'] = name.split('_');
   return { kind: Object.hasOwn(bringUp.step.consequences, stem) ? (stem as StepKind) : 'other', fin: Number(number) };
-}
-
-/** The state of a step with what was skipped on this page. */
-export function shownState(step: BringUpStep, skipped: ReadonlySet<string>): Shown {
-  return step.state === 'open' && skipped.has(step.name) ? 'skipped' : step.state;
 }
 
 /** The step that an address names, or the first that is not done. */

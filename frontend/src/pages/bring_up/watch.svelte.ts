@@ -1,4 +1,4 @@
-import { api, type BringUpInputs, type BringUpState } from '../../api';
+import { api, type BringUpHandsOrder, type BringUpInputs, type BringUpState } from '../../api';
 import type { Answer } from '../../http';
 
 /** ms between two looks: of live readings, while something is being done, and while nothing is */
@@ -37,6 +37,7 @@ export class BringUpWatch {
 
   begin = (): Promise<string> => this.#change(api.beginBringUp());
   end = (): Promise<string> => this.#change(api.endBringUp());
+  useHands = (order: BringUpHandsOrder): Promise<string> => this.#change(api.useHandsInBringUp(order));
   act = (step: string, action: string, inputs: BringUpInputs): Promise<string> => this.#change(api.actInBringUp(step, action, inputs));
 
   /** Answers why it was refused; '' where it was not. */
