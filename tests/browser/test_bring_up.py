@@ -20,17 +20,17 @@ FOUND = {
 """A mistake for some of the steps, and what the page says of it."""
 
 
-@pytest.fixture(autouse=True)
-def _ended(stack: Stack) -> Iterator[None]:
-    """Ends the bring-up, and waits for the robot's firmware."""
-    yield
+@pytest.fixture
+def person(page: Page, stack: Stack) -> Iterator[PagePerson]:
+    """Somebody with a bring-up, which ends with the test: the robot is back then."""
+    person = PagePerson(page, stack)
+    person.begin()
+    yield person
     wait_for_the_robot(stack)
 
 
 @pytest.mark.timeout(240)
-def test_a_robot_is_brought_up_step_by_step(page: Page, stack: Stack) -> None:
-    person = PagePerson(page, stack)
-    person.begin()
+def test_a_robot_is_brought_up_step_by_step(person: PagePerson, page: Page, stack: Stack) -> None:
     for step in STEPS:
         if step.name in FOUND:
             mistake, words = FOUND[step.name]

@@ -70,7 +70,7 @@ export const parts = {
     hilHint: 'Hardware in the loop: a simulator provides the sensor values of the board',
   },
   link: {
-    states: { up: 'link', connecting: 'connecting', down: 'no link' },
+    states: { up: 'link', connecting: 'connecting', reserved: 'board reserved', down: 'no link' },
     unknown: 'The state of the serial link is unknown.',
     detail: (connection: string, roundTrip: string) => `${connection} Round trip to the server: ${roundTrip} ms.`,
   },
