@@ -17,6 +17,10 @@ from robot_runtime.contract.commands import (
     LeaseCommand,
     LoopCommand,
     MeasureGyroCommand,
+    MissionCommand,
+    MissionEndCommand,
+    MissionPauseCommand,
+    MissionSkipCommand,
     ModeCommand,
     ParametersCommand,
     RelayExperimentCommand,
@@ -34,6 +38,7 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.experiments import LoopExperiment, RelayExperiment, StepExperiment
+from robot_runtime.control.supervisor import Arming
 from robot_runtime.core import Core
 from robot_runtime.errors import RefusedError
 
@@ -66,6 +71,10 @@ class Commands:
             StepExperimentCommand: self._step_experiment,
             RelayExperimentCommand: self._relay_experiment,
             EndExperimentCommand: self._end_experiment,
+            MissionCommand: self._mission,
+            MissionPauseCommand: self._pause_mission,
+            MissionSkipCommand: self._skip_mission,
+            MissionEndCommand: self._end_mission,
         }
         self.do: dict[str, Callable[[Mapping[str, Any]], Answer]] = {
             name: partial(self._read, cls) for name, cls in COMMANDS.items()
@@ -76,6 +85,8 @@ class Commands:
         handler, policy = self._handlers[type(command)], command.policy
         if policy.disturbs_experiment:
             self._robot.experiments.require_none()
+        if policy.tunes:
+            self._robot.missions.require_none()
         if not policy.tunes:
             handler(command)
             self._robot.announce()
@@ -85,6 +96,46 @@ class Commands:
             answer = handler(command) or {}
         self._robot.announce()
         return {"changed": {name: list(values) for name, values in changed.items()}, **answer}
+
+    def begin_mission(self, command: MissionCommand) -> Arming:
+        """Asks the board to arm for a mission, which begins once it is armed.
+
+        Raises RefusedError with all reasons against the mission and against arming.
+        """
+        robot = self._robot
+        robot.missions.require_none()
+        reasons = robot.supervisor.refusals()
+        if robot.supervisor.armed:
+            reasons = ["The robot is armed already. STOP it first: a mission arms it by itself."]
+        try:
+            mission = robot.missions.load(command.text, command.library)
+        except RefusedError as problem:
+            raise RefusedError(" ".join([str(problem), *reasons])) from problem
+        if reasons:
+            raise RefusedError(" ".join(reasons))
+        robot.missions.prepare(mission)
+        try:
+            return robot.supervisor.begin_arming("automatic", mission.document.limits.alone)
+        except RefusedError:
+            robot.missions.forget()
+            raise
+
+    def _mission(self, command: MissionCommand) -> None:
+        arming = self.begin_mission(command)
+        try:
+            self._robot.supervisor.finish_arming(arming)
+        except RefusedError:
+            self._robot.missions.forget()
+            raise
+
+    def _pause_mission(self, command: MissionPauseCommand) -> None:
+        self._robot.missions.pause(command.on)
+
+    def _skip_mission(self, _: MissionSkipCommand) -> None:
+        self._robot.missions.skip()
+
+    def _end_mission(self, _: MissionEndCommand) -> None:
+        self._robot.missions.end("An operator ended it.")
 
     def _read(self, cls: type[RobotCommand], table: Mapping[str, Any]) -> Answer:
         try:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from robot_runtime.contract.craft import Craft, load_craft
 from robot_runtime.contract.limits import SET_POINT, ConfigError, Range
+from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.toml_text import TomlError, read_toml
@@ -147,6 +148,7 @@ class Config:
     craft: CraftConfig = CraftConfig()
     control: ControlConfig = ControlConfig()
     vision: VisionConfig = VisionConfig()
+    missions: MissionLimits = NO_LIMITS
     zenoh: ZenohConfig = ZenohConfig()
     server: ServerConfig = ServerConfig()
     sessions: SessionsConfig = SessionsConfig()

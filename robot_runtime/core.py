@@ -53,6 +53,8 @@ from robot_runtime.link.dissection import dissect
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.link.session import BoardMessage
 from robot_runtime.link.timing import periods
+from robot_runtime.missions.node import MissionRunner
+from robot_runtime.missions.senses import MissionSenses
 from robot_runtime.parameters.board import BoardParameters
 from robot_runtime.parameters.providers import runtime_entries
 from robot_runtime.parameters.registry import Registry
@@ -153,6 +155,15 @@ class Core:
             armed=lambda: self.supervisor.armed,
             tick_lock=self.control.tick_lock,
         )
+        self.missions = MissionRunner(
+            clock,
+            config.missions,
+            MissionSenses(self.bus, clock, self.control, self.supervisor.detector, self.vision),
+            self.parameters,
+            self.supervisor.stop,
+            partial(self.bus.publish_document, "mission"),
+            self.publish_event,
+        )
         self._parameters_published: Parameters | None = None
         self._join()
 
@@ -188,6 +199,7 @@ class Core:
         try:
             if self.control.depth.on and (reasons := self.supervisor.detector.depth_refusals()):
                 self.control.release(self.control.depth, reasons[0])
+            self.missions.tick(self.supervisor.mode)
             self.experiments.tick(self.supervisor.mode)
             self.control.tick()
             if self.supervisor.mode == "test":

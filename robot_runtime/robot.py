@@ -67,7 +67,7 @@ class Robot(Core):
         self._vision_file = vision_file
         self._restore_vision()
         self._server_run = ""
-        messages.subscribe_runs(HEARTBEAT, lambda _name, _payload, run: self._see_server(run))
+        messages.subscribe_runs(HEARTBEAT, lambda _name, payload, run: self._see_server(payload, run))
         messages.subscribe(PILOT, lambda _, payload: self.take_pilot(payload))
 
     def serve(self) -> None:
@@ -84,7 +84,8 @@ class Robot(Core):
     def set_vision(self, settings: VisionSettings) -> None:
         """Applies vision settings from the next picture on, and stores them for the next start."""
         super().set_vision(settings)
-        if self._vision_file is None:
+        # What a mission sets is put back at its end, and must not outlive a runtime that is killed.
+        if self._vision_file is None or self.missions.active:
             return
         try:
             if settings == self.config.vision.settings:
@@ -116,8 +117,9 @@ class Robot(Core):
         """Makes `run` return; takes no lock, so that a signal handler may call it."""
         self._closing = True
 
-    def _see_server(self, run: str) -> None:
+    def _see_server(self, pages: bytes, run: str) -> None:
         self.supervisor.detector.see_server()
+        self.missions.see_pages(int(pages) if pages.isdigit() else 0)
         if run != self._server_run:
             # A server that has just started needs the state at once, not only when it is due again.
             self._server_run = run

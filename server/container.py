@@ -320,7 +320,7 @@ class Container:
 
     async def _beat(self) -> None:
         while True:
-            self.bridge.send_heartbeat()
+            self.bridge.send_heartbeat(self.hub.operators)
             await asyncio.sleep(BEAT_SECONDS)
 
     async def _end_session(self) -> None:

@@ -139,7 +139,7 @@ class StopCommand(RobotCommand):
     """Disarms the robot at once. It is never refused."""
 
 
-@command("mode", Need.CONTROL)
+@command("mode", Need.CONTROL, in_scenarios=True)
 class ModeCommand(RobotCommand):
     """Lets the pilot or the depth controller steer the armed robot."""
 
@@ -409,6 +409,38 @@ HYSTERESIS_SHARE = 0.25
 @command("end_experiment", None, tunes=True)
 class EndExperimentCommand(RobotCommand):
     """Ends the running experiment. The loop goes on as before it."""
+
+
+@command("mission", None, in_scenarios=True, words="Begin a mission")
+class MissionCommand(RobotCommand):
+    """Arms the robot and begins a mission. It is refused with every reason against either."""
+
+    text: str = field(metadata={"description": "its TOML, docs/reference/missions.md"})
+    library: dict[str, str] = field(
+        default_factory=dict, metadata={"description": "the texts of the missions that it calls, by name"}
+    )
+
+
+@command("mission_pause", Need.CONTROL, in_scenarios=True)
+class MissionPauseCommand(RobotCommand):
+    """Pauses the mission: the robot stays at its depth, and the mission's clocks stand still."""
+
+    on: bool = field(default=True, metadata={"description": "false: go on"})
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        return "Pause the mission" if self.on else "Go on with the mission"
+
+
+@command("mission_skip", Need.CONTROL, in_scenarios=True, words="Skip the mission's step")
+class MissionSkipCommand(RobotCommand):
+    """Ends the steps of the mission that run now, as a success."""
+
+
+@command("mission_end", Need.CONTROL, in_scenarios=True, words="End the mission")
+class MissionEndCommand(RobotCommand):
+    """Ends the mission: its changes are put back, and the robot is stopped."""
 
 
 def http_commands() -> list[type[RobotCommand]]:

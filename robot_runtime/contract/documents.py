@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from robot_runtime.contract.calibration import CalibrationValues
+from robot_runtime.contract.missions import MissionPhase, MissionStatus
 from robot_runtime.contract.packets.layout import Record, Wire, record
 from robot_runtime.contract.vision_settings import VisionSettings
 
@@ -294,3 +295,43 @@ class Experiment(Document):
     cycles: int = field(metadata={"meaning": "of the relay, measured so far"})
     bias: float = field(metadata={"meaning": "of the relay: the mean command that balances the load"})
     text: str = field(metadata={"meaning": "reason of its end; empty after a normal one"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissionStepState:
+    """A step of a running mission."""
+
+    path: str = field(metadata={"meaning": 'from 1 along the branches, as "3.1.2"; empty for the first step'})
+    do: str
+    words: str = field(metadata={"meaning": "the step in a few words"})
+    note: str = field(metadata={"meaning": "its author's remark"})
+    status: MissionStatus
+    elapsed: float = field(metadata={"meaning": "s of the mission's clock since it began, or that it took"})
+    longest: float = field(metadata={"meaning": "s that it takes at most"})
+    rounds: int = field(metadata={"meaning": "of a repetition: how often it is done"})
+    text: str = field(metadata={"meaning": "why it failed; empty where it did not"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mission(Document):
+    """A mission as it stands: sent at its start, at each change, once a second, and at its end.
+
+    Each states everything but `document`, which only the first and the last one have.
+    """
+
+    number: int = field(metadata={"meaning": "of the mission, from 1 since the runtime started"})
+    sequence: int = field(metadata={"meaning": "of this document in the mission, from 0"})
+    name: str
+    title: str
+    phase: MissionPhase
+    text: str = field(metadata={"meaning": "why it is paused, or how it ended"})
+    elapsed: float = field(metadata={"meaning": "s of the mission's clock"})
+    remaining: float = field(metadata={"meaning": "s that it takes at most from now on"})
+    progress: float = field(metadata={"meaning": "share that is done, 0 to 1"})
+    paused: float = field(metadata={"meaning": "s that it has been paused in all"})
+    pause: float = field(metadata={"meaning": "s that it may be paused in all"})
+    deepest: float = field(metadata={"meaning": "m; the greatest depth so far"})
+    steps: list[MissionStepState]
+    document: str = field(
+        default="", metadata={"meaning": "the mission's TOML; in its first and last document"}
+    )

@@ -102,6 +102,7 @@ TOPICS: tuple[Topic, ...] = (
         "the calibration that the board keeps",
         newest_only=True,
     ),
+    Topic(25, "mission", _DOCUMENTS, documents.Mission, "a mission as it stands", newest_only=True),
     Topic(32, "picture", _PICTURE, None, "the picture that the vision node used", recorded=False),
     Topic(33, "observer", _PICTURE, None, "the simulated scene from outside", "scene", recorded=False),
     Topic(34, "thumbnail", _PICTURE, None, "a small picture of the camera's, for recordings"),

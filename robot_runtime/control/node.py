@@ -3,6 +3,7 @@
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from math import nan
 from typing import Any
 
@@ -32,6 +33,19 @@ VISION_STALE = BY_NAME["vision_stale"].limit - CHECK_PERIOD
 """s after which, at a tick, a detection is too old to use."""
 STICK_MIDDLE = 0.05
 """Share of its travel within which a stick counts as centred."""
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """A course that outranks the chosen steering until a time (s): surge and yaw, or to the light.
+
+    Once it has expired the robot stays.
+    """
+
+    until: float
+    x: float = 0.0
+    yaw: float = 0.0
+    by: Steering = "none"
 
 
 _DEPTHS_MAX, _IMUS_MAX = 50, 100
@@ -76,6 +90,7 @@ class ControlNode:
         self._ticked: float | None = None
         self._beacon_steering = BeaconSteering()
         self._course = (0.0, 0.0)
+        self._course_override: Course | None = None
         self._beacons = (float("-inf"), False, False)
         bus.on_row("depth", self._take_depth)
         bus.on_row("imu", self._take_imu)
@@ -89,6 +104,13 @@ class ControlNode:
             if "manual" in (was, mode):
                 loop.on = False
             loop.override = None
+        self._course_override = None
+
+    def override_course(self, course: Course | None) -> None:
+        """Steers this course in automatic until it expires or the mode changes; None: the chosen one."""
+        was, self._course_override = self._course_override, course
+        if course is not None and course.by == "beacons" and (was is None or was.by != "beacons"):
+            self._beacon_steering.start()
 
     def set_loop(
         self,
@@ -214,7 +236,7 @@ class ControlNode:
             return loop.on and not self._pilot.quiet
         if mode != "automatic":
             return False
-        if loop is self.heading and self.steering == "beacons":
+        if loop is self.heading and self._steering_in_force == "beacons":
             return False
         return loop is self.depth or loop.on or loop.override is not None
 
@@ -286,8 +308,15 @@ class ControlNode:
         )
         return Turning(set_point=set_point, measured=measured, output=output)
 
+    @property
+    def _steering_in_force(self) -> Steering:
+        return self.steering if self._course_override is None else self._course_override.by
+
     def _find_course(self, now: float, seconds: float) -> tuple[float, float]:
-        if self.steering == "none":
+        course = self._course_override
+        if course is not None and (course.by == "none" or now > course.until):
+            return (course.x, course.yaw) if now <= course.until else (0.0, 0.0)
+        if self._steering_in_force == "none":
             return 0.0, 0.0
         time, right, left = self._beacons
         fresh = now - time <= BEACON_STALE

@@ -125,8 +125,11 @@ class Supervisor:
 
         Raises RefusedError with all reasons if it must not be armed, or does not arm.
         """
+        self.finish_arming(self.begin_arming(mode, alone))
+
+    def finish_arming(self, arming: Arming) -> None:
+        """Waits until an attempt to arm is over. Raises RefusedError if the board did not arm."""
         with self._changed:
-            arming = self.begin_arming(mode, alone)
             while not arming.over:
                 self._changed.wait_for(
                     lambda: arming.over or self.board_armed == arming.disarmed_seen, ARM_WAIT

@@ -54,6 +54,23 @@ class Registry:
             for entry in self._entries.values()
         ]
 
+    def is_pending(self, name: str) -> bool:
+        """True until the board has confirmed a parameter's value."""
+        return self._entries[name].pending()
+
+    def find_problem(self, name: str, value: object) -> str:
+        """Returns why a parameter cannot have this value while the robot is armed; empty if it can."""
+        entry = self._entries.get(name)
+        if entry is None:
+            return f"There is no parameter {name!r}."
+        if not entry.while_armed:
+            return f"{name} can only be changed while the robot is disarmed."
+        try:
+            entry.check(value)
+        except ValueError as problem:
+            return f"{problem}."
+        return ""
+
     @contextmanager
     def changing(self) -> Iterator[Changed]:
         """Holds the control ticks; yields a dict that is filled with the changed values at the end."""

@@ -14,7 +14,7 @@ from pathlib import Path
 from robot_runtime.clock import Clock, SteadyClock
 
 HEARTBEAT = "heartbeat"
-"""The topic that a server publishes every second, from its main loop."""
+"""The topic of a server's heartbeat, every second from its main loop: the number of operators' pages."""
 LINGER_SECONDS = 30.0
 _PR_SET_PDEATHSIG = 1
 _CHECK_SECONDS = 1.0

@@ -129,9 +129,9 @@ class Bridge:
         for name, filler in self._fillers.items():
             filler.begin_delivery(backlog.get(name))
 
-    def send_heartbeat(self) -> None:
-        """Send the runtime the server's heartbeat."""
-        self._messages.publish(HEARTBEAT, b"")
+    def send_heartbeat(self, pages: int) -> None:
+        """Send the runtime the server's heartbeat, with the number of operators' pages."""
+        self._messages.publish(HEARTBEAT, str(pages).encode())
 
     @property
     def run(self) -> str:

@@ -56,8 +56,9 @@ class EvictedError(Exception):
 class Client:
     """One open socket: its positions in the buffers and its own messages."""
 
-    def __init__(self, hub: "Hub", send: Send, clock: Clock, device: int) -> None:
-        self.device = device
+    def __init__(self, hub: "Hub", send: Send, clock: Clock, caller: Identity) -> None:
+        self.device = caller.device
+        self.is_operator = caller.role == "operator"
         self.sending_since: float | None = None
         self.dismissal: EvictedError | None = None
         self._hub = hub
@@ -187,6 +188,11 @@ class Hub:
         """The number of open sockets."""
         return len(self._clients)
 
+    @property
+    def operators(self) -> int:
+        """The number of open sockets of operators."""
+        return sum(client.is_operator for client in self._clients)
+
     def add(self, blocks: list[Block]) -> None:
         """Pass these blocks to all clients, as one message each for rows and for documents."""
         self.tick += 1
@@ -244,7 +250,7 @@ class Hub:
         reason where it is disconnected.
         """
         self._check_room(caller)
-        client = Client(self, send, self._clock, caller.device)
+        client = Client(self, send, self._clock, caller)
         client.answer(greeting)
         for kind, text in self._newest.items():
             client.notify(kind, text)

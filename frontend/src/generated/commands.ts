@@ -83,6 +83,18 @@ export interface VisionSettingsCommand {
   actions: Record<string, number>;
 }
 
+/** Pauses the mission: the robot stays at its depth, and the mission's clocks stand still. */
+export interface MissionPauseCommand {
+  /** false: go on */
+  on?: boolean;
+}
+
+/** Ends the steps of the mission that run now, as a success. */
+export type MissionSkipCommand = Record<string, never>;
+
+/** Ends the mission: its changes are put back, and the robot is stopped. */
+export type MissionEndCommand = Record<string, never>;
+
 /** The body of each command, by its name. */
 export interface Commands {
   arm: ArmCommand;
@@ -97,4 +109,7 @@ export interface Commands {
   steering: SteeringCommand;
   card: CardCommand;
   vision_settings: VisionSettingsCommand;
+  mission_pause: MissionPauseCommand;
+  mission_skip: MissionSkipCommand;
+  mission_end: MissionEndCommand;
 }

@@ -423,6 +423,7 @@ export const OTHER_TOPICS = {
   experiment: 22,
   vision: 23,
   calibration: 24,
+  mission: 25,
   picture: 32,
   observer: 33,
   thumbnail: 34,
@@ -654,6 +655,41 @@ export interface CalibrationKept {
   missing: string[];
 }
 
+/** A step of a running mission. */
+export interface MissionStepState {
+  path: string;
+  do: string;
+  words: string;
+  note: string;
+  status: 'waiting' | 'running' | 'done' | 'failed' | 'stopped';
+  elapsed: number;
+  longest: number;
+  rounds: number;
+  text: string;
+}
+
+/** A mission as it stands: sent at its start, at each change, once a second, and at its end.
+
+    Each states everything but `document`, which only the first and the last one have.
+     */
+export interface Mission {
+  time: number;
+  number: number;
+  sequence: number;
+  name: string;
+  title: string;
+  phase: 'running' | 'paused' | 'succeeded' | 'failed' | 'ended';
+  text: string;
+  elapsed: number;
+  remaining: number;
+  progress: number;
+  paused: number;
+  pause: number;
+  deepest: number;
+  steps: MissionStepState[];
+  document: string;
+}
+
 export interface Documents {
   state: State;
   detection: Detection;
@@ -664,4 +700,5 @@ export interface Documents {
   experiment: Experiment;
   vision: VisionInForce;
   calibration: CalibrationKept;
+  mission: Mission;
 }

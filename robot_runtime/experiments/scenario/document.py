@@ -4,23 +4,30 @@ SI units; world axes north, east, down from the start, angles in rad. docs/use/s
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Any, Literal, get_type_hints
 
 from robot_runtime.config import ControlConfig
+from robot_runtime.contract.commands import MissionCommand
 from robot_runtime.contract.craft import Craft, complete_sensors
 from robot_runtime.contract.limits import VISION_RATE, ConfigError, Range
+from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.contract.parsing import TOP, parse, read_value
 from robot_runtime.contract.problems import DocumentEntry, EntryProblem
 from robot_runtime.contract.toml_text import TomlError, read_toml
+from robot_runtime.contract.vision_settings import MarkerDictionary
 from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.experiments.scenario.events import (
     Colour,
+    CommandEvent,
     TimedEvent,
     WaterEvent,
     check_controller,
     read_event,
 )
+from robot_runtime.missions.document import called_by, read_mission
+from robot_runtime.missions.library import shipped_missions
 from robot_runtime.simulation.boards.mistakes import check_mistake
 from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Vector
 from robot_runtime.simulation.water.surroundings import (
@@ -35,6 +42,8 @@ from robot_runtime.simulation.water.surroundings import (
 )
 from robot_runtime.simulation.water.world import World
 
+MISSION_AT = 1.0
+"""s at which the scenario's mission begins."""
 DURATION = Range(1, 3600)
 """s."""
 SEED = Range(0, 2**32 - 1)
@@ -106,6 +115,7 @@ class VisionChoice:
     camera: Literal["card", "scene"] = "card"
     rate: Annotated[float, VISION_RATE] = 4.0
     colour: Colour = "yellow"
+    markers: MarkerDictionary = "none"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,6 +141,10 @@ class Scenario:
     """Of the board; see `simulation/boards/mistakes.py`."""
     control: ControlConfig = field(default_factory=ControlConfig)
     vision: VisionChoice = VisionChoice()
+    missions: MissionLimits = NO_LIMITS
+    """What no mission may exceed, as in robot.toml."""
+    mission: str = ""
+    """The name of a mission of the library, which begins at `MISSION_AT`."""
     events: tuple[TimedEvent, ...] = ()
 
     def __post_init__(self) -> None:
@@ -201,12 +215,24 @@ _STAND_IN: dict[str, Any] = {
 """Defaults for missing required entries, so that the rest can still be checked."""
 
 
-def read_scenario(text: str, craft: Craft = DEFAULT_CRAFT) -> Scenario:
-    """The scenario that a TOML text says, on this robot's craft. Raises ConfigError with all problems."""
+def read_scenario(
+    text: str, craft: Craft = DEFAULT_CRAFT, missions: Mapping[str, str] | None = None
+) -> Scenario:
+    """The scenario that a TOML text says, on this robot's craft. Raises ConfigError with all problems.
+
+    `missions` are the texts of the library's, by name; without it, those that ship with the program.
+    """
     try:
         table = read_toml(text)
     except TomlError as problem:
         raise ConfigError(f"the scenario {problem}") from problem
+    return read_scenario_table(table, craft, missions)
+
+
+def read_scenario_table(
+    table: dict[str, Any], craft: Craft = DEFAULT_CRAFT, missions: Mapping[str, str] | None = None
+) -> Scenario:
+    """The scenario that a table says, as `read_scenario`."""
     problems: list[str | EntryProblem] = []
     own = craft if table.get("craft") == "robot" else DEFAULT_CRAFT
     values = {"robot": SimulationParameters.of(own)} | _read_entries(table, own, problems)
@@ -214,9 +240,28 @@ def read_scenario(text: str, craft: Craft = DEFAULT_CRAFT) -> Scenario:
         scenario = Scenario(**(_STAND_IN | values))
     except ConfigError as problem:
         raise ConfigError(*problems, *problem.problems) from problem
+    if scenario.mission:
+        library = shipped_missions() if missions is None else missions
+        problems += _check_mission(scenario, library)
     if problems:
         raise ConfigError(*problems)
+    if scenario.mission:
+        text = library[scenario.mission]
+        command = MissionCommand(text=text, library=called_by(text, library))
+        events = [*scenario.events, CommandEvent(at=MISSION_AT, command=command)]
+        scenario = replace(scenario, events=tuple(sorted(events, key=lambda one: one.at)))
     return replace(scenario, control=tune_to_craft(scenario.control, own))
+
+
+def _check_mission(scenario: Scenario, library: Mapping[str, str]) -> list[EntryProblem]:
+    where = TOP.field("mission")
+    if scenario.mission not in library:
+        return [where.problem(f"is {scenario.mission!r}; the library has {', '.join(sorted(library))}")]
+    try:
+        read_mission(library[scenario.mission], library, scenario.missions)
+    except ConfigError as problem:
+        return [where.sentence(f"{scenario.mission}: {text}") for text in problem.texts]
+    return []
 
 
 def _read_entries(table: dict[str, Any], craft: Craft, problems: list[str | EntryProblem]) -> dict[str, Any]:

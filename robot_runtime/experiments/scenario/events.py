@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, fields, make_dataclass
 from math import hypot
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
+from robot_runtime.contract.card_colours import MARKER_CARD
 from robot_runtime.contract.commands import (
     COMMANDS,
     CardCommand,
@@ -17,6 +18,7 @@ from robot_runtime.contract.commands import (
 from robot_runtime.contract.limits import ConfigError, Range
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.problems import DocumentEntry
+from robot_runtime.contract.vision_settings import marker_name
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.simulation.water.faults import SimulatedFault, check_sensor
 from robot_runtime.simulation.water.requests import BeaconPositions, SensorFaultRequest
@@ -225,6 +227,8 @@ def _check(content: RobotCommand | WaterChange, where: DocumentEntry) -> None:
                 raise ValueError("gains need the name of their controller")
             case LoopCommand(name=loop, controller=str(name), gains=gains):
                 check_controller(loop, name, {name: gains})
+            case CardCommand(colour=str(colour)) if colour == marker_name(MARKER_CARD):
+                pass
             case CardCommand(colour=str(colour)) | VisionCommand(colour=str(colour)):
                 if colour not in get_args(Colour):
                     known = ", ".join(map(repr, get_args(Colour)))

@@ -50,8 +50,12 @@ class SimulatedRobot(Core):
         config = Config(
             control=scenario.control,
             vision=VisionConfig(
-                camera=scenario.vision.camera, rate=scenario.vision.rate, colour=scenario.vision.colour
+                camera=scenario.vision.camera,
+                rate=scenario.vision.rate,
+                colour=scenario.vision.colour,
+                markers=scenario.vision.markers,
             ),
+            missions=scenario.missions,
         )
         self.link = LinkDriver(
             "simulated",

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 from robot_runtime.commands import Commands
-from robot_runtime.contract.commands import ArmCommand
+from robot_runtime.contract.commands import ArmCommand, MissionCommand
 from robot_runtime.control.supervisor import ARM_WAIT, Arming
 from robot_runtime.core import PUBLISH_EVERY
 from robot_runtime.errors import RefusedError
@@ -192,6 +192,9 @@ class _RunLoop:
             arming = rig.robot.supervisor.begin_arming(command.mode, command.alone)
             self._arming = arming, event
             self._next_attempt = now + ARM_WAIT
+        elif isinstance(event, CommandEvent) and isinstance(command := event.command, MissionCommand):
+            self._arming = self._commands.begin_mission(command), event
+            self._next_attempt = now + ARM_WAIT
         elif isinstance(event, CommandEvent):
             self._commands.perform(event.command)
         elif isinstance(event, LineFaultChange):
@@ -211,6 +214,7 @@ class _RunLoop:
         if arming.over:
             self._arming = None
             if arming.refusal:
+                self._rig.robot.missions.forget()
                 self._refuse(event, arming.refusal)
             else:
                 self._add_bookmark(event.words)
@@ -229,7 +233,7 @@ class _RunLoop:
 
 
 def _arms(event: TimedEvent) -> bool:
-    return isinstance(event, CommandEvent) and isinstance(event.command, ArmCommand)
+    return isinstance(event, CommandEvent) and isinstance(event.command, ArmCommand | MissionCommand)
 
 
 def _round_time(time: float) -> float:

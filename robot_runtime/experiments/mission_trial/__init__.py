@@ -1,0 +1,1 @@
+"""A mission tried in simulated water, once for each of many seeds."""

@@ -1,0 +1,145 @@
+"""One mission in simulated time, seed by seed: how it ends, how long it takes, how deep it goes."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from math import ceil, pi
+from random import Random
+from typing import Any
+
+from robot_runtime.contract.commands import MissionCommand
+from robot_runtime.contract.craft import Craft
+from robot_runtime.contract.documents import Control
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.missions import MissionLimits, MissionPhase
+from robot_runtime.contract.parsing import TOP
+from robot_runtime.contract.problems import EntryProblem
+from robot_runtime.contract.topics import Kind
+from robot_runtime.experiments.scenario.document import MISSION_AT, Scenario, read_scenario_table
+from robot_runtime.experiments.scenario.events import CommandEvent
+from robot_runtime.experiments.scenario.rig import MakeBoard
+from robot_runtime.experiments.scenario.run import ScenarioRun
+from robot_runtime.missions.document import read_mission
+from robot_runtime.transport.blocks import read_blocks, read_rows
+
+CURVE_PERIOD = 0.5
+"""s between two points of a depth curve."""
+OWN = ("name", "title", "duration", "seed", "mission", "missions", "description")
+"""Entries of a scenario that are the trial's own."""
+_POOL = {"kind": "pool", "depth": 3.0, "length": 10.0, "width": 5.0}
+_MARGIN = 10.0
+"""s after the mission's longest time, for arming and the end."""
+_LONGEST = 3600.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrialResult:
+    """The outcome of a mission with one seed. `phase` is null where it did not begin; `text` says why.
+
+    `failed` is the path of the step that failed. `curve` has the depth, m, every `CURVE_PERIOD` s.
+    """
+
+    seed: int
+    phase: MissionPhase | None
+    text: str
+    elapsed: float = 0.0
+    deepest: float = 0.0
+    failed: str | None = None
+    curve: list[float] = field(default_factory=list)
+
+
+def trial_scenario(
+    text: str, library: Mapping[str, str], limits: MissionLimits, seed: int, craft: Craft
+) -> Scenario:
+    """The scenario in which a mission is tried: its own `trial` entries, else a pool of 3 m.
+
+    Each seed has its own noise and, unless the trial says one, its own heading at the start. Raises
+    ConfigError with the problems of the mission and of its trial.
+    """
+    mission = read_mission(text, library, limits)
+    where = TOP.field("trial")
+    problems = [where.key(name).problem("is the trial's own") for name in OWN if name in mission.trial]
+    if problems:
+        raise ConfigError(*problems)
+    heading = Random(f"{seed} heading").uniform(-pi, pi)
+    table: dict[str, Any] = {
+        "scene": _POOL,
+        "start": {"heading": heading},
+        "craft": "robot",
+        **mission.trial,
+        "name": "trial",
+        "title": "Trial",
+        "seed": seed,
+        "duration": min(ceil(mission.longest + mission.limits.pause + _MARGIN), _LONGEST),
+        "missions": asdict(limits),
+    }
+    try:
+        scenario = read_scenario_table(table, craft)
+    except ConfigError as problem:
+        raise ConfigError(
+            *(EntryProblem(("trial", *one.path), f"trial: {one.text}", one.words) for one in problem.problems)
+        ) from problem
+    begin = CommandEvent(at=MISSION_AT, command=MissionCommand(text=text, library=dict(library)))
+    return replace(scenario, events=tuple(sorted([*scenario.events, begin], key=lambda one: one.at)))
+
+
+def try_mission(scenario: Scenario, make_board: MakeBoard) -> TrialResult:
+    """Runs a trial's scenario until its mission has ended. Raises BoardError."""
+    watch = _Watch()
+    run = ScenarioRun(scenario, make_board, watch)
+    watch.on_end = run.cancel
+    run.perform(lambda _: {})
+    last = watch.last
+    if last is None or last["phase"] in ("running", "paused"):
+        text = watch.problem or "It did not end within the trial."
+        return TrialResult(
+            seed=scenario.seed,
+            phase=None,
+            text=text,
+            elapsed=0.0,
+            deepest=0.0,
+            failed=None,
+            curve=watch.curve,
+        )
+    return TrialResult(
+        seed=scenario.seed,
+        phase=last["phase"],
+        text=last["text"],
+        elapsed=last["elapsed"],
+        deepest=last["deepest"],
+        failed=find_failed(last["steps"]) if last["phase"] == "failed" else None,
+        curve=watch.curve,
+    )
+
+
+def find_failed(steps: list[dict[str, Any]]) -> str | None:
+    """The path of the step that failed by itself, as it says why; None where none did."""
+    failed = [one["path"] for one in steps if one["status"] == "failed" and one["text"]]
+    return failed[-1] if failed else None
+
+
+class _Watch:
+    """Reads a run's output; calls `on_end` with the mission's end."""
+
+    def __init__(self) -> None:
+        self.on_end: Callable[[], None] = lambda: None
+        self.last: dict[str, Any] | None = None
+        self.problem = ""
+        self.curve: list[float] = []
+
+    def blocks(self, data: bytes) -> None:
+        """Takes the mission's documents and the depths."""
+        for block in read_blocks(data):
+            if block.topic.name == "mission" and block.topic.kind is Kind.DOCUMENTS:
+                self.last = json.loads(block.payload)[-1]
+                if self.last is not None and self.last["phase"] not in ("running", "paused"):
+                    self.on_end()
+            elif block.topic.name == "control":
+                for time, record in read_rows(block):
+                    if isinstance(record, Control) and time >= len(self.curve) * CURVE_PERIOD:
+                        self.curve.append(round(record.depth, 2))
+
+    def event(self, event: str, **more: Any) -> None:
+        """Notes what was refused."""
+        if event == "ended" and more.get("problem"):
+            self.problem = str(more["problem"])

@@ -1,0 +1,420 @@
+"""The document of a mission: TOML, read strictly, with all its problems at once by the path of their step.
+
+A step's path counts from 1 along the branches: "3.1.2" is the second step of the first step of the third.
+docs/reference/missions.md lists everything that a document may contain.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, Literal
+
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.missions import (
+    LEVELS_MAX,
+    NO_LIMITS,
+    NODES_MAX,
+    BatteryVolts,
+    MissionAlone,
+    MissionDepth,
+    MissionLimits,
+    MissionTime,
+    PauseSeconds,
+    UnwatchedSeconds,
+)
+from robot_runtime.contract.parsing import TOP, parse, read_value
+from robot_runtime.contract.problems import DocumentEntry, EntryProblem
+from robot_runtime.contract.toml_text import TomlError, read_toml
+from robot_runtime.missions import leaves  # noqa: F401 - declares them
+from robot_runtime.missions.branches import (
+    AllBranch,
+    CallBranch,
+    InvertBranch,
+    RaceBranch,
+    RepeatBranch,
+    TimeoutBranch,
+    UntilBranch,
+    WhileTrueBranch,
+)
+from robot_runtime.missions.leaf import INSTANT, NODES, Branch, Claim, Leaf, MissionNode
+from robot_runtime.missions.leaves.asking import IsLeaf
+
+NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,59}")
+TITLE_MAX, DESCRIPTION_MAX = 100, 2000
+_ROOT = DocumentEntry("mission", ("mission",))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnLimits:
+    """The limits that a document may tighten; without one the robot's applies."""
+
+    depth: MissionDepth | None = None
+    time: MissionTime | None = None
+    battery: BatteryVolts | None = None
+    unwatched: UnwatchedSeconds | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MissionStep:
+    """A step with those below it; `called` is the name of the mission that it is the first step of."""
+
+    path: tuple[int, ...]
+    node: MissionNode
+    steps: tuple["MissionStep", ...] = ()
+    called: str = ""
+
+    @property
+    def place(self) -> str:
+        """The path as a person reads it; empty for the first step of a document."""
+        return ".".join(map(str, self.path))
+
+    def walk(self) -> Iterator["MissionStep"]:
+        """This step and all below it, in the order of the document."""
+        yield self
+        for step in self.steps:
+            yield from step.walk()
+
+    @property
+    def steers(self) -> frozenset[Claim]:
+        """The parts of the steering that this step or one below it takes."""
+        own = self.node.steers if isinstance(self.node, Leaf) else frozenset()
+        return own.union(*(one.steers for one in self.steps))
+
+    @property
+    def longest(self) -> float:
+        """s that it takes at most."""
+        if isinstance(self.node, Leaf):
+            return self.node.longest
+        below = [one.longest for one in self.steps]
+        match self.node:
+            case UntilBranch(timeout=timeout):
+                return timeout
+            case TimeoutBranch(seconds=seconds):
+                return min(seconds, sum(below))
+            case RepeatBranch(times=times):
+                return times * (sum(below) + INSTANT)
+            case AllBranch() | RaceBranch():
+                return max(below)
+        return sum(below)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissionDocument:
+    """A mission, checked; `limits` are those in force, of the robot, the document and what it calls."""
+
+    name: str
+    title: str
+    description: str
+    limits: MissionLimits
+    root: MissionStep
+    trial: Mapping[str, Any] = field(default_factory=dict)
+    """The water to try it in: entries of a scenario."""
+
+    @property
+    def longest(self) -> float:
+        """s that it takes at most, without pauses."""
+        return self.root.longest
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Head:
+    """The entries of a document without its steps."""
+
+    format: Literal[1]
+    name: str
+    title: str = ""
+    description: str = ""
+    alone: MissionAlone = 0.0
+    pause: PauseSeconds = 60.0
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not NAME.fullmatch(self.name):
+            words = f"is {self.name!r}; it is 1 to 60 small letters, digits, - and _, as it names a file"
+            problems.append(TOP.field("name").problem(words))
+        if len(self.title) > TITLE_MAX:
+            problems.append(TOP.field("title").problem(f"has more than {TITLE_MAX} characters"))
+        if len(self.description) > DESCRIPTION_MAX:
+            problems.append(TOP.field("description").problem(f"has more than {DESCRIPTION_MAX} characters"))
+        if problems:
+            raise ConfigError(*problems)
+
+
+def read_mission(
+    text: str, library: Mapping[str, str] | None = None, limits: MissionLimits = NO_LIMITS
+) -> MissionDocument:
+    """The mission that a TOML text says. Raises ConfigError with all problems.
+
+    `library` has the texts of the missions that it may call, by name; `limits` are the robot's.
+    """
+    return _Reading(library or {}, limits).read(text)
+
+
+def called_by(text: str, library: Mapping[str, str]) -> dict[str, str]:
+    """The texts of the missions that this one calls, and those that they call, as far as there are any."""
+    found: dict[str, str] = {}
+    waiting = [text]
+    while waiting:
+        try:
+            table = read_toml(waiting.pop())
+        except TomlError:
+            continue
+        for name in _calls(table.get("mission"), 0):
+            if name in library and name not in found:
+                found[name] = library[name]
+                waiting.append(library[name])
+    return found
+
+
+def _calls(step: Any, level: int) -> Iterator[str]:
+    if not isinstance(step, dict) or level > LEVELS_MAX:
+        return
+    if step.get("do") == CallBranch.do and isinstance(step.get("mission"), str):
+        yield step["mission"]
+    steps = step.get("steps")
+    for one in steps if isinstance(steps, list) else ():
+        yield from _calls(one, level + 1)
+
+
+class _Reading:
+    """The reading of one document and of those that it calls; it counts nodes across all of them."""
+
+    def __init__(self, library: Mapping[str, str], limits: MissionLimits) -> None:
+        self._library = library
+        self._limits = limits
+        self._problems: list[str | EntryProblem] = []
+        self._nodes = 0
+        self._calling: list[str] = []
+
+    def read(self, text: str) -> MissionDocument:
+        """The document. Raises ConfigError with all problems."""
+        try:
+            table = read_toml(text)
+        except TomlError as problem:
+            raise ConfigError(f"the mission {problem}") from problem
+        head = self._read_head(table)
+        self._calling = [head.name] if head else []
+        root = self._read_root(table, ())
+        trial = table.get("trial", {})
+        if not isinstance(trial, dict):
+            self._problems.append(TOP.field("trial").problem("must be a table"))
+        if self._nodes > NODES_MAX:
+            words = f"has more than {NODES_MAX} steps, with those of the missions that it calls"
+            self._problems.append(_ROOT.problem(words))
+        if root is not None and not self._problems:
+            self._check_limits(root)
+        if head is None or root is None or self._problems:
+            raise ConfigError(*self._problems)
+        return MissionDocument(
+            name=head.name,
+            title=head.title or head.name,
+            description=head.description,
+            limits=self._limits,
+            root=root,
+            trial=trial,
+        )
+
+    def _read_head(self, table: Mapping[str, Any]) -> _Head | None:
+        """The head, whose limits count from now on."""
+        known = {name: value for name, value in table.items() if name not in ("limits", "mission", "trial")}
+        head, limits = None, OwnLimits()
+        try:
+            head = parse(_Head, known)
+            self._tighten({"alone": head.alone, "pause": head.pause})
+        except ConfigError as problem:
+            self._problems += [_name_all(one) for one in problem.problems]
+        try:
+            limits = read_value(OwnLimits, table.get("limits", {}), TOP.field("limits"))
+        except ConfigError as problem:
+            self._problems += problem.problems
+        self._tighten(asdict(limits))
+        return head
+
+    def _tighten(self, own: Mapping[str, float | None]) -> None:
+        """Applies a document's limits; one that is looser than the robot's is a problem."""
+        values = asdict(self._limits)
+        for name, value in own.items():
+            if value is None:
+                continue
+            entry = TOP.field(name) if name in ("alone", "pause") else TOP.field("limits").key(name)
+            robot, unit = values[name], {"depth": "m", "battery": "V"}.get(name, "s")
+            looser = value < robot if name == "battery" else value > robot
+            if name == "unwatched":
+                looser = robot > 0 and not 0 < value <= robot
+            if looser and not self._is_called:
+                words = f"is {value:g} {unit}; robot.toml allows {robot:g} {unit} ([missions] {name})"
+                self._problems.append(entry.problem(words))
+            elif not looser and (name == "unwatched" and value == 0) is False:
+                values[name] = value
+        self._limits = MissionLimits(**values)
+
+    @property
+    def _is_called(self) -> bool:
+        return len(self._calling) > 1
+
+    def _read_root(self, table: Mapping[str, Any], path: tuple[int, ...]) -> MissionStep | None:
+        if "mission" not in table:
+            self._problems.append(_ROOT.problem("is missing: the table of the first step"))
+            return None
+        return self._read_step(table["mission"], path, _ROOT, 1)
+
+    def _read_step(
+        self, table: Any, path: tuple[int, ...], where: DocumentEntry, level: int
+    ) -> MissionStep | None:
+        self._nodes += 1
+        if self._nodes > NODES_MAX:
+            return None
+        if not isinstance(table, dict):
+            self._problems.append(where.problem("must be a table"))
+            return None
+        do = table.get("do")
+        cls = NODES.get(do) if isinstance(do, str) else None
+        if cls is None:
+            what = "is missing" if do is None else f"is {_short(do)}"
+            known = ", ".join(NODES)
+            self._problems.append(where.field("do").problem(f"{what}; it must be one of {known}"))
+            return None
+        rest = {name: value for name, value in table.items() if name not in ("do", "steps")}
+        node: MissionNode | None = None
+        try:
+            node = parse(cls, rest, where)
+        except ConfigError as problem:
+            self._problems += problem.problems
+        steps = self._read_steps(cls, table, path, where, level)
+        if isinstance(node, CallBranch):
+            steps = self._read_called(node.mission, path, where, level)
+        if node is None or steps is None:
+            return None
+        step = MissionStep(path, node, steps)
+        self._check_step(step, where)
+        return step
+
+    def _read_steps(
+        self,
+        cls: type[MissionNode],
+        table: Mapping[str, Any],
+        path: tuple[int, ...],
+        where: DocumentEntry,
+        level: int,
+    ) -> tuple[MissionStep, ...] | None:
+        """The steps below; None where they cannot be used."""
+        if not issubclass(cls, Branch) or cls is CallBranch:
+            if "steps" in table:
+                self._problems.append(where.field("steps").problem(f"is not known here: {cls.do} has none"))
+            return ()
+        steps = table.get("steps", [])
+        entry = where.field("steps")
+        if not isinstance(steps, list):
+            self._problems.append(entry.problem("must be a list of steps"))
+            return None
+        if level > LEVELS_MAX:
+            self._problems.append(entry.problem(f"is deeper than {LEVELS_MAX} levels"))
+            return None
+        if len(steps) < cls.least or (cls.most is not None and len(steps) > cls.most):
+            span = f"{cls.least}" if cls.most == cls.least else f"{cls.least} at least"
+            self._problems.append(entry.problem(f"has {len(steps)}; {cls.do} needs {span}"))
+            return None
+        read = []
+        for index, one in enumerate(steps):
+            below = (*path, index + 1)
+            name = f"step {'.'.join(map(str, below))}"
+            read.append(self._read_step(one, below, DocumentEntry(name, (*entry.path, index)), level + 1))
+            if self._nodes > NODES_MAX:
+                return None
+        found = tuple(one for one in read if one is not None)
+        return found if len(found) == len(steps) else None
+
+    def _read_called(
+        self, name: str, path: tuple[int, ...], where: DocumentEntry, level: int
+    ) -> tuple[MissionStep, ...] | None:
+        entry = where.field("mission")
+        if name in self._calling:
+            way = " → ".join([*self._calling, name])
+            self._problems.append(entry.problem(f"is {name!r}, which would call itself: {way}"))
+            return None
+        if name not in self._library:
+            known = ", ".join(sorted(self._library)) or "none"
+            self._problems.append(entry.problem(f"is {_short(name)}; the library has {known}"))
+            return None
+        self._calling.append(name)
+        before, self._problems = self._problems, []
+        try:
+            table = read_toml(self._library[name])
+            self._read_head(table)
+            step = None
+            if "mission" in table:
+                step = self._read_step(table["mission"], (*path, 1), DocumentEntry("mission"), level + 1)
+            else:
+                self._problems.append("it has no steps")
+        except TomlError as problem:
+            step = None
+            self._problems.append(f"it {problem}")
+        finally:
+            self._calling.pop()
+        before += [entry.problem(f"is {name!r}: {text}") for text in ConfigError(*self._problems).texts]
+        self._problems = before
+        return None if step is None else (MissionStep(step.path, step.node, step.steps, name),)
+
+    def _check_step(self, step: MissionStep, where: DocumentEntry) -> None:
+        match step.node:
+            case AllBranch() | RaceBranch():
+                self._check_claims(step, where)
+            case WhileTrueBranch():
+                count = sum(map(is_condition, step.steps))
+                leading = sum(map(is_condition, step.steps[:count]))
+                if not 0 < leading < len(step.steps):
+                    self._problems.append(
+                        where.sentence("needs leading conditions (is), and a step after them")
+                    )
+            case UntilBranch() if not is_condition(step.steps[0]):
+                self._problems.append(where.sentence("its first step must be a condition (is)"))
+
+    def _check_claims(self, step: MissionStep, where: DocumentEntry) -> None:
+        claimed: dict[Claim, str] = {}
+        for one in step.steps:
+            for claim in sorted(one.steers):
+                if claim in claimed:
+                    words = (
+                        f"steps {claimed[claim]} and {one.place} would both steer the {claim}, side by side"
+                    )
+                    self._problems.append(where.sentence(words))
+                claimed.setdefault(claim, one.place)
+
+    def _check_limits(self, root: MissionStep) -> None:
+        limits = self._limits
+        for step in root.walk():
+            if isinstance(step.node, Leaf) and step.node.deepest > limits.depth:
+                words = f"goes to {step.node.deepest:g} m, and the depth is limited to {limits.depth:g} m"
+                name = f"step {step.place}" if step.path else "mission"
+                self._problems.append(DocumentEntry(name, _entry_path(step.path)).problem(words))
+        if root.longest > limits.time:
+            words = (
+                f"may take {root.longest:.0f} s, and limits.time is {limits.time:g} s; "
+                "shorten its timeouts and repetitions"
+            )
+            self._problems.append(_ROOT.problem(words))
+
+
+def is_condition(step: MissionStep) -> bool:
+    """True for a step that only asks: `is`, or an `invert` of one."""
+    if isinstance(step.node, InvertBranch):
+        return is_condition(step.steps[0])
+    return isinstance(step.node, IsLeaf)
+
+
+def _entry_path(path: tuple[int, ...]) -> tuple[str | int, ...]:
+    return ("mission", *(part for one in path for part in ("steps", one - 1)))
+
+
+def _name_all(problem: EntryProblem) -> EntryProblem:
+    """Names the tables of the steps, too, among what is known."""
+    if "known are" not in problem.words:
+        return problem
+    known = ", ".join([one.name for one in fields(_Head)] + ["limits", "mission", "trial"])
+    words = f"is not known here; known are {known}" if len(problem.path) == 1 else problem.words
+    return EntryProblem(problem.path, problem.text.replace(problem.words, words), words)
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:60]}…"

@@ -1,0 +1,291 @@
+"""One run of a mission: its clock, what it overrides and sets, and its state as documents."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import inf
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import (
+    Event,
+    Mission,
+    MissionStepState,
+    ParameterValue,
+)
+from robot_runtime.contract.missions import MissionPhase, MissionStatus
+from robot_runtime.control.loop import LoopOverride
+from robot_runtime.control.node import Course
+from robot_runtime.missions.branches import AllBranch, RaceBranch, RepeatBranch, TimeoutBranch, UntilBranch
+from robot_runtime.missions.document import MissionDocument, MissionStep
+from robot_runtime.missions.leaf import Leaf
+from robot_runtime.missions.senses import MissionSenses
+from robot_runtime.missions.tree import MissionTree
+from robot_runtime.parameters.registry import Registry
+
+COURSE_LEASE = 0.3
+"""s after which a course expires."""
+
+
+@dataclass(slots=True)
+class _Record:
+    """The status of a step, the time (s, mission's clock) since then, and the time that it took."""
+
+    status: MissionStatus = "waiting"
+    began: float = 0.0
+    took: float = 0.0
+
+
+class MissionRun:
+    """A mission that has begun, as the leaves see it; the control loop calls `tick`."""
+
+    def __init__(
+        self,
+        document: MissionDocument,
+        text: str,
+        number: int,
+        clock: Clock,
+        senses: MissionSenses,
+        parameters: Registry,
+        on_event: Callable[[Event], None],
+    ) -> None:
+        self.document = document
+        self.surfaced = False
+        self.elapsed = 0.0
+        """s that it has run, without its pauses."""
+        self.paused = 0.0
+        """s that it has been paused."""
+        self.deepest = senses.depth
+        self._text = text
+        self._number = number
+        self._clock = clock
+        self._senses = senses
+        self._parameters = parameters
+        self._on_event = on_event
+        self._before: dict[str, tuple[ParameterValue, ParameterValue]] = {}
+        limits = senses.control.depth.limits
+        self._depth = min(max(senses.depth, limits.minimum), limits.maximum)
+        self._heading: float | None = None
+        self._course = Course(-inf)
+        self._sequence = 0
+        self._progress = 0.0
+        self._records = {step.path: _Record() for step in document.root.walk()}
+        self._tree = MissionTree(document.root, self)
+
+    @property
+    def now(self) -> float:
+        """s since it began, without its pauses."""
+        return self.elapsed
+
+    @property
+    def depth(self) -> float:
+        """m."""
+        return self._senses.depth
+
+    @property
+    def heading(self) -> float:
+        """rad."""
+        return self._senses.heading
+
+    @property
+    def battery(self) -> float | None:
+        """V; None where it is not measured."""
+        return self._senses.battery
+
+    @property
+    def light(self) -> bool:
+        """True while a detector sees the light."""
+        return self._senses.light
+
+    @property
+    def depth_held(self) -> float:
+        """m."""
+        return self._depth
+
+    @property
+    def heading_held(self) -> float | None:
+        """rad; None where none is held."""
+        return self._heading
+
+    def sees(self, what: str) -> bool:
+        """True if it is seen now."""
+        return self._senses.sees(what)
+
+    def hold_depth(self, depth: float) -> None:
+        """Holds this depth, m, from now on."""
+        self._depth = depth
+
+    def hold_heading(self, heading: float | None) -> None:
+        """Holds this heading, rad, or none, from now on."""
+        self._heading = heading
+
+    def swim(self, x: float, yaw: float) -> None:
+        """Sets the course until it expires."""
+        self._course = Course(self._clock.now() + COURSE_LEASE, x, yaw)
+
+    def swim_to_light(self) -> None:
+        """Sets the course to the light until it expires."""
+        self._course = Course(self._clock.now() + COURSE_LEASE, by="beacons")
+
+    def set_parameter(self, name: str, value: ParameterValue) -> None:
+        """Sets a parameter and notes its value before. Raises RefusedError."""
+        before = self._parameters.values().get(name, value)
+        self._parameters.apply({name: value})
+        first, _ = self._before.get(name, (before, value))
+        self._before[name] = first, self._parameters.values()[name]
+
+    def is_pending(self, name: str) -> bool:
+        """True until the board confirms a parameter."""
+        return self._parameters.is_pending(name)
+
+    def mark(self, text: str) -> None:
+        """Publishes the marker, which the server puts into the session."""
+        self._on_event(Event(time=self._clock.now(), kind="mission_mark", severity="info", text=text))
+
+    def surface(self) -> None:
+        """Ends the mission after this tick."""
+        self.surfaced = True
+
+    def tick(self, seconds: float) -> MissionStatus:
+        """Advances by `seconds`; overrides loops and course. Returns the root's status."""
+        self.elapsed += seconds
+        self._course = Course(self._clock.now() + COURSE_LEASE)
+        status = self._tree.tick()
+        control = self._senses.control
+        control.depth.override = LoopOverride(set_point=self._depth)
+        heading = self._heading
+        control.heading.override = None if heading is None else LoopOverride(set_point=heading)
+        control.override_course(self._course)
+        return status
+
+    def rest(self) -> None:
+        """Holds the depth and stays, while it is paused in automatic."""
+        control = self._senses.control
+        control.depth.override = LoopOverride(set_point=self._depth)
+        control.heading.override = None
+        control.override_course(Course(self._clock.now() + COURSE_LEASE))
+
+    def see_depth(self) -> None:
+        """Notes the deepest point."""
+        self.deepest = max(self.deepest, self.depth)
+
+    def skip(self) -> None:
+        """Has the running leaves succeed."""
+        self._tree.skip()
+
+    def resume(self) -> None:
+        """Has the running leaves go on after a pause."""
+        self._tree.resume()
+
+    def end(self) -> dict[str, ParameterValue]:
+        """Stops the tree, takes back the overrides, and puts the parameters back.
+
+        Returns those that could not be put back with the values they should have. A parameter that somebody
+        else has changed meanwhile stays.
+        """
+        self._update()
+        self._tree.stop()
+        for record in self._records.values():
+            if record.status == "running":
+                record.status, record.took = "stopped", self.elapsed - record.began
+        self.release()
+        there = self._parameters.values()
+        back = {name: first for name, (first, own) in self._before.items() if there[name] == own}
+        problems = self._parameters.apply(back, partly=True)
+        return {name: back[name] for name in problems}
+
+    def release(self) -> None:
+        """Takes back the overrides."""
+        control = self._senses.control
+        control.depth.override = control.heading.override = None
+        control.override_course(None)
+
+    def describe(self, phase: MissionPhase, text: str, *, whole: bool) -> Mission:
+        """The mission as it stands; `whole`: with its text."""
+        going = phase in ("running", "paused")
+        if going:
+            self._update()
+        remaining = self._remaining(self.document.root) if going else 0.0
+        if going:
+            self._progress = round(1.0 - remaining / self.document.longest, 4)
+        elif phase == "succeeded":
+            self._progress = 1.0
+        sequence, self._sequence = self._sequence, self._sequence + 1
+        return Mission(
+            time=self._clock.now(),
+            number=self._number,
+            sequence=sequence,
+            name=self.document.name,
+            title=self.document.title,
+            phase=phase,
+            text=text,
+            elapsed=round(self.elapsed, 3),
+            remaining=round(remaining, 1),
+            progress=self._progress,
+            paused=round(self.paused, 3),
+            pause=self.document.limits.pause,
+            deepest=round(self.deepest, 3),
+            steps=list(self._states()),
+            document=self._text if whole else "",
+        )
+
+    @property
+    def failure(self) -> str:
+        """The reason why it failed: the step that says so itself, with its words."""
+        self._update()
+        for step in reversed(list(self.document.root.walk())):
+            text = self._tree.text(step.path)
+            if self._records[step.path].status == "failed" and text:
+                return f"Step {step.place or '1'}, {step.node.words.lower()}: {text}"
+        return "A step failed."
+
+    @property
+    def statuses(self) -> tuple[object, ...]:
+        """The statuses of all steps, which change where the next document is due."""
+        self._update()
+        return tuple((one.status, self._tree.rounds(path)) for path, one in self._records.items())
+
+    def _update(self) -> None:
+        for path, record in self._records.items():
+            status = self._tree.status(path)
+            if status == "waiting" and record.status in ("running", "stopped"):
+                status = "stopped"
+            if status == record.status:
+                continue
+            if record.status != "running":
+                record.began = self.elapsed
+            if status != "running":
+                record.took = self.elapsed - record.began
+            record.status = status
+
+    def _states(self) -> Iterator[MissionStepState]:
+        for step in self.document.root.walk():
+            record = self._records[step.path]
+            elapsed = self.elapsed - record.began if record.status == "running" else record.took
+            yield MissionStepState(
+                path=step.place,
+                do=step.node.do,
+                words=step.node.words,
+                note=step.node.note,
+                status=record.status,
+                elapsed=round(elapsed, 3),
+                longest=round(step.longest, 1),
+                rounds=self._tree.rounds(step.path),
+                text=self._tree.text(step.path),
+            )
+
+    def _remaining(self, step: MissionStep) -> float:
+        """s that a step takes at most from now on."""
+        record = self._records[step.path]
+        if record.status == "waiting":
+            return step.longest
+        if record.status != "running":
+            return 0.0
+        own = max(step.longest - (self.elapsed - record.began), 0.0)
+        if isinstance(step.node, Leaf | UntilBranch):
+            return own
+        below = [self._remaining(one) for one in step.steps]
+        if isinstance(step.node, AllBranch | RaceBranch):
+            return max(below)
+        if isinstance(step.node, RepeatBranch):
+            rounds = step.node.times - self._tree.rounds(step.path) - 1
+            return rounds * step.longest / step.node.times + sum(below)
+        return min(own, sum(below)) if isinstance(step.node, TimeoutBranch) else sum(below)

@@ -1,0 +1,85 @@
+"""Everything that missions know of the robot: depth, attitude, light, battery and camera."""
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import Detection, Document
+from robot_runtime.contract.packets import Beacon
+from robot_runtime.contract.vision_settings import MARKER, VisionSettings, marker_name
+from robot_runtime.control.fault_detector import FaultDetector
+from robot_runtime.control.node import BEACON_STALE, VISION_STALE, ControlNode
+from robot_runtime.transport.bus import Bus
+from robot_runtime.vision.node import VisionNode
+
+LIGHT = "light"
+"""What `sees` calls the light of the beacon detectors."""
+MEASURED = 1.0
+"""V; a battery that shows less has no divider on the board's input, so that it is not measured."""
+
+
+class MissionSenses:
+    """The newest readings. The bus fills it from any thread."""
+
+    def __init__(
+        self, bus: Bus, clock: Clock, control: ControlNode, detector: FaultDetector, vision: VisionNode
+    ) -> None:
+        self.control = control
+        self._clock = clock
+        self._detector = detector
+        self._vision = vision
+        self._detection: Detection | None = None
+        self._light = (float("-inf"), False)
+        bus.on_row("beacon", self._take_beacon)
+        bus.on_document("detection", self._take_detection)
+
+    @property
+    def depth(self) -> float:
+        """m."""
+        return self.control.depth.measured or 0.0
+
+    @property
+    def heading(self) -> float:
+        """rad."""
+        return self.control.heading.measured or 0.0
+
+    @property
+    def battery(self) -> float | None:
+        """V; None where it is not measured."""
+        status = self._detector.status
+        return status.battery if status is not None and status.battery >= MEASURED else None
+
+    @property
+    def light(self) -> bool:
+        """True while a detector sees the light."""
+        time, seen = self._light
+        return seen and self._clock.now() - time <= BEACON_STALE
+
+    def sees(self, what: str) -> bool:
+        """True if a fresh picture shows this colour or marker, or a detector sees the light."""
+        if what == LIGHT:
+            return self.light
+        seen = self._detection
+        if seen is None or self._clock.now() - seen.taken > VISION_STALE:
+            return False
+        return what == seen.colour or any(marker_name(one.number) == what for one in seen.markers)
+
+    def check_sight(self, what: str) -> str:
+        """The reason why this cannot be seen; empty if it can."""
+        settings: VisionSettings = self._vision.settings
+        if what == LIGHT or what in settings.colours:
+            return ""
+        if not MARKER.fullmatch(what):
+            known = ", ".join([*settings.colours, LIGHT])
+            return f"Nothing is called {what!r}; there are {known}, and markers such as “marker 7”."
+        if settings.markers == "none":
+            return "The camera looks for no markers. Choose their dictionary in the vision settings."
+        numbers = settings.marker_numbers
+        if numbers and what not in map(marker_name, numbers):
+            return f"The camera does not look for {what}. Add it to the markers in the vision settings."
+        return ""
+
+    def _take_beacon(self, _: str, time: float, record: bytes) -> None:
+        seen = Beacon.from_bytes(record)
+        self._light = time, bool(seen.right or seen.left)
+
+    def _take_detection(self, _: str, document: Document) -> None:
+        if isinstance(document, Detection):
+            self._detection = document
