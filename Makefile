@@ -161,7 +161,7 @@ host-firmware:
 
 setup: build/.packages-run .venv/.ready server/page/index.html server/help/index.html firmware
 
-setup-test: build/.packages-test setup
+setup-test: build/.packages-test setup tests/clients/node_modules/.ready
 
 # Two at once would wait for each other's apt.
 build/.packages-test: build/.packages-run
@@ -190,6 +190,11 @@ frontend/node_modules/.ready: frontend/package.json frontend/package-lock.json |
 	@cd frontend && npm ci --no-audit --no-fund --loglevel=error
 	@touch $@
 
+tests/clients/node_modules/.ready: tests/clients/package.json tests/clients/package-lock.json | build/.packages-run
+	@echo "Other people's clients, for tests ..."
+	@cd tests/clients && npm ci --no-audit --no-fund --loglevel=error
+	@touch $@
+
 server/page/index.html: frontend/node_modules/.ready $(PAGE_SOURCES)
 	@echo "The page ..."
 	@cd frontend && npm run --silent build
@@ -209,4 +214,4 @@ all-wheels: build/.packages-packages setup ## the same with the emulated board f
 	@$(PYTHON) -m packages.wheels x86_64 aarch64 i686
 
 clean: ## remove everything that was built
-	rm -rf build dist .venv frontend/node_modules server/page server/help
+	rm -rf build dist .venv frontend/node_modules tests/clients/node_modules server/page server/help

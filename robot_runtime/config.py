@@ -139,6 +139,14 @@ class SessionsConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DoorsConfig:
+    """The doors for other programs, at `/rosbridge` and `/foxglove` of the server; closed unless true."""
+
+    rosbridge: bool = False
+    foxglove: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Config:
     """The whole configuration."""
 
@@ -152,6 +160,7 @@ class Config:
     zenoh: ZenohConfig = ZenohConfig()
     server: ServerConfig = ServerConfig()
     sessions: SessionsConfig = SessionsConfig()
+    doors: DoorsConfig = DoorsConfig()
 
     def __post_init__(self) -> None:
         if self.robot.mode == "hil" and self.link.baud < HIL_BAUD_MIN:

@@ -14,6 +14,7 @@ from server.features.bring_up import routes as bring_up
 from server.features.comm_tests import routes as comm_tests
 from server.features.comparison import routes as compare
 from server.features.doctor import routes as doctor
+from server.features.doors import routes as doors
 from server.features.exports import routes as exports
 from server.features.identification import routes as identification
 from server.features.layouts import routes as layouts
@@ -43,8 +44,9 @@ from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
 
 ROUTES = (
-    *(access, audit, backup, bring_up, comm_tests, compare, control, doctor, exports, identification),
-    *(layouts, live, panels, parameters, robot, scenarios, sessions, simulator, tuning, vision),
+    *(access, audit, backup, bring_up, comm_tests, compare, control, doctor, doors, exports),
+    *(identification, layouts, live, panels, parameters, robot, scenarios, sessions, simulator),
+    *(tuning, vision),
 )
 
 
@@ -95,6 +97,8 @@ def create_app(
     app.add_middleware(AuditMiddleware)
     add_error_handlers(app)
     app.router.routes.extend(_build_routes())
+    for door in doors.open_routes(settings):
+        app.router.routes.extend(door.build())
     app.include_router(make_help_router(HelpPages(settings.help_pages)))
     app.include_router(make_router(Page(settings.page)))
     return app

@@ -20,6 +20,7 @@ from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import import_samples
 from server.features.comparison.worker import ComparisonWorker
 from server.features.doctor.examination import Examination
+from server.features.doors.house import Doors
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
 from server.features.identification.adoption import CraftAdoption
@@ -27,6 +28,7 @@ from server.features.identification.runner import IdentificationRunner
 from server.features.layouts.library import Layouts
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.sync import LeaseSync
+from server.features.operate.performing import CommandDesk
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import Profiles
 from server.features.scenarios.live_run import LiveExecutor
@@ -89,6 +91,8 @@ class Container:
         self._add_tuning()
         self._add_scenarios()
         self._add_identification()
+        self.doors = Doors(settings, self.clock, self.hub)
+        self.commands = CommandDesk(self.changes, settings, self.alarms)
         self.heavy_requests = HeavyRequests()
         self.downloads = DatabaseDownloads(settings.data)
         self.layouts = Layouts(self.store)
@@ -253,6 +257,7 @@ class Container:
             self.recorder.add(block)
             self.monitor.see(block)
             self.tuning.see(block)
+            self.doors.see(block)
             if block.topic.name == "state":
                 self.lease_sync.see_run(self.bridge.run)
                 if self.settings.sessions.record_at_arming:
@@ -293,6 +298,7 @@ class Container:
     def _dismiss(self, device: int, reason: str) -> None:
         self.arbiter.dismiss(device)
         self.hub.dismiss(device, reason)
+        self.doors.dismiss(device, reason)
 
     def _notify_control(self, message: dict[str, Any]) -> None:
         self.lease_sync.see_epoch(message["epoch"])
@@ -315,7 +321,9 @@ class Container:
         while True:
             self.arming.tick()
             health = self.monitor.health()
-            self.hub.notify({"op": "health", "parts": [part.model_dump() for part in health.parts]})
+            parts = [part.model_dump() for part in health.parts]
+            self.hub.notify({"op": "health", "parts": parts})
+            self.doors.see_health(parts)
             await asyncio.sleep(HEALTH_SECONDS)
 
     async def _beat(self) -> None:

@@ -14,7 +14,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from robot_runtime.clock import Clock
 from server.http.dependencies import find_service
-from server.http.security import SAFE_METHODS
+from server.http.security import DOORS, SAFE_METHODS
 from server.http.sign_in.confirmation import UNCONFIRMED
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.platform.audit_file import AuditEntry, Outcome, append_entries, clean
@@ -163,7 +163,8 @@ class AuditMiddleware:
             if scope["type"] == "http":
                 request.record(audit)
             elif request.status == SOCKET_REFUSED:
-                audit.record(caller_of(scope), address_of(scope), "Open the live socket", "", "refused")
+                action = "Open a door" if scope["path"] in DOORS else "Open the live socket"
+                audit.record(caller_of(scope), address_of(scope), action, "", "refused")
 
 
 class _Request:

@@ -16,6 +16,8 @@ SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 POLICY_VIOLATION = 1008
 """WebSocket close code for a client that breaks the rules."""
 BODY_BYTES_MAX = 65_536
+DOORS = frozenset({"/rosbridge", "/foxglove"})
+"""Sockets of other programs, which pages of any origin may open: a token counts there, and a cookie never."""
 FRAMED = "/api/panels/frame"
 """The frame of own panels, with a stricter policy of its own (panels/frame.py)."""
 HELP = "/help/"
@@ -80,6 +82,8 @@ class SecurityMiddleware:
                 f"The address {named[:100]} is not one of this server's. Use one of "
                 f"{', '.join(sorted(self._hosts))}, or add it to server.allowed_hosts in robot.toml."
             )
+        if scope["path"] in DOORS:
+            return None
         unsafe = scope["type"] == "websocket" or scope["method"] not in SAFE_METHODS
         if not origins:
             # Browsers send Origin with all of these; programs send neither this nor Sec-Fetch-Site.

@@ -13,6 +13,7 @@ from typing import Literal
 
 from robot_runtime.config import (
     ADOPTED_CRAFT,
+    DoorsConfig,
     HilConfig,
     LinkConfig,
     SessionsConfig,
@@ -121,6 +122,7 @@ class Settings:
     hil: HilConfig = field(default_factory=HilConfig)
     sessions: SessionsConfig = field(default_factory=SessionsConfig)
     zenoh: ZenohConfig = field(default_factory=ZenohConfig)
+    doors: DoorsConfig = field(default_factory=DoorsConfig)
     host: str = "127.0.0.1"
     port: int = 8000
     tls: bool = False
@@ -225,6 +227,7 @@ def read_settings(
         hil=loaded.hil,
         sessions=loaded.sessions,
         zenoh=loaded.zenoh,
+        doors=loaded.doors,
         craft=None if craft == folder.craft else craft,
         host=chosen_host,
         port=chosen_port,

@@ -14,7 +14,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.topics import Kind
+from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.transport.blocks import Block
 from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.identity import SHELL, Identity
@@ -178,6 +178,7 @@ class Hub:
         """The newest picture of each subscribed topic, with its number."""
         self._picture_number = 0
         self._watched: frozenset[str] = frozenset()
+        self._required: frozenset[str] = frozenset()
         self._clock = clock
         self._audience = audience
         self._clients: dict[Client, asyncio.Task[None]] = {}
@@ -232,6 +233,12 @@ class Hub:
         client.watching = topics
         self._count_audience()
         client.wake()
+
+    def require_pictures(self, topics: frozenset[str]) -> None:
+        """Have these pictures sent by the runtime, for others than the pages; other topics are ignored."""
+        pictures = {topic.name for topic in TOPICS if topic.kind is Kind.PICTURE}
+        self._required = topics & pictures
+        self._count_audience()
 
     def dismiss(self, device: int, reason: str) -> None:
         """End all connections of this device, with a reason."""
@@ -298,7 +305,7 @@ class Hub:
         self._count_audience()
 
     def _count_audience(self) -> None:
-        topics = frozenset[str]().union(*(client.watching for client in self._clients))
+        topics = self._required.union(*(client.watching for client in self._clients))
         if topics == self._watched:
             return
         self._watched = topics

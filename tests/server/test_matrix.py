@@ -61,6 +61,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/audit"): "operator",
     ("GET", "/api/audit/csv"): "operator",
     ("GET", "/api/control"): "viewer",
+    ("GET", "/api/doors"): "viewer",
     ("POST", "/api/control/take"): "operator",
     ("POST", "/api/control/release"): "operator",
     ("GET", "/api/alive"): "anyone",

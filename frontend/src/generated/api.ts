@@ -677,6 +677,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/doors": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Return the doors for other programs, and who is connected
+         * @description Return the doors for other programs, and who is connected.
+         */
+        get: operations["listDoors"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/exports": {
         parameters: {
             query?: never;
@@ -3307,6 +3327,61 @@ export interface components {
         DocumentText: {
             /** Text */
             text: string;
+        };
+        /**
+         * DoorClientDetails
+         * @description A program that is connected.
+         */
+        DoorClientDetails: {
+            /** Address */
+            address: string;
+            /** In Control */
+            in_control: boolean;
+            /**
+             * Name
+             * @description of its token
+             */
+            name: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
+            /**
+             * Sent
+             * @description messages so far
+             */
+            sent: number;
+            /**
+             * Since
+             * @description s, steady clock
+             */
+            since: number;
+            /**
+             * Topics
+             * @description that it subscribes to
+             */
+            topics: string[];
+        };
+        /**
+         * DoorDetails
+         * @description A door for other programs.
+         */
+        DoorDetails: {
+            /** Clients */
+            clients: components["schemas"]["DoorClientDetails"][];
+            /**
+             * Name
+             * @enum {string}
+             */
+            name: "rosbridge" | "foxglove";
+            /**
+             * Open
+             * @description `[doors]` in robot.toml says so
+             */
+            open: boolean;
+            /** Path */
+            path: string;
         };
         /**
          * DriveCounts
@@ -7669,6 +7744,44 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listDoors: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DoorDetails"][];
                 };
             };
             /** @description Something that the server needs does not work */

@@ -2,7 +2,7 @@
 
 import asyncio
 import json
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from math import isfinite
 from time import time
 from typing import Annotated, Any
@@ -30,10 +30,10 @@ from server.platform.audit_file import Outcome
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import Client, EvictedError, Hub
+from server.stream.socket_ends import close_with_reason, end_after
 
 INVALID_MAX = 20
 """Invalid messages in a row after which the socket is closed."""
-CLOSE_SECONDS = 1.0
 WATCHABLE = frozenset({"picture", "observer", "mask", "balanced"})
 """Topics of pictures that a page can watch."""
 
@@ -180,27 +180,11 @@ async def live(
         with arbiter.page(caller) as owner:
             listen = _LiveConnection(socket, owner, hub, arbiter, bridge, audit).listen
             serving = hub.serve(send, greeting(owner), listen, caller)
-            await _end_after(access.devices.count_seconds(caller.device), serving)
+            await end_after(access.devices.count_seconds(caller.device), serving)
     except WebSocketDisconnect:
         return
     except EvictedError as reason:
-        # A client that does not read does not read the reason either; the kernel then ends the connection.
-        try:
-            async with asyncio.timeout(CLOSE_SECONDS):
-                await socket.close(reason.code, str(reason))
-        except (TimeoutError, WebSocketDisconnect, RuntimeError):
-            return
-
-
-async def _end_after(seconds: float | None, serving: Awaitable[None]) -> None:
-    """Serve until the client leaves, or its token ends: after these seconds, which raises EvictedError."""
-    try:
-        async with asyncio.timeout(seconds) as limit:
-            await serving
-    except TimeoutError:
-        if not limit.expired():
-            raise
-        raise EvictedError("This token has ended.", POLICY_VIOLATION) from None
+        await close_with_reason(socket, reason)
 
 
 @router.operation("GET /api/past", Need.VIEWER, media_type="application/octet-stream", tags=["live"])

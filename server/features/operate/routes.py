@@ -5,27 +5,18 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-from robot_runtime.contract.commands import (
-    AcknowledgeCommand,
-    ArmCommand,
-    RobotCommand,
-    http_commands,
-    is_required,
-)
+from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
 from robot_runtime.contract.documents import State
-from robot_runtime.control.alarms import Alarms
-from robot_runtime.errors import RefusedError
 from robot_runtime.link.dissection import Dissection
-from server.features.parameters.changes import COMMAND_ERRORS, Changes
+from server.features.operate.performing import CommandDesk
+from server.features.parameters.changes import COMMAND_ERRORS
 from server.features.parameters.schemas import Restored
 from server.health.monitor import Health, HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
-from server.platform.disk_space import check_room
 from server.platform.errors import UnavailableError
-from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 router = Operations(prefix="/api")
@@ -102,21 +93,8 @@ def _add_command(cls: type[RobotCommand], need: Need) -> None:
     optional = not any(map(is_required, fields(cls)))
     answer = Restored if cls.policy.tunes else None
 
-    async def perform(
-        changes: Provided[Changes],
-        settings: Provided[Settings],
-        alarms: Provided[Alarms],
-        caller: Caller,
-        command: Any,
-    ) -> Restored | None:
-        request: RobotCommand = cls() if command is None else command
-        if isinstance(request, ArmCommand):
-            if request.alone:
-                raise RefusedError("Only a scenario may let the robot go on without the server.")
-            check_room(settings.data)
-        elif isinstance(request, AcknowledgeCommand):
-            alarms.acknowledge()
-        restored = await changes.command(caller.name, request)
+    async def perform(desk: Provided[CommandDesk], caller: Caller, command: Any) -> Restored | None:
+        restored = await desk.perform(caller.name, cls() if command is None else command)
         return restored if answer else None
 
     # FastAPI takes name, texts and schemas of the operation from the function.

@@ -83,6 +83,17 @@ class Access:
             raise SignInEndedError(NO_PAGE_SECRET)
         return self._see(device)
 
+    def identify_program(self, connection: HTTPConnection) -> Identity | None:
+        """The identity by a token alone, in the header or the query. Raises SignInEndedError."""
+        header = connection.headers.get("authorization")
+        if header is not None:
+            return self.identify(connection)
+        return self.identify_token(connection.query_params.get("token", ""))
+
+    def identify_token(self, token: str) -> Identity | None:
+        """The identity of a program's token. Raises SignInEndedError where it counts no longer."""
+        return self._find_bearer(token)
+
     def refresh(self, identity: Identity | None) -> Identity | None:
         """The caller's identity as it is now, perhaps in another role; None where access has ended."""
         if identity is None or identity == SHELL:

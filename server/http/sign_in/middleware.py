@@ -6,7 +6,7 @@ from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.http.dependencies import find_service
-from server.http.security import SAFE_METHODS, refuse
+from server.http.security import DOORS, SAFE_METHODS, refuse
 from server.http.sign_in.access import PAGE_HEADER, Access
 from server.http.sign_in.devices import SignInEndedError
 from server.http.sign_in.identity import IDENTITY, SIGN_IN_ENDED, Identity
@@ -37,7 +37,11 @@ class SignInMiddleware:
         connection = HTTPConnection(scope)
         nobody = NOBODY
         try:
-            identity = find_service(connection, Access).identify(connection, lambda: _is_link(connection))
+            access = find_service(connection, Access)
+            if scope["path"] in DOORS:
+                identity = access.identify_program(connection)
+            else:
+                identity = access.identify(connection, lambda: _is_link(connection))
         except SignInEndedError as problem:
             identity, nobody = None, str(problem)
             scope[SIGN_IN_ENDED] = nobody

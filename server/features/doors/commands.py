@@ -1,0 +1,160 @@
+"""Commands of programs to the robot, with the checks of the HTTP interface: role, control, fields, audit."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.commands import RobotCommand, http_commands
+from robot_runtime.errors import RefusedError
+from server.features.doors.ros_axes import stick_axes
+from server.features.lease.arbiter import ControlArbiter
+from server.features.lease.clients import ControlClient
+from server.features.lease.driving import DriveCommand
+from server.features.operate.performing import CommandDesk
+from server.http.audit import AuditLog
+from server.http.sign_in.access import Access
+from server.http.sign_in.policy import Need, refusal
+from server.platform.audit_file import Outcome
+from server.platform.errors import ApiError, ForbiddenError
+from server.platform.store import StoreError
+from server.stream.bridge import Bridge, RuntimeSilentError
+
+COMMANDS: dict[str, type[RobotCommand]] = {cls.policy.name: cls for cls in http_commands()}
+TAKE, RELEASE, STOP = "take_control", "release_control", "stop"
+REFUSALS = (RefusedError, ApiError, StoreError)
+
+
+class InvalidCallError(ApiError):
+    """The call is not valid"""
+
+    status = 422
+
+
+class DoorCommands:
+    """Commands of a door's clients; `door` is its path, for the audit log."""
+
+    def __init__(
+        self,
+        door: str,
+        clock: Clock,
+        access: Access,
+        desk: CommandDesk,
+        bridge: Bridge,
+        arbiter: ControlArbiter,
+        audit: AuditLog,
+    ) -> None:
+        self._door = door
+        self._clock = clock
+        self._access = access
+        self._desk = desk
+        self._bridge = bridge
+        self._arbiter = arbiter
+        self._audit = audit
+
+    async def perform(self, pilot: "DoorPilot", name: str, fields: Mapping[str, Any]) -> str:
+        """Perform a command, or take or release control; returns a sentence for the program.
+
+        Raises RefusedError, ApiError, StoreError, each with a text for a person.
+        """
+        action = {STOP: "STOP", TAKE: "Take control", RELEASE: "Release control"}.get(name, name)
+        try:
+            text = await self._perform(pilot, name, fields)
+        except REFUSALS as problem:
+            silent = isinstance(problem, RuntimeSilentError | StoreError)
+            self._record(pilot, action, str(problem), "failed" if silent else "refused")
+            raise
+        self._record(pilot, action, "" if not fields else str(dict(fields)), "done", name)
+        return text
+
+    async def set_parameters(self, pilot: "DoorPilot", values: Mapping[str, Any]) -> str:
+        """Set parameters of the robot by their names. Raises as `perform`."""
+        return await self.perform(pilot, "parameters", {"values": dict(values)})
+
+    def drive(self, pilot: "DoorPilot", linear: list[float], angular: list[float]) -> None:
+        """Pass a Twist on as the position of the sticks. Raises ForbiddenError, NotInControlError."""
+        try:
+            self._require(pilot, Need.CONTROL)
+        except ApiError as problem:
+            self._record(pilot, "Message drive", str(problem), "refused")
+            raise
+        epoch = self._arbiter.lease.epoch
+        if pilot.driving != epoch:
+            pilot.driving = epoch
+            self._record(pilot, "Drive", "", "done")
+        pilot.sequence += 1
+        command = DriveCommand(
+            lease=epoch,
+            sequence=pilot.sequence,
+            taken=self._clock.now(),
+            axes=stick_axes(linear, angular),
+        )
+        self._arbiter.drive(pilot.owner, command)
+
+    def note_refusal(self, pilot: "DoorPilot", action: str, why: str) -> None:
+        """Write into the audit log that something was refused."""
+        self._record(pilot, action, why, "refused")
+
+    async def _perform(self, pilot: "DoorPilot", name: str, fields: Mapping[str, Any]) -> str:
+        if name == STOP:
+            await self._bridge.command(STOP, {})
+            return "The robot is disarmed."
+        if name == TAKE:
+            over = fields.get("over", False)
+            if not isinstance(over, bool) or fields.keys() - {"over"}:
+                raise InvalidCallError("take_control has one field, over: true takes control from others.")
+            self._require(pilot, Need.OPERATOR)
+            self._arbiter.take(pilot.owner, over=over)
+            return "You have control."
+        if name == RELEASE:
+            self._arbiter.release(pilot.owner)
+            return "You do not have control."
+        cls = COMMANDS.get(name)
+        if cls is None or cls.policy.need is None:
+            raise InvalidCallError(f"There is no command {name[:80]!r}; the manual lists them.")
+        self._require(pilot, cls.policy.need)
+        await self._desk.perform(pilot.owner.identity.name, read_command(cls, fields))
+        return f"Done: {cls.policy.words or cls.policy.name}."
+
+    def _require(self, pilot: "DoorPilot", need: Need) -> None:
+        reason = refusal(self._access.refresh(pilot.owner.identity), need)
+        if reason is not None:
+            raise ForbiddenError(reason)
+        if need is Need.CONTROL:
+            self._arbiter.require(pilot.owner)
+
+    def _record(
+        self, pilot: "DoorPilot", action: str, about: str, outcome: Outcome, operation: str = ""
+    ) -> None:
+        noticed = {"arm": "commandArm", STOP: "stopRobot"}.get(operation, "")
+        said = f"{self._door} {about}".strip()
+        self._audit.record(pilot.owner.identity, pilot.address, action, said, outcome, noticed)
+
+
+class DoorPilot:
+    """A client of a door as the control lease knows it, with the count of its driving commands."""
+
+    def __init__(self, owner: ControlClient, address: str) -> None:
+        self.owner = owner
+        self.address = address
+        self.sequence = 0
+        self.driving = -1
+        """The epoch of control in which it has driven last."""
+
+
+def read_command(cls: type[RobotCommand], fields: Mapping[str, Any]) -> RobotCommand:
+    """The command with these fields. Raises InvalidCallError, which names the first field that is wrong."""
+    try:
+        command: RobotCommand = TypeAdapter(cls).validate_python(dict(fields))
+    except ValidationError as problem:
+        first = problem.errors(include_url=False)[0]
+        place = ".".join(map(str, first["loc"])) or cls.policy.name
+        raise InvalidCallError(f"{cls.policy.name}: {place}: {first['msg']}.") from problem
+    return command
+
+
+def parameter_values(document: Mapping[str, Any] | None) -> dict[str, Any]:
+    """The values of all parameters by name, of the newest `parameters` document."""
+    listed = (document or {}).get("parameters", [])
+    return {str(one["name"]): one["value"] for one in listed}

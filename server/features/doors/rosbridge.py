@@ -1,0 +1,306 @@
+"""rosbridge v2 for one program: operations in JSON, answered in JSON, CBOR or PNG as it asks."""
+
+import json
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from server.features.doors.channels import ChannelMessage, encode_json
+from server.features.doors.commands import REFUSALS, DoorCommands, DoorPilot
+from server.features.doors.house import Door, Doors
+from server.features.doors.ros_channels import type_name
+from server.features.doors.rosapi import RosApi
+from server.features.doors.session import (
+    BusyError,
+    DoorSession,
+    UnusableMessageError,
+    mapping_of,
+    number_of,
+    text_of,
+)
+from server.features.doors.subscriptions import (
+    QUEUE_DEFAULT,
+    QUEUE_MAX,
+    SUBSCRIPTIONS_MAX,
+    DoorClient,
+    DoorSubscription,
+)
+from server.features.doors.twist import CMD_VEL, STOP_TOPIC, TAKEN_IN, read_twist
+
+LEVELS = ("info", "warning", "error", "none")
+COMPRESSIONS = ("none", "png", "cbor")
+FRAGMENT_MIN = 256
+THROTTLE_MAX = 3_600_000
+"""ms."""
+REFUSED_OPS = {
+    "fragment": "Fragments are not put together here: send messages of up to 4 KiB whole.",
+    "advertise_service": "Programs cannot offer services to the robot.",
+    "unadvertise_service": "Programs cannot offer services to the robot.",
+    "service_response": "Programs cannot offer services to the robot.",
+    "advertise_action": "There are no actions here; commands are services.",
+    "unadvertise_action": "There are no actions here; commands are services.",
+    "send_action_goal": "There are no actions here; commands are services.",
+    "cancel_action_goal": "There are no actions here; commands are services.",
+    "action_feedback": "There are no actions here; commands are services.",
+    "action_result": "There are no actions here; commands are services.",
+    "auth": "This connection is signed in already.",
+}
+"""Operations of the protocol that are answered with this reason."""
+
+
+class RosbridgeSession(DoorSession):
+    """Acts on a program's operations; `doors` passes the samples on to it."""
+
+    def __init__(
+        self, client: DoorClient, pilot: DoorPilot, doors: Doors, door: Door, commands: DoorCommands
+    ) -> None:
+        super().__init__(client)
+        self._pilot = pilot
+        self._doors = doors
+        self._door = door
+        self._commands = commands
+        self._api = RosApi(doors, door, commands, pilot)
+        self._level = "error"
+        self._asked: dict[str, dict[str, dict[str, Any]]] = {}
+        """What is asked of each topic, by the subscription's id: several of one program share a stream."""
+        self._fragments = 0
+        self._advertised: dict[str, str] = {}
+        self._operations: dict[str, Callable[[dict[str, Any]], None]] = {
+            "subscribe": self._subscribe,
+            "unsubscribe": self._unsubscribe,
+            "advertise": self._advertise,
+            "unadvertise": self._unadvertise,
+            "publish": self._publish,
+            "call_service": self._call_service,
+            "set_level": self._set_level,
+            "status": lambda _: None,
+        }
+
+    async def run(self, receive: Callable[[], Awaitable[str | bytes | None]]) -> None:
+        """Act on operations until the program leaves. Raises EvictedError."""
+        await self.listen(receive, self._act, lambda text: self._say("error", text))
+
+    def _act(self, text: str | bytes) -> None:
+        message = read_operation(text)
+        name = message.get("op")
+        operation = self._operations.get(name) if isinstance(name, str) else None
+        if operation is None:
+            known = REFUSED_OPS.get(name) if isinstance(name, str) else None
+            raise UnusableMessageError(known or f"Unknown op {json.dumps(name)[:80]}.")
+        operation(message)
+
+    def _subscribe(self, message: dict[str, Any]) -> None:
+        name = topic_name(message.get("topic"))
+        channel = self._door.publisher.channels.get(name)
+        if channel is None:
+            raise UnusableMessageError(f"There is no topic {name}; /rosapi/topics lists them.")
+        _check_type(message.get("type"), name, channel.type)
+        asked = {
+            "period": number_of(message.get("throttle_rate", 0), "throttle_rate", THROTTLE_MAX) / 1000,
+            "length": int(number_of(message.get("queue_length", 0), "queue_length", float(2**53))),
+            "fragment": _fragment_size(message.get("fragment_size")),
+            "compression": message.get("compression", "none"),
+        }
+        if asked["compression"] not in COMPRESSIONS:
+            raise UnusableMessageError(
+                f"There is no compression {json.dumps(asked['compression'])[:80]} here, but "
+                f"{', '.join(COMPRESSIONS)}."
+            )
+        subscription = self.client.subscriptions.get(name)
+        by_id = self._asked.setdefault(name, {})
+        count = sum(map(len, self._asked.values()))
+        if count >= SUBSCRIPTIONS_MAX:
+            raise UnusableMessageError(f"A program may have {SUBSCRIPTIONS_MAX} subscriptions.")
+        by_id[_identifier(message)] = asked
+        if subscription is None:
+            subscription = DoorSubscription(channel, lambda _: [])
+            self.client.subscriptions[name] = subscription
+            self._settle(subscription)
+            self._door.publisher.greet(self.client, subscription, self._doors.newest())
+            self._door.publisher.subscribe(self.client, subscription)
+            self._doors.count_audience()
+        else:
+            self._settle(subscription)
+
+    def _settle(self, subscription: DoorSubscription) -> None:
+        """Make one stream of all that is asked of a topic: the fastest, longest, and least in size."""
+        asked = self._asked[subscription.channel.name].values()
+        subscription.period = min(one["period"] for one in asked)
+        lengths = [one["length"] for one in asked]
+        least = 1 if subscription.period else QUEUE_DEFAULT
+        subscription.length = min(QUEUE_MAX, max(lengths)) or least
+        sizes = [one["fragment"] for one in asked if one["fragment"]]
+        fragment = min(sizes) if len(sizes) == len(asked) else 0
+        compressions = {one["compression"] for one in asked}
+        # CBOR and PNG only where each of them asked for it: the others could not read them.
+        compression = compressions.pop() if len(compressions) == 1 else "none"
+        subscription.form = self._form(compression, fragment)
+
+    def _form(self, compression: str, fragment: int) -> Callable[[ChannelMessage], list[bytes | str]]:
+        if compression == "cbor":
+            return lambda message: [message.cbor]
+
+        def form(message: ChannelMessage) -> list[bytes | str]:
+            text = message.png if compression == "png" else message.publication
+            return self._split(text, fragment) if 0 < fragment < len(text) else [text]
+
+        return form
+
+    def _split(self, text: str, size: int) -> list[bytes | str]:
+        self._fragments += 1
+        pieces = [text[at : at + size] for at in range(0, len(text), size)]
+        return [
+            encode_json(
+                {
+                    "op": "fragment",
+                    "id": str(self._fragments),
+                    "data": one,
+                    "num": place,
+                    "total": len(pieces),
+                }
+            )
+            for place, one in enumerate(pieces)
+        ]
+
+    def _unsubscribe(self, message: dict[str, Any]) -> None:
+        name = topic_name(message.get("topic"))
+        asked = self._asked.get(name, {})
+        if "id" in message:
+            asked.pop(_identifier(message), None)
+        else:
+            asked.clear()
+        subscription = self.client.subscriptions.get(name)
+        if subscription is None:
+            return
+        if asked:
+            self._settle(subscription)
+            return
+        self._asked.pop(name, None)
+        del self.client.subscriptions[name]
+        self._door.publisher.unsubscribe(subscription)
+        self._doors.count_audience()
+
+    def _advertise(self, message: dict[str, Any]) -> None:
+        name = topic_name(message.get("topic"))
+        if name not in TAKEN_IN:
+            raise UnusableMessageError(f"Programs may publish {', '.join(TAKEN_IN)}, and not {name}.")
+        _check_type(message.get("type"), name, TAKEN_IN[name])
+        self._advertised[name] = TAKEN_IN[name]
+        self._door.published[self.client] = frozenset(self._advertised)
+        self._doors.note_change()
+
+    def _unadvertise(self, message: dict[str, Any]) -> None:
+        self._advertised.pop(topic_name(message.get("topic")), None)
+        self._door.published[self.client] = frozenset(self._advertised)
+        self._doors.note_change()
+
+    def _publish(self, message: dict[str, Any]) -> None:
+        name = topic_name(message.get("topic"))
+        if name == STOP_TOPIC:
+            self.begin(self._stop(), always=True)
+        elif name == CMD_VEL:
+            linear, angular = read_twist(message.get("msg"))
+            try:
+                self._commands.drive(self._pilot, linear, angular)
+            except REFUSALS as problem:
+                self._say("error", f"{CMD_VEL}: {problem}", message.get("id"))
+        else:
+            raise UnusableMessageError(f"Programs may publish {', '.join(TAKEN_IN)}, and not {name}.")
+
+    async def _stop(self) -> None:
+        try:
+            await self._commands.perform(self._pilot, "stop", {})
+        except REFUSALS as problem:
+            self._say("error", f"STOP has not been confirmed: {problem}")
+
+    def _call_service(self, message: dict[str, Any]) -> None:
+        name = topic_name(message.get("service"))
+        arguments = self._api.arguments(name, message.get("args", {}))
+        identifier = message.get("id")
+        if identifier is not None:
+            _identifier(message)
+        fragment = _fragment_size(message.get("fragment_size"))
+        stop = name == STOP_TOPIC
+        try:
+            self.begin(self._answer_call(name, arguments, identifier, fragment), always=stop)
+        except BusyError as problem:
+            self._respond(name, identifier, str(problem), False)
+
+    async def _answer_call(
+        self, name: str, arguments: dict[str, Any], identifier: object, fragment: int
+    ) -> None:
+        try:
+            values = await self._api.call(name, arguments)
+        except (UnusableMessageError, *REFUSALS) as problem:
+            self._respond(name, identifier, str(problem), False)
+        else:
+            self._respond(name, identifier, values, True, fragment)
+
+    def _respond(
+        self, name: str, identifier: object, values: object, result: bool, fragment: int = 0
+    ) -> None:
+        answer = {"op": "service_response", "service": name, "values": values, "result": result}
+        if identifier is not None:
+            answer["id"] = identifier
+        text = encode_json(answer)
+        for piece in self._split(text, fragment) if 0 < fragment < len(text) else [text]:
+            self.client.answer(piece)
+
+    def _set_level(self, message: dict[str, Any]) -> None:
+        if message.get("level") not in LEVELS:
+            raise UnusableMessageError(f"level must be one of {', '.join(LEVELS)}.")
+        self._level = message["level"]
+
+    def _say(self, level: str, text: str, identifier: object = None) -> None:
+        if LEVELS.index(level) < LEVELS.index(self._level):
+            return
+        status = {"op": "status", "level": level, "msg": text}
+        if isinstance(identifier, str | int):
+            status["id"] = str(identifier)
+        self.client.answer(encode_json(status))
+
+
+def read_operation(text: str | bytes) -> dict[str, Any]:
+    """An operation of rosbridge. Raises UnusableMessageError."""
+    if isinstance(text, bytes):
+        raise UnusableMessageError("Operations must be text: JSON.")
+    try:
+        message = json.loads(text, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as problem:
+        raise UnusableMessageError("Operations must be JSON.") from problem
+    return mapping_of(message, "An operation")
+
+
+def topic_name(value: object) -> str:
+    """A topic's or service's name, which begins with a slash: roslib 2 leaves it out of rosapi's.
+
+    Raises UnusableMessageError.
+    """
+    name = text_of(value, "topic or service")
+    return name if name.startswith("/") else f"/{name}"
+
+
+def _check_type(given: object, name: str, expected: str) -> None:
+    if given is None or given in ("", "*"):
+        return
+    if type_name(text_of(given, "type")) != expected:
+        raise UnusableMessageError(f"{name} has the type {expected}, and not {given}.")
+
+
+def _identifier(message: dict[str, Any]) -> str:
+    value = message.get("id", "")
+    if isinstance(value, bool) or not isinstance(value, str | int) or len(str(value)) > 200:
+        raise UnusableMessageError("id must be a text of up to 200 characters.")
+    return str(value)
+
+
+def _fragment_size(value: object) -> int:
+    if value is None:
+        return 0
+    size = int(number_of(value, "fragment_size", float(2**53)))
+    if size < FRAGMENT_MIN:
+        raise UnusableMessageError(f"fragment_size must be {FRAGMENT_MIN} at least.")
+    return size
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(f"{name} is no JSON")

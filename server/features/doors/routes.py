@@ -1,0 +1,172 @@
+"""The doors' sockets, and the list of who is connected."""
+
+import asyncio
+from typing import Any, Literal
+
+from fastapi import WebSocket, WebSocketDisconnect
+
+from robot_runtime.clock import Clock
+from server.features.doors.commands import DoorCommands, DoorPilot
+from server.features.doors.house import Door, Doors
+from server.features.doors.rosbridge import RosbridgeSession, read_operation
+from server.features.doors.schemas import DoorClientDetails, DoorDetails
+from server.features.doors.session import UnusableMessageError
+from server.features.doors.subscriptions import DoorClient
+from server.features.lease.arbiter import ControlArbiter
+from server.features.operate.performing import CommandDesk
+from server.http.audit import AuditLog, address_of
+from server.http.dependencies import Provided, find_service
+from server.http.operations import Operations
+from server.http.security import POLICY_VIOLATION
+from server.http.sign_in.access import Access
+from server.http.sign_in.devices import SignInEndedError
+from server.http.sign_in.identity import IDENTITY, SIGN_IN_ENDED, Identity
+from server.http.sign_in.policy import Need
+from server.platform.settings import Settings
+from server.stream.bridge import Bridge
+from server.stream.hub import EvictedError
+from server.stream.socket_ends import close_with_reason, end_after
+
+SIGN_IN_SECONDS = 5.0
+"""A program that shows no token in its address sends it first of all, within this time."""
+STRANGERS_MAX = 10
+"""Connections that have shown no token yet."""
+NO_TOKEN = (
+    "Sign in: add ?token= with a token of `mucat access token` to the address, or send it first "
+    "(op “auth”, mac)."
+)
+
+router = Operations(prefix="/api")
+ROSBRIDGE = Operations()
+FOXGLOVE = Operations()
+
+
+@router.operation("GET /doors", Need.VIEWER, tags=["doors"])
+async def list_doors(doors: Provided[Doors], arbiter: Provided[ControlArbiter]) -> list[DoorDetails]:
+    """Return the doors for other programs, and who is connected."""
+    return [_describe(door, arbiter) for door in doors.doors.values()]
+
+
+@ROSBRIDGE.socket("/rosbridge")
+async def open_rosbridge(socket: WebSocket) -> None:
+    """Serve a program that speaks rosbridge v2 until it leaves."""
+    await _Visit(socket, "rosbridge").serve(None)
+
+
+class _Visit:
+    """One connection of a program, from its sign-in to its end."""
+
+    def __init__(self, socket: WebSocket, name: Literal["rosbridge", "foxglove"]) -> None:
+        self._socket = socket
+        self._doors = find_service(socket, Doors)
+        self._door = self._doors.doors[name]
+        self._access = find_service(socket, Access)
+        self._arbiter = find_service(socket, ControlArbiter)
+        self._audit = find_service(socket, AuditLog)
+        self._address = address_of(socket.scope)
+        self._commands = DoorCommands(
+            f"/{name}",
+            find_service(socket, Clock),  # type: ignore[type-abstract]
+            self._access,
+            find_service(socket, CommandDesk),
+            find_service(socket, Bridge),
+            self._arbiter,
+            self._audit,
+        )
+
+    async def serve(self, subprotocol: str | None) -> None:
+        """Accept the connection, and serve it until its end."""
+        await self._socket.accept(subprotocol=subprotocol)
+        try:
+            caller = self._socket.scope.get(IDENTITY) or await self._sign_in()
+            # Access may have been revoked while the socket opened; from here on the door dismisses it.
+            if self._access.refresh(caller) != caller:
+                raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
+            self._audit.record(caller, self._address, "Open a door", f"/{self._door.name}", "done")
+            with self._arbiter.page(caller) as owner:
+                pilot = DoorPilot(owner, self._address)
+                serving = self._doors.serve(
+                    self._door, self._send, caller, self._address, lambda client: self._listen(client, pilot)
+                )
+                await end_after(self._access.devices.count_seconds(caller.device), serving)
+        except WebSocketDisconnect:
+            return
+        except EvictedError as reason:
+            await close_with_reason(self._socket, reason)
+
+    async def _listen(self, client: DoorClient, pilot: DoorPilot) -> None:
+        client.owner = pilot.owner.number
+        session = RosbridgeSession(client, pilot, self._doors, self._door, self._commands)
+        await session.run(self._receive)
+
+    async def _sign_in(self) -> Identity:
+        """The identity by the first message. Raises EvictedError."""
+        ended = self._socket.scope.get(SIGN_IN_ENDED)
+        if ended is None and self._door.name == "rosbridge" and self._door.strangers < STRANGERS_MAX:
+            self._door.strangers += 1
+            try:
+                async with asyncio.timeout(SIGN_IN_SECONDS):
+                    return self._identify(await self._receive())
+            except TimeoutError:
+                ended = None
+            finally:
+                self._door.strangers -= 1
+        raise self._refused(ended or NO_TOKEN)
+
+    def _identify(self, message: str | bytes | None) -> Identity:
+        if message is None:
+            raise WebSocketDisconnect
+        try:
+            said = read_operation(message)
+            token = said.get("mac") if said.get("op") == "auth" else None
+            identity = self._access.identify_token(token) if isinstance(token, str) else None
+        except (UnusableMessageError, SignInEndedError) as problem:
+            raise self._refused(str(problem)) from problem
+        if identity is None:
+            raise self._refused(NO_TOKEN)
+        return identity
+
+    def _refused(self, why: str) -> EvictedError:
+        self._audit.record(None, self._address, "Open a door", f"/{self._door.name}", "refused")
+        return EvictedError(why[:120], POLICY_VIOLATION)
+
+    async def _receive(self) -> str | bytes | None:
+        """The next message; None where the program has left."""
+        message = await self._socket.receive()
+        if message["type"] == "websocket.disconnect":
+            return None
+        text: str | None = message.get("text")
+        data: bytes = message.get("bytes") or b""
+        return data if text is None else text
+
+    async def _send(self, data: bytes | str) -> None:
+        message: dict[str, Any] = {"type": "websocket.send"}
+        message["bytes" if isinstance(data, bytes) else "text"] = data
+        await self._socket.send(message)
+
+
+def open_routes(settings: Settings) -> list[Operations]:
+    """The sockets of the doors that are open."""
+    given = {ROSBRIDGE: settings.doors.rosbridge, FOXGLOVE: settings.doors.foxglove}
+    return [door for door, is_open in given.items() if is_open]
+
+
+def _describe(door: Door, arbiter: ControlArbiter) -> DoorDetails:
+    holder = arbiter.lease.holder
+    return DoorDetails(
+        name=door.name,
+        path=f"/{door.name}",
+        open=door.open,
+        clients=[
+            DoorClientDetails(
+                name=client.identity.name,
+                role=client.identity.role,
+                address=client.address,
+                since=client.since,
+                topics=sorted({one.channel.name for one in client.subscriptions.values()}),
+                sent=client.sent,
+                in_control=holder is not None and holder == client.owner,
+            )
+            for client in door.clients
+        ],
+    )

@@ -1,0 +1,86 @@
+"""The base of both doors' sessions: the limits of a program that sends nonsense or too much."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Coroutine
+from typing import Any
+
+from server.features.doors.subscriptions import DoorClient
+from server.http.security import POLICY_VIOLATION
+from server.stream.hub import EvictedError
+
+INVALID_MAX = 20
+"""Invalid messages in a row after which a program is disconnected."""
+CALLS_MAX = 8
+"""Calls of one program that may wait for the robot at once."""
+NAME_MAX = 200
+
+
+class UnusableMessageError(ValueError):
+    """A message that the door cannot use; the text says why."""
+
+
+class BusyError(UnusableMessageError):
+    """Too many calls of this program wait already."""
+
+
+class DoorSession:
+    """One program at a door. Subclasses act on what it sends."""
+
+    def __init__(self, client: DoorClient) -> None:
+        self.client = client
+        self._calls: set[asyncio.Task[None]] = set()
+
+    async def listen(
+        self,
+        receive: Callable[[], Awaitable[Any]],
+        act: Callable[[Any], None],
+        complain: Callable[[str], None],
+    ) -> None:
+        """Act on each message until there is None. Raises EvictedError where all are invalid."""
+        invalid = 0
+        try:
+            while (message := await receive()) is not None:
+                try:
+                    act(message)
+                    invalid = 0
+                except UnusableMessageError as problem:
+                    invalid += 1
+                    if invalid >= INVALID_MAX:
+                        raise EvictedError(
+                            f"{invalid} messages in a row were not valid.", POLICY_VIOLATION
+                        ) from problem
+                    complain(str(problem))
+        finally:
+            for call in self._calls:
+                call.cancel()
+            await asyncio.gather(*self._calls, return_exceptions=True)
+
+    def begin(self, call: Coroutine[Any, Any, None], *, always: bool = False) -> None:
+        """Work on a call beside the messages that follow it; STOP always may."""
+        if not always and len(self._calls) >= CALLS_MAX:
+            call.close()
+            raise BusyError(f"{CALLS_MAX} calls wait already; try again when one is answered.")
+        task = asyncio.create_task(call)
+        self._calls.add(task)
+        task.add_done_callback(self._calls.discard)
+
+
+def text_of(value: object, name: str) -> str:
+    """A text of a message. Raises UnusableMessageError."""
+    if not isinstance(value, str) or not 0 < len(value) <= NAME_MAX:
+        raise UnusableMessageError(f"{name} must be a text of up to {NAME_MAX} characters.")
+    return value
+
+
+def mapping_of(value: object, name: str) -> dict[str, Any]:
+    """An object of a message. Raises UnusableMessageError."""
+    if not isinstance(value, dict):
+        raise UnusableMessageError(f"{name} must be an object.")
+    return value
+
+
+def number_of(value: object, name: str, most: float) -> float:
+    """A number from 0 to `most`. Raises UnusableMessageError."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= most:
+        raise UnusableMessageError(f"{name} must be a number from 0 to {most:g}.")
+    return value

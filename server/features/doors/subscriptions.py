@@ -1,0 +1,117 @@
+"""The clients of a door: their subscriptions, what waits for them, and its sending.
+
+Samples wait in a short queue for each subscription, whose oldest are dropped; answers and lines of text are
+never skipped, and a client with too many of them unread is disconnected, as one that reads nothing.
+"""
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+
+from robot_runtime.clock import Clock
+from server.features.doors.channels import ChannelMessage, DoorChannel
+from server.http.sign_in.identity import Identity
+from server.stream.hub import STALL_SECONDS, EvictedError, Send
+
+QUEUE_DEFAULT, QUEUE_MAX = 50, 500
+"""Samples of one subscription that wait at most."""
+LINES_MAX = 1000
+ANSWERS_MAX = 256
+SUBSCRIPTIONS_MAX = 200
+
+Format = Callable[[ChannelMessage], list[bytes | str]]
+"""Makes the WebSocket messages of a channel's message."""
+
+
+class DoorSubscription:
+    """One client's subscription to a channel; `period` in s is the shortest time between two messages."""
+
+    def __init__(self, channel: DoorChannel, form: Format) -> None:
+        self.channel = channel
+        self.form = form
+        self.period = 0.0
+        self.due = 0.0
+        self.queue: deque[ChannelMessage] = deque()
+        self.length = QUEUE_DEFAULT
+
+    def offer(self, message: ChannelMessage) -> bool:
+        """Queue a message; False where nothing may be skipped and too much waits."""
+        self.queue.append(message)
+        if self.channel.lossless:
+            return len(self.queue) <= LINES_MAX
+        while len(self.queue) > self.length:
+            self.queue.popleft()
+        return True
+
+
+class DoorClient:
+    """One program's connection; `number` names it in lists."""
+
+    def __init__(self, number: int, identity: Identity, address: str, send: Send, clock: Clock) -> None:
+        self.number = number
+        self.identity = identity
+        self.address = address
+        self.since = clock.now()
+        self.owner = 0
+        """Its number as a client of the control lease."""
+        self.sent = 0
+        """Messages sent."""
+        self.dismissal: EvictedError | None = None
+        self.subscriptions: dict[int | str, DoorSubscription] = {}
+        self._send_raw = send
+        self._clock = clock
+        self._answers: deque[bytes | str] = deque()
+        self._wake = asyncio.Event()
+
+    def answer(self, message: bytes | str) -> None:
+        """Queue an answer. Raises EvictedError where too many wait unread."""
+        if len(self._answers) >= ANSWERS_MAX:
+            raise EvictedError("Too many answers wait unread.")
+        self._answers.append(message)
+        self._wake.set()
+
+    def offer(self, subscription: DoorSubscription, message: ChannelMessage) -> None:
+        """Queue a message of a subscription. Raises EvictedError where too much waits unread."""
+        if not subscription.offer(message):
+            raise EvictedError("The connection fell too far behind; the rest is in the recording, if any.")
+        self._wake.set()
+
+    async def run(self) -> None:
+        """Send what waits, for ever. Raises EvictedError where nothing is read for too long."""
+        while True:
+            self._wake.clear()
+            pause = await self._send_waiting()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(pause):
+                    await self._wake.wait()
+
+    async def _send_waiting(self) -> float | None:
+        """Send a message of each subscription that is due; returns the s until the next is, if any."""
+        await self._send_answers()
+        pause: float | None = None
+        for one in [*self.subscriptions.values()]:
+            if not one.queue:
+                continue
+            left = one.due - self._clock.now()
+            if left <= 0:
+                one.due = max(one.due + one.period, self._clock.now() - one.period)
+                for message in one.form(one.queue.popleft()):
+                    await self._send(message)
+                await self._send_answers()
+                left = one.period if one.queue else left
+            if one.queue:
+                pause = max(0.0, left) if pause is None else min(pause, max(0.0, left))
+        return pause
+
+    async def _send_answers(self) -> None:
+        while self._answers:
+            await self._send(self._answers.popleft())
+
+    async def _send(self, message: bytes | str) -> None:
+        try:
+            async with asyncio.timeout(STALL_SECONDS):
+                await self._send_raw(message)
+        except TimeoutError:
+            raise EvictedError(f"Nothing was read for {STALL_SECONDS:g} s.") from None
+        self.sent += 1

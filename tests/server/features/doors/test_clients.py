@@ -1,0 +1,89 @@
+"""Unmodified clients of other people at the doors of the whole emulated robot."""
+
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.stack import Stack
+
+CLIENTS = Path(__file__).parents[3] / "clients"
+SECONDS = 120
+
+pytestmark = pytest.mark.stack
+
+
+@pytest.fixture(scope="module")
+def _robot() -> Iterator[Stack]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+        config = Path(name) / "robot.toml"
+        config.write_text("[doors]\nrosbridge = true\nfoxglove = true\n", encoding="utf-8")
+        with Stack(Path(name) / "data", "--config", str(config)) as stack:
+            yield stack
+
+
+@pytest.fixture
+def robot(_robot: Stack) -> Stack:
+    _robot.calm()
+    return _robot
+
+
+def token(robot: Stack, scope: str) -> str:
+    name = f"{scope} {len(robot.api.get('/access/devices').json())}"
+    answer = robot.api.post("/access/tokens", json={"name": name, "scope": scope})
+    return str(answer.raise_for_status().json()["token"])
+
+
+def address(robot: Stack, door: str, scope: str) -> str:
+    return f"ws://127.0.0.1:{robot.port}/{door}?token={token(robot, scope)}"
+
+
+def run(*command: str) -> dict[str, Any]:
+    """The object that a client prints."""
+    done = subprocess.run(command, cwd=CLIENTS, capture_output=True, text=True, timeout=SECONDS, check=False)
+    assert done.returncode == 0, done.stderr[-3000:]
+    said = json.loads(done.stdout.splitlines()[-1])
+    assert isinstance(said, dict)
+    return said
+
+
+@pytest.mark.parametrize("version", ["roslib-1", "roslib"])
+def test_roslib_subscribes_to_everything_drives_with_control_and_stops(robot: Stack, version: str) -> None:
+    said = run(
+        "node",
+        "roslib.mjs",
+        version,
+        address(robot, "rosbridge", "operate"),
+        address(robot, "rosbridge", "read"),
+    )
+    assert "/imu/data" in said["topics"]["topics"]
+    assert {"/mucat/stop", "/rosapi/topics"} <= set(said["services"])
+    assert said["type"] == "sensor_msgs/msg/Imu"
+    assert any("depth" in one for one in said["parameters"])
+    assert said["imu"]["linear_acceleration"]["z"] == pytest.approx(9.8, abs=1.5)
+    assert said["imu"]["header"]["frame_id"] == "base_link"
+    assert -0.2 < said["cbor"]["depth"] < 3
+    assert 90_000 < said["png"]["fluid_pressure"] < 140_000
+    assert "operator" in said["refused"]["problem"]
+    assert "control" in said["before"]["problem"]
+    assert said["taken"]["values"]["success"]
+    assert said["armed"]["values"]["success"]
+    assert said["driven"]["x"] == pytest.approx(0.5, abs=0.01)
+    assert said["driven"]["yaw"] == pytest.approx(-0.25, abs=0.01)
+    assert said["stopped"] == "disarmed"
+
+
+def test_roslibpy_reads_commands_and_stops(robot: Stack) -> None:
+    said = run(sys.executable, "roslibpy_client.py", address(robot, "rosbridge", "operate"))
+    assert "/imu/data" in said["topics"]
+    assert said["type"] == "sensor_msgs/msg/Imu"
+    assert said["imu"]["linear_acceleration"]["z"] == pytest.approx(9.8, abs=1.5)
+    assert said["taken"]["success"]
+    assert said["armed"]["success"]
+    assert said["stopped"]["success"]
+    assert "set_point" in said["refused"]

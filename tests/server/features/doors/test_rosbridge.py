@@ -1,0 +1,443 @@
+import asyncio
+import base64
+import json
+import struct
+import zlib
+from math import asin, atan2, cos, isclose, sin
+from typing import Any
+
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from robot_runtime.contract.packets import Beacon, Depth
+from server.features.doors.session import INVALID_MAX
+from server.platform.settings import Settings
+from tests.server.blocks import debug_block, picture_block, state_block
+from tests.server.features.doors.rig import (
+    RosbridgeClient,
+    imu,
+    make_token,
+    open_rosbridge,
+    play_open,
+    rows_block,
+    truth,
+)
+from tests.server.serving import Served, play
+from tests.server.waiting import until
+
+
+def test_a_door_is_closed_unless_the_configuration_opens_it(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        token = await make_token(served)
+        with pytest.raises(InvalidStatus):
+            async with open_rosbridge(served, token):
+                pass
+        (rosbridge, foxglove) = (await served.api.get("/doors")).json()
+        assert (rosbridge["open"], foxglove["open"]) == (False, False)
+
+    play(settings, scenario)
+
+
+def test_a_token_in_the_address_or_in_the_first_message_signs_in(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        token = await make_token(served, "read", "Reader")
+        async with open_rosbridge(served, token, origin="http://else.where") as socket:
+            client = RosbridgeClient(socket)
+            assert (await client.call("/rosapi/get_time"))["result"] is True
+            (rosbridge, _) = (await served.api.get("/doors")).json()
+            assert [(one["name"], one["role"]) for one in rosbridge["clients"]] == [("Reader", "viewer")]
+        async with open_rosbridge(served, None) as socket:
+            client = RosbridgeClient(socket)
+            await client.say(op="auth", mac=token, client="", dest="", rand="", t=0, level="", end=0)
+            assert (await client.call("rosapi/get_time"))["result"] is True
+        for first in ({"op": "auth", "mac": "mucat_wrong"}, {"op": "subscribe", "topic": "/depth"}):
+            async with open_rosbridge(served, None) as socket:
+                await socket.send(json.dumps(first))
+                with pytest.raises(ConnectionClosed) as closed:
+                    await socket.recv()
+                assert closed.value.rcvd is not None
+                assert closed.value.rcvd.code == 1008
+        async with open_rosbridge(served, "mucat_wrong") as socket:
+            await socket.send(json.dumps({"op": "publish", "topic": "/mucat/stop", "msg": {}}))
+            with pytest.raises(ConnectionClosed):
+                await socket.recv()
+
+    play_open(settings, scenario)
+
+
+def test_a_page_of_another_origin_gets_nothing_by_a_browsers_cookie(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        cookie = {"Cookie": f"mucat_{served.settings.port}=anything"}
+        async with open_rosbridge(
+            served, None, origin="http://else.where", additional_headers=cookie
+        ) as socket:
+            await socket.send(json.dumps({"op": "subscribe", "topic": "/depth"}))
+            with pytest.raises(ConnectionClosed):
+                await socket.recv()
+
+    play_open(settings, scenario)
+
+
+def test_samples_come_in_the_axes_units_and_stamps_of_ros(settings: Settings) -> None:
+    """Rolled 0.3 rad to the right, nose up 0.2, turned 0.5 to the right, at a known place."""
+
+    async def scenario(served: Served) -> None:
+        token = await make_token(served, "read")
+        roll, pitch, yaw = 0.3, 0.2, 0.5
+        attitude = _quaternion(roll, pitch, yaw)
+        async with open_rosbridge(served, token) as socket:
+            client = RosbridgeClient(socket)
+            for topic in ("/imu/data", "/depth", "/pressure", "/temperature", "/pose", "/tf", "/beacon/left"):
+                await client.say(op="subscribe", topic=topic)
+            await client.say(op="subscribe", topic="/truth/odometry", type="nav_msgs/Odometry")
+            await client.call("/rosapi/get_time")
+            now = served.container.clock.now()
+            served.runtime.publish(
+                rows_block("truth", 0, (now, truth((1.0, 2.0, 0.7), attitude))),
+                rows_block("depth", 0, (now, Depth(time=0, depth=0.7, pressure=108_000, temperature=18.5))),
+                rows_block("beacon", 0, (now, Beacon(time=0, right=0, left=1))),
+            )
+            odometry = (await client.next("publish", topic="/truth/odometry"))["msg"]
+            assert odometry["header"]["frame_id"] == "odom"
+            assert odometry["child_frame_id"] == "base_link"
+            place = odometry["pose"]["pose"]["position"]
+            assert [round(place[axis], 6) for axis in "xyz"] == [1.0, -2.0, -0.7]
+            served.runtime.publish(
+                rows_block("imu", 0, (now, imu(attitude, rate=(0.1, 0.2, 0.3), force=(1.0, 2.0, -9.5))))
+            )
+            found: dict[str, Any] = {}
+            while len(found) < 3:
+                message = await client.next("publish")
+                if message["topic"] in ("/imu/data", "/pose", "/tf"):
+                    found[message["topic"]] = message["msg"]
+            measured = found["/imu/data"]
+            assert _angles(measured["orientation"]) == pytest.approx((roll, -pitch, -yaw), abs=2e-4)
+            assert _vector(measured["angular_velocity"]) == pytest.approx((0.1, -0.2, -0.3), abs=2e-4)
+            assert _vector(measured["linear_acceleration"]) == pytest.approx((1.0, -2.0, 9.5), abs=1e-3)
+            stamp = measured["header"]["stamp"]
+            utc = (served.container.doors.utc_ns() - (stamp["sec"] * 10**9 + stamp["nanosec"])) / 1e9
+            assert 0 <= utc - (served.container.clock.now() - now) < 0.01 or isclose(utc, 0, abs_tol=1)
+            assert _angles(found["/pose"]["pose"]["orientation"])[2] == pytest.approx(-yaw, abs=2e-4)
+            (transform,) = found["/tf"]["transforms"]
+            assert _vector(transform["transform"]["translation"]) == pytest.approx((1.0, -2.0, -0.7))
+
+    play_open(settings, scenario)
+
+
+def test_pressure_temperature_and_beacons_have_their_standard_types(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        token = await make_token(served, "read")
+        async with open_rosbridge(served, token) as socket:
+            client = RosbridgeClient(socket)
+            for topic in ("/depth", "/pressure", "/temperature", "/beacon/left"):
+                await client.say(op="subscribe", topic=topic)
+            types = (await client.call("/rosapi/topic_type", {"topic": "/pressure"}))["values"]
+            assert types == {"type": "sensor_msgs/msg/FluidPressure"}
+            now = served.container.clock.now()
+            served.runtime.publish(
+                rows_block("depth", 0, (now, Depth(time=0, depth=0.7, pressure=108_000, temperature=18.5))),
+                rows_block("beacon", 0, (now, Beacon(time=0, right=0, left=1))),
+            )
+            found: dict[str, Any] = {}
+            while len(found) < 4:
+                message = await client.next("publish")
+                found[message["topic"]] = message["msg"]
+            assert found["/depth"] == {"data": pytest.approx(0.7)}
+            assert found["/pressure"]["fluid_pressure"] == 108_000
+            assert found["/temperature"]["temperature"] == pytest.approx(18.5)
+            assert found["/beacon/left"] == {"data": True}
+
+    play_open(settings, scenario)
+
+
+def test_throttle_and_queue_length_hold_samples_back(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        token = await make_token(served, "read")
+        async with open_rosbridge(served, token) as socket:
+            client = RosbridgeClient(socket)
+            await client.say(op="subscribe", topic="/depth", throttle_rate=600_000)
+            await client.say(op="subscribe", topic="/mucat/depth", throttle_rate=1, queue_length=3)
+            await client.call("/rosapi/get_time")
+            rows = [
+                (1.0 + place, Depth(time=0, depth=place / 10, pressure=101_325, temperature=20))
+                for place in range(10)
+            ]
+            served.runtime.publish(rows_block("depth", 0, *rows))
+            first = await client.next("publish", topic="/depth")
+            assert first["msg"] == {"data": pytest.approx(0.9)}
+            depths = [
+                round((await client.next("publish", topic="/mucat/depth"))["msg"]["depth"], 3)
+                for _ in range(3)
+            ]
+            assert depths == [0.7, 0.8, 0.9]
+            await client.call("/rosapi/get_time")
+            await client.say(op="unsubscribe", topic="/depth")
+            await client.say(op="unsubscribe", topic="/mucat/depth")
+            await client.call("/rosapi/get_time")
+            (rosbridge, _) = (await served.api.get("/doors")).json()
+            assert rosbridge["clients"][0]["topics"] == []
+
+    play_open(settings, scenario)
+
+
+def test_cbor_png_and_fragments_come_only_where_they_are_asked_for(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        token = await make_token(served, "read")
+        async with (
+            open_rosbridge(served, token) as in_cbor,
+            open_rosbridge(served, token) as in_png,
+            open_rosbridge(served, token) as in_parts,
+        ):
+            for socket, asked in (
+                (in_cbor, {"compression": "cbor"}),
+                (in_png, {"compression": "png"}),
+                (in_parts, {"fragment_size": 256}),
+            ):
+                client = RosbridgeClient(socket)
+                await client.say(op="subscribe", topic="/camera/image/compressed", **asked)
+                await client.call("/rosapi/get_time")
+            await served.heard("picture")
+            served.runtime.publish(picture_block(7, 900))
+            jpeg = bytes([7]) * 900
+            data = await in_cbor.recv()
+            assert isinstance(data, bytes)
+            assert jpeg in data
+            png = json.loads(await in_png.recv())
+            assert png["op"] == "png"
+            message = json.loads(_pixels(base64.b64decode(png["data"])))
+            assert base64.b64decode(message["msg"]["data"]) == jpeg
+            parts: list[str] = []
+            while not parts or len(parts) < json.loads(await in_parts.recv())["total"] - 1:
+                parts.append("")
+            await RosbridgeClient(in_parts).say(op="subscribe", topic="/depth", compression="cbor-raw")
+            refused = await RosbridgeClient(in_parts).next("status")
+            assert "cbor-raw" in refused["msg"]
+
+    play_open(settings, scenario)
+
+
+def test_a_program_drives_with_control_and_not_without(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await served.api.post("/control/release")
+        token, reader = await make_token(served), await make_token(served, "read", "Reader")
+        twist = {"linear": {"x": 0.5, "y": 0.25, "z": -3.0}, "angular": {"x": 0.1, "y": 0.2, "z": 0.3}}
+        async with open_rosbridge(served, token) as socket, open_rosbridge(served, reader) as looking:
+            client, viewer = RosbridgeClient(socket), RosbridgeClient(looking)
+            await client.say(op="advertise", topic="/cmd_vel", type="geometry_msgs/Twist")
+            await client.say(op="publish", topic="/cmd_vel", msg=twist)
+            assert "Take control" in (await client.next("status"))["msg"]
+            await viewer.say(op="publish", topic="/cmd_vel", msg=twist)
+            assert "role of an operator" in (await viewer.next("status"))["msg"]
+            refused = await viewer.call("/mucat/take_control")
+            assert (refused["result"], "operator" in refused["values"]) == (False, True)
+            assert (await client.call("/mucat/arm", {"mode": "manual"}))["result"] is False
+            taken = await client.call("/mucat/take_control")
+            assert taken["values"]["success"] is True
+            assert (await client.call("/mucat/arm", {"mode": "manual"}))["result"] is True
+            assert served.runtime.asked[-1] == ("arm", {"mode": "manual"})
+            await client.say(op="publish", topic="/cmd_vel", msg=twist)
+            await until(lambda: served.runtime.driven, "the command")
+            assert served.runtime.driven[0]["axes"] == [0.5, -0.25, 1.0, 0.1, -0.2, -0.3]
+            await client.say(op="publish", topic="/cmd_vel", msg={"linear": {"x": "fast"}})
+            assert "numbers" in (await client.next("status"))["msg"]
+            await viewer.say(op="publish", topic="/mucat/stop", msg={})
+            await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
+            assert (await client.call("/mucat/release_control"))["result"] is True
+            assert served.container.arbiter.lease.holder is None
+        entries = (await served.api.get("/audit")).json()["entries"]
+        acts = {(one["who"], one["action"], one["outcome"]) for one in entries}
+        assert {
+            ("Program", "Take control", "done"),
+            ("Program", "arm", "done"),
+            ("Program", "arm", "refused"),
+            ("Program", "Drive", "done"),
+            ("Program", "Message drive", "refused"),
+            ("Reader", "Take control", "refused"),
+            ("Reader", "STOP", "done"),
+        } <= acts
+
+    play_open(settings, scenario)
+
+
+def test_control_ends_with_the_connection(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await served.api.post("/control/release")
+        async with open_rosbridge(served, await make_token(served)) as socket:
+            assert (await RosbridgeClient(socket).call("/mucat/take_control"))["result"] is True
+            assert served.container.arbiter.lease.holder is not None
+        await until(lambda: served.container.arbiter.lease.holder is None, "control to be free")
+
+    play_open(settings, scenario)
+
+
+def test_a_revoked_token_ends_its_connection(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with open_rosbridge(served, await make_token(served)) as socket:
+            await RosbridgeClient(socket).call("/rosapi/get_time")
+            devices = (await served.api.get("/access/devices")).json()
+            (device,) = (one["id"] for one in devices if one["name"] == "Program")
+            (await served.api.delete(f"/access/devices/{device}")).raise_for_status()
+            with pytest.raises(ConnectionClosed) as closed:
+                await RosbridgeClient(socket).next("never")
+            assert closed.value.rcvd is not None
+            assert closed.value.rcvd.code == 1008
+
+    play_open(settings, scenario)
+
+
+def test_parameters_are_read_and_set(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with open_rosbridge(served, await make_token(served)) as socket:
+            client = RosbridgeClient(socket)
+            assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["result"] is False
+            await served.api.post("/control/release")
+            await client.call("/mucat/take_control")
+            answer = await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"})
+            assert answer["result"] is True
+            assert served.runtime.asked[-1] == ("parameters", {"values": {"depth.kp": 2.5}})
+            wrong = await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "{"})
+            assert (wrong["result"], wrong["values"]) == (False, "value must be JSON.")
+            deleted = await client.call("/rosapi/delete_param", {"name": "/depth.kp"})
+            assert (deleted["result"], "cannot be deleted" in deleted["values"]) == (False, True)
+
+    play_open(settings, scenario)
+
+
+def test_the_newest_state_comes_at_once_and_lines_of_text_are_the_log(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        served.runtime.publish(state_block(0, mode="manual"))
+        await until(lambda: served.container.doors.document("state"), "the state")
+        async with open_rosbridge(served, await make_token(served, "read")) as socket:
+            client = RosbridgeClient(socket)
+            await client.say(op="subscribe", topic="/mucat/state")
+            assert (await client.next("publish"))["msg"]["mode"] == "manual"
+            await client.say(op="subscribe", topic="/rosout", type="rcl_interfaces/msg/Log")
+            await client.call("/rosapi/get_time")
+            served.runtime.publish(debug_block(0, "hello"))
+            line = await client.next("publish", topic="/rosout")
+            while line["msg"]["file"] != "debug":
+                line = await client.next("publish", topic="/rosout")
+            assert (line["msg"]["msg"], line["msg"]["level"]) == ("hello", 20)
+
+    play_open(settings, scenario)
+
+
+def test_everything_that_is_listed_can_be_subscribed(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with open_rosbridge(served, await make_token(served, "read")) as socket:
+            client = RosbridgeClient(socket)
+            listed = (await client.call("/rosapi/topics"))["values"]
+            assert len(listed["topics"]) == len(listed["types"])
+            for name, kind in zip(listed["topics"], listed["types"], strict=True):
+                if name not in ("/cmd_vel", "/mucat/stop"):
+                    await client.say(op="subscribe", topic=name, type=kind)
+            await client.call("/rosapi/nodes")
+            (rosbridge, _) = (await served.api.get("/doors")).json()
+            assert set(rosbridge["clients"][0]["topics"]) == set(listed["topics"]) - {
+                "/cmd_vel",
+                "/mucat/stop",
+            }
+
+    play_open(settings, scenario)
+
+
+INVALID = (
+    *("", "{", "[]", "7", '"x"', '{"op": 7}', '{"op": "fly"}', '{"op": "subscribe"}'),
+    '{"op": "advertise_service", "service": "/mine", "type": "a/B"}',
+    '{"op": "subscribe", "topic": "/no"}',
+    '{"op": "subscribe", "topic": "/depth", "type": "a/B"}',
+    '{"op": "subscribe", "topic": "/depth", "throttle_rate": -1}',
+    '{"op": "subscribe", "topic": "/depth", "queue_length": 1e999}',
+    '{"op": "subscribe", "topic": "/depth", "fragment_size": 1}',
+    '{"op": "fragment", "data": "x"}',
+    '{"op": "publish", "topic": "/depth"}',
+    '{"op": "publish", "topic": "/cmd_vel"}',
+    '{"op": "set_level", "level": "all"}',
+    '{"op": "call_service", "service": "/mucat/arm", "args": 7}',
+    "[" * 2000,
+)
+
+
+def test_an_invalid_operation_is_answered_in_words(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        token = await make_token(served)
+        async with open_rosbridge(served, token) as socket:
+            client = RosbridgeClient(socket)
+            for message in INVALID:
+                await socket.send(message)
+                assert (await client.next("status"))["msg"].endswith((".", "?")), message
+                assert (await client.call("/rosapi/get_time"))["result"] is True
+            for _ in range(INVALID_MAX):
+                await socket.send("{")
+            with pytest.raises(ConnectionClosed):
+                await client.next("never")
+
+    play_open(settings, scenario)
+
+
+def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.features.doors.subscriptions.STALL_SECONDS", 1.0)
+
+    async def scenario(served: Served) -> None:
+        token = await make_token(served, "read")
+        async with (
+            open_rosbridge(served, token, max_queue=1) as stalled,
+            open_rosbridge(served, token) as well,
+        ):
+            stalled.transport.pause_reading()
+            for socket in (stalled, well):
+                await RosbridgeClient(socket).say(op="subscribe", topic="/camera/image/compressed")
+            await RosbridgeClient(well).call("/rosapi/get_time")
+            await served.heard("picture")
+            door = served.container.doors.doors["rosbridge"]
+            await until(lambda: len(door.clients) == 2, "both")
+            number = 0
+            while len(door.clients) == 2:
+                number += 1
+                served.runtime.publish(picture_block(number, 300_000))
+                picture = await RosbridgeClient(well).next("publish")
+                assert picture["topic"] == "/camera/image/compressed"
+                await asyncio.sleep(0)
+            assert [one.identity.name for one in door.clients] == ["Program"]
+
+    play_open(settings, scenario)
+
+
+def _quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
+    """Body to world, turned by yaw, then pitch, then roll."""
+    (cr, sr), (cp, sp), (cy, sy) = ((cos(one / 2), sin(one / 2)) for one in (roll, pitch, yaw))
+    return (
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )
+
+
+def _angles(turn: dict[str, float]) -> tuple[float, float, float]:
+    w, x, y, z = (turn[axis] for axis in "wxyz")
+    return (
+        atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+        asin(2 * (w * y - z * x)),
+        atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
+    )
+
+
+def _vector(values: dict[str, float]) -> tuple[float, float, float]:
+    return values["x"], values["y"], values["z"]
+
+
+def _pixels(png: bytes) -> bytes:
+    """The samples of an RGB picture whose rows have no filter."""
+    at, packed, width = 8, b"", 0
+    while at < len(png):
+        (size,) = struct.unpack_from(">I", png, at)
+        kind, data = png[at + 4 : at + 8], png[at + 8 : at + 8 + size]
+        if kind == b"IHDR":
+            width = struct.unpack_from(">I", data)[0]
+        packed += data if kind == b"IDAT" else b""
+        at += 12 + size
+    raw, step = zlib.decompress(packed), 3 * width + 1
+    return b"".join(raw[place + 1 : place + step] for place in range(0, len(raw), step)).rstrip(b"\n")
