@@ -396,7 +396,7 @@ def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
             number = 0
             while len(door.clients) == 2:
                 number += 1
-                served.runtime.publish(picture_block(number, 300_000))
+                served.container.doors.see(picture_block(number, 300_000))
                 picture = await RosbridgeClient(well).next("publish")
                 assert picture["topic"] == "/camera/image/compressed"
                 await asyncio.sleep(0)
