@@ -1,9 +1,9 @@
 """The craft: the physical numbers of one robot in water, of its fins and of its sensors, and their file.
 
-Three origins occur. *Published*: from the robot's own published code, good to some per cent. *Assumed*:
-estimated from the hull's size and shape, since nobody published it; may be wrong by a factor of two.
-*Data sheet*: of the part named; its values are typical, and a single part may differ by a factor of two.
-Numbers of the large U-CAT (19 kg), which circulate under this robot's name, are not used.
+Three origins occur. *Published*: from the robot's own published code. *Assumed*: estimated from the hull's
+size and shape, since nobody published it. *Data sheet*: of the part named; its values are typical, and a
+single part may differ by a factor of two. The spread is where the number of a real robot is expected. Numbers
+of the large U-CAT (19 kg), which circulate under this robot's name, are not used.
 
 Fins: front right, back right, back left, front left. Body axes: forward, right, down.
 """
@@ -37,9 +37,11 @@ TRIM = Range(-0.05, 0.05)
 TITLE_MAX, ORIGIN_MAX = 100, 2000
 
 
-def _number(default: Any, unit: str, meaning: str) -> Any:
-    """A field whose unit and meaning the reference shows."""
-    return field(default=default, metadata={"unit": unit, "meaning": meaning})
+def _number(default: Any, unit: str, meaning: str, origin: str, spread: str) -> Any:
+    """A field whose unit, meaning, origin and spread the reference shows."""
+    return field(
+        default=default, metadata={"unit": unit, "meaning": meaning, "origin": origin, "spread": spread}
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,84 +73,124 @@ class SensorQuality:
 class Craft:
     """The numbers of one robot; the defaults are those of µ-CAT. Raises ValueError for a mass of 0."""
 
-    mass: Annotated[float, Range(0.75, 12)] = _number(3.0, "kg", "mass; published")
+    mass: Annotated[float, Range(0.75, 12)] = _number(3.0, "kg", "mass", "published", "5 %")
     size: tuple[Length, Length, Length] = _number(
-        (0.24, 0.10, 0.10),
+        (0.24, 0.13, 0.10),
         "m",
-        "hull along forward, right, down; published. At the surface an upright box, at walls an ellipsoid",
+        "hull along forward, right, down. At the surface an upright box, at walls an ellipsoid",
+        "length and height published; width assumed: the published fins' shafts are 0.13 apart. A published "
+        "width of 0.10 leaves 2.4 litres, which cannot carry 3 kg; this box has 3.1, and displaces 3.0",
+        "5 %; width 0.13 to 0.16",
     )
     inertia: tuple[Inertia, Inertia, Inertia] = _number(
-        (0.005, 0.0169, 0.0169), "kg m²", "about forward, right, down; assumed: a box of that size and mass"
+        (0.0067, 0.0169, 0.0186),
+        "kg m²",
+        "about forward, right, down",
+        "assumed: an even box of this size and mass",
+        "half (batteries at the middle) to 1.5 times (at the ends)",
     )
     buoyancy: Annotated[float, Range(0.9, 1.1)] = _number(
-        1.003, "", "buoyancy under water as a share of the weight; assumed, published is slightly positive"
+        1.003,
+        "",
+        "buoyancy under water as a share of the weight",
+        "assumed; published is: slightly positive",
+        "1.001 to 1.01, by trim weights",
     )
     buoyancy_forward: Annotated[float, TRIM] = _number(
-        0.0, "m", "centre of buoyancy before the centre of mass; assumed: trimmed"
+        0.0, "m", "centre of buoyancy before the centre of mass", "assumed: trimmed", "±3 mm"
     )
     buoyancy_right: Annotated[float, TRIM] = _number(
-        0.0, "m", "centre of buoyancy to the right of the centre of mass; assumed: trimmed"
+        0.0, "m", "centre of buoyancy to the right of the centre of mass", "assumed: trimmed", "±3 mm"
     )
     buoyancy_height: Annotated[float, TRIM] = _number(
-        0.010, "m", "centre of buoyancy above the centre of mass; assumed. Below 0 it capsizes"
+        0.010,
+        "m",
+        "centre of buoyancy above the centre of mass. Below 0 it capsizes",
+        "assumed: a tenth of the height, with batteries at the bottom",
+        "5 to 20 mm",
     )
     restitution: Annotated[float, Range(0, 1)] = _number(
-        0.2, "", "share of the speed towards a wall that comes back; assumed: plastic on tiles, 0 to 0.5"
+        0.2, "", "share of the speed towards a wall that comes back", "assumed: plastic on tiles", "0 to 0.5"
     )
     friction: Annotated[float, Range(0, 2)] = _number(
-        0.3, "", "Coulomb's, of the hull on walls and floor; assumed: wet plastic, 0.1 to 0.6"
+        0.3, "", "Coulomb's, of the hull on walls and floor", "assumed: wet plastic", "0.1 to 0.6"
     )
     added_mass: tuple[AddedMass, AddedMass, AddedMass, AddedInertia, AddedInertia, AddedInertia] = _number(
-        (0.9, 2.6, 3.2, 0.004, 0.012, 0.010),
+        (0.9, 2.6, 3.2, 0.0023, 0.012, 0.0083),
         "kg, kg m²",
-        "water that moves along in surge, sway, heave, roll, pitch, yaw; assumed",
+        "water that moves along in surge, sway, heave, roll, pitch, yaw",
+        "assumed: between an ellipsoid within the hull (Lamb, *Hydrodynamics*, 1932, 114 and 121) and a "
+        "box with four plates as fins (coefficients of DNV-RP-H103, 2011, appendix A)",
+        "0.32 to 1.1, 0.91 to 3.0, 1.5 to 5.3 kg; 0.0001 to 0.0054, 0.0022 to 0.026, 0.0010 to 0.014 kg m²",
     )
     damping_linear: tuple[Damping, Damping, Damping, TurnDamping, TurnDamping, TurnDamping] = _number(
-        (0.6, 1.5, 1.5, 0.004, 0.006, 0.006), "N s/m, N m s", "damping for each m/s and rad/s; assumed"
+        (0.6, 1.5, 1.5, 0.004, 0.006, 0.006),
+        "N s/m, N m s",
+        "damping for each m/s and rad/s",
+        "assumed: a fifth to two fifths of all damping at 0.1 m/s and 0.5 rad/s",
+        "a factor of two",
     )
     damping_quadratic: tuple[Drag, Drag, Drag, TurnDrag, TurnDrag, TurnDrag] = _number(
         (10.0, 25.0, 35.0, 0.02, 0.05, 0.05),
         "N s²/m², N m s²",
-        "damping for each (m/s)² and (rad/s)²; assumed",
+        "damping for each (m/s)² and (rad/s)²",
+        "assumed: coefficients of 1.5, 2.1 and 2.2 on the box's sides, which are those of a box (1 to 1.3) "
+        "and of what stands out from it",
+        "half to 1.2 times; turns: a factor of two",
     )
     fin_positions: tuple[
         tuple[Place, Place], tuple[Place, Place], tuple[Place, Place], tuple[Place, Place]
     ] = _number(
         ((0.110, 0.065), (-0.110, 0.065), (-0.110, -0.065), (0.110, -0.065)),
         "m",
-        "forward and right, of the fins' shafts; published",
+        "forward and right, of the fins' shafts",
+        "published",
+        "3 mm",
     )
     fin_mount: Annotated[float, Range(0, 1.5)] = _number(
-        pi / 6, "rad", "between a fin at angle 0 and the long axis; published"
+        pi / 6, "rad", "between a fin at angle 0 and the long axis", "published", "0.03 rad"
     )
-    fin_area: Annotated[float, Range(0.001, 0.02)] = _number(0.0045, "m²", "of one fin; published")
+    fin_area: Annotated[float, Range(0.001, 0.02)] = _number(0.0045, "m²", "of one fin", "published", "5 %")
     fin_centre: Annotated[float, Range(0.011, 0.18)] = _number(
-        0.045, "m", "from the shaft to where a fin's force acts; published"
+        0.045, "m", "from the shaft to where a fin's force acts", "published", "10 %"
     )
     fin_drag: Annotated[float, Range(0.03, 1.24)] = _number(
         0.31,
         "",
-        "C_d of the published thrust formula, which has 0.15 or 0.31 in it; uncertain by that",
+        "C_d of the published thrust formula",
+        "published, with 0.15 or 0.31. The thrust of 0.39 N a fin that follows from 0.31 is two to three "
+        "times that of Lighthill's theory of slender fins, to which 0.15 is near",
+        "0.10 to 0.35",
     )
     fin_thrust_per_drag: Annotated[float, Range(3.5, 56)] = _number(
-        13.95, "", "C_T / C_d; derived from the published formula"
+        13.95, "", "C_T / C_d", "derived from the published formula", "15 %, by the amplitude"
     )
     fin_normal: Annotated[float, Range(0.5, 8)] = _number(
-        2.0, "", "C_N, drag of a fin across its blade; assumed: a flat plate"
+        2.0, "", "C_N, drag of a fin across its blade", "assumed: a flat plate", "1.2 (steady) to 4 (strokes)"
     )
     fin_delay: Annotated[float, Range(0, 0.2)] = _number(
-        0.0, "s", "from a fin's motion to the water's force on the hull; assumed: none"
+        0.0, "s", "from a fin's motion to the water's force on the hull", "assumed: none", "0 to 0.1 s"
     )
     pressure_position: tuple[Place, Place, Place] = _number(
         (0.0, 0.0, -0.05),
         "m",
-        "of the pressure sensor; the IMU is at the centre of mass; assumed: on the back",
+        "of the pressure sensor; the IMU is at the centre of mass",
+        "assumed: on the back",
+        "1 cm; forward 5 cm",
     )
     gyroscope_offset: tuple[RateOffset, RateOffset, RateOffset] = _number(
-        (0.0, 0.0, 0.0), "rad/s", "fixed offset of the turn rate, beside the one drawn at the start; assumed"
+        (0.0, 0.0, 0.0),
+        "rad/s",
+        "fixed offset of the turn rate, beside the one drawn at the start",
+        "assumed: calibrated",
+        "±0.35 rad/s without a calibration (data sheet)",
     )
     accelerometer_offset: tuple[ForceOffset, ForceOffset, ForceOffset] = _number(
-        (0.0, 0.0, 0.0), "m/s²", "fixed offset of the specific force, beside the one drawn; assumed"
+        (0.0, 0.0, 0.0),
+        "m/s²",
+        "fixed offset of the specific force, beside the one drawn",
+        "assumed: calibrated",
+        "±0.5 m/s² without a calibration (data sheet)",
     )
     pressure: SensorQuality = SensorQuality(noise=42.0, walk=1.0, step=0.67)
     """Pa. MS5837-30BA: noise by its data sheet 20 Pa at OSR 8192, twice that at the firmware's 2048, which
@@ -182,6 +224,11 @@ class Craft:
             raise ValueError(f"size is {self.size}; each length must be above 0")
         if not 0 <= self.restitution <= 1 or not self.friction >= 0:
             raise ValueError("restitution must be 0 to 1, friction not below 0")
+
+    @property
+    def volume(self) -> float:
+        """m³ of fresh water that the hull displaces under water."""
+        return self.mass * self.buoyancy / 1000
 
     @property
     def height(self) -> float:

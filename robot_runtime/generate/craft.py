@@ -27,9 +27,14 @@ An entry that is left out is the default's, also in a sensor's table. An entry t
 its range, is refused with its name. The file of the robot is named by `[craft] file` in `robot.toml`; without
 a name it is the adopted one, `craft.toml` in the data folder, and without that the default craft. A scenario
 with `craft = "robot"` has that craft's hull, and its model-based controller knows it.
+"""
+ORIGINS = """\
+*Published* numbers are from the robot's own published code. *Assumed* ones are estimates, since nobody
+published them. The spread is where the number of a real robot is expected; [identify](../use/identify.md)
+replaces most of them by measured ones.
 
-Origins: *published* numbers are from the robot's own published code, good to some per cent. *Assumed* ones
-are estimates, since nobody published them, and may be wrong by a factor of two.
+The default's numbers fit together: its hull has the volume that it must displace, its inertia is that of this
+hull, and its added mass lies between those of the smallest and the largest body of this size.
 """
 SENSORS = """\
 Each is a table. `pressure` is in Pa, `gyroscope` in rad/s, `accelerometer` in m/s², `encoder` in rad.
@@ -64,12 +69,19 @@ def craft_page() -> str:
         for name, meaning in _ENTRIES.items()
     ]
     assert set(_ENTRIES) == {one.name for one in fields(SensorQuality)}
+    origins = [
+        (f"`{one.name}`", _shown(getattr(plain, one.name)), one.metadata["origin"], one.metadata["spread"])
+        for one in numbers
+    ]
     return page(
         "Craft",
         SOURCE,
         INTRODUCTION,
         "## `[craft]`\n",
         table(("entry", "range", "default", "unit", "meaning"), rows),
+        "## Where the numbers come from\n",
+        ORIGINS,
+        table(("entry", "default", "origin", "spread"), origins),
         "## Sensors\n",
         SENSORS,
         table(("entry", "meaning", *(f"`{name}`" for name in sensors)), defaults),

@@ -16,7 +16,7 @@ from tests.runtime.simulation.water.harness import STILL, UNDAMPED, Flapping, dr
 POOL = Basin(depth=2.0, length=4.0, width=3.0)
 WELL = Basin(depth=100.0, length=1.0, width=1.0)
 """So deep that the surface plays no part."""
-HALF = (0.12, 0.05, 0.05)
+HALF = (0.12, 0.065, 0.05)
 
 
 def reach(state: BodyState, axis: int) -> float:
