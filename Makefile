@@ -31,7 +31,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels \
+.PHONY: help run test test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -123,6 +123,9 @@ control: setup-test host-firmware ## remake the table of docs/develop/proofs/con
 
 samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
 	$(PYTHON) -m bench.samples
+
+packages: setup-test all-wheels ## install the wheels into fresh systems of four architectures and swim there (needs root; some with ONLY=names)
+	@nice $(PYTHON) -m tests.proofs.packages $(ONLY)
 
 fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on from what earlier runs found
 	@nice $(PYTHON) -m tests.proofs.fuzz $(FUZZ_SECONDS)

@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from packages.architectures import ARCHITECTURES, Architecture, PackagingError
+from packages.constraints import write_constraints
 from packages.sysroot import make_sysroot
 from robot_runtime.places import BUILD, PACKAGES
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
@@ -48,6 +49,7 @@ def main() -> int:
         print(build_mucat(DIST))
         for name in names:
             print(build_emulator(ARCHITECTURES[name], DIST))
+        print(*write_constraints(DIST), sep="\n")
     except PackagingError as problem:
         print(problem, file=sys.stderr)
         return 1

@@ -1,0 +1,112 @@
+"""Fresh root file systems of Debian, made by mmdebstrap and kept in build/roots.
+
+What runs in one has this computer's network and devices, and of its files only the wheels. Needs root.
+"""
+
+import os
+import shutil
+import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from packages.mirror import find_mirror
+
+FOLDER = Path("build/roots").absolute()
+DIST = Path("dist").absolute()
+PYTHON = ("python3", "python3-venv", "ca-certificates")
+SMALL = ("python3-numpy", "python3-pydantic", "python3-pydantic-core")
+"""What a 32-bit system has from apt: pip finds no wheels of them."""
+PIP_FILES = (Path("/etc/pip.conf"), Path.home() / ".config/pip/pip.conf", Path.home() / ".pip/pip.conf")
+BINFMT = Path("/proc/sys/fs/binfmt_misc")
+ENTER = """
+set -e
+for place in proc dev; do mount --rbind "/$place" "$1/$place"; done
+mkdir -p "$1/wheels" "$1/etc/ssl"
+mount --bind "$2" "$1/wheels"
+mount --bind /etc/ssl "$1/etc/ssl"
+cp -L /etc/resolv.conf "$1/etc/resolv.conf"
+root=$1; shift 2
+exec chroot "$root" "$@"
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class RootSystem:
+    """A Debian to install into; `packages` are those of apt."""
+
+    name: str
+    architecture: str
+    suite: str
+    packages: tuple[str, ...] = PYTHON
+    interpreter: str = ""
+    """The emulator of a foreign processor, as update-binfmts names it."""
+    setarch: tuple[str, ...] = ()
+    """Makes the kernel of this computer name the architecture."""
+
+    @property
+    def is_small(self) -> bool:
+        """True where wheels of NumPy and others are missing."""
+        return SMALL[0] in self.packages
+
+    @property
+    def path(self) -> Path:
+        """The root folder."""
+        return FOLDER / self.name
+
+    def make(self) -> None:
+        """Makes it, if it does not exist. Raises CalledProcessError."""
+        if self.interpreter:
+            _enable(self.interpreter)
+        if self.path.exists():
+            return
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        part = self.path.with_name(f"{self.name}.part")
+        # What an interrupted one has left mounted there is not to be removed.
+        subprocess.run(["rm", "-rf", "--one-file-system", str(part)], check=True)
+        command = ["mmdebstrap", "--quiet", "--variant=minbase", f"--architectures={self.architecture}"]
+        command += [f"--include={','.join(self.packages)}", self.suite, str(part)]
+        subprocess.run([*command, f"deb {find_mirror()} {self.suite} main"], check=True)
+        part.rename(self.path)
+
+    def command(self, words: Sequence[str]) -> list[str]:
+        """The command line that runs `words` in the root; its mounts end with it."""
+        enter = ["unshare", "--mount", "--propagation", "private", "sh", "-c", ENTER, "enter"]
+        return [*self.setarch, *enter, str(self.path), str(DIST), *words]
+
+    def run(self, *words: str) -> str:
+        """Runs a command in the root; returns what it printed. Fails where the command does."""
+        done = subprocess.run(
+            self.command(words), capture_output=True, text=True, check=False, env=environment(self.path)
+        )
+        assert done.returncode == 0, f"{' '.join(words)}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        return done.stdout
+
+
+def environment(root: Path) -> dict[str, str]:
+    """The environment inside: pip's settings of this computer, and a plain locale."""
+    for file in PIP_FILES:
+        if file.exists():
+            (root / file.parent.relative_to("/")).mkdir(parents=True, exist_ok=True)
+            shutil.copy(file, root / file.relative_to("/"))
+    own = {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "SSL_"))}
+    path = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
+    return own | {"PATH": path, "HOME": str(Path.home()), "LANG": "C.UTF-8", "PYTHONUNBUFFERED": "1"}
+
+
+def _enable(interpreter: str) -> None:
+    if not (BINFMT / "register").exists():
+        subprocess.run(["mount", "-t", "binfmt_misc", "binfmt_misc", str(BINFMT)], check=True)
+    if not (BINFMT / interpreter).exists():
+        subprocess.run(["update-binfmts", "--enable", interpreter], check=True)
+
+
+ROOTS = (
+    RootSystem("amd64-trixie", "amd64", "trixie"),
+    RootSystem(
+        "i386-trixie", "i386", "trixie", (*PYTHON, *SMALL, "python3-opencv"), setarch=("setarch", "linux32")
+    ),
+    RootSystem("arm64-bookworm", "arm64", "bookworm", interpreter="qemu-aarch64"),
+    RootSystem("arm64-trixie", "arm64", "trixie", interpreter="qemu-aarch64"),
+    RootSystem("armhf-trixie", "armhf", "trixie", (*PYTHON, *SMALL), interpreter="qemu-arm"),
+)
