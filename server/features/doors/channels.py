@@ -42,7 +42,7 @@ class DoorChannel:
     """A stream of messages. `sources` are the topics that it is made of.
 
     `latched`: a new subscriber gets the newest message at once. `lossless`: no message is skipped, and a
-    client that falls too far behind is disconnected.
+    client that falls too far behind is disconnected. `hidden`: it is part of the protocol, and not listed.
     """
 
     name: str
@@ -51,6 +51,7 @@ class DoorChannel:
     convert: Convert
     latched: bool = False
     lossless: bool = False
+    hidden: bool = False
 
 
 class ChannelMessage:

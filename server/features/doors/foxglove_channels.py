@@ -19,6 +19,8 @@ from server.features.exports.pose import BODY, LEVEL, WORLD, stamp
 from server.features.exports.values import MICRO
 from server.features.sessions.chunks import describe_topics
 
+CLOCK, PARAMETERS = "clock", "changed parameters"
+"""Hidden channels: the time of the robot's computer, ten times a second, and changes of parameters."""
 PICTURES = {"picture": "/camera", "observer": "/observer", "mask": "/mask", "balanced": "/balanced"}
 _TEXT = {"type": "string"}
 _WHOLE = {"type": "integer"}
@@ -69,6 +71,8 @@ def foxglove_channels(simulated: bool) -> list[DoorChannel]:
         DoorChannel("/tf_static", "foxglove.FrameTransform", (HEALTH,), _level, latched=True),
         DoorChannel("/pose", "foxglove.PoseInFrame", SOURCES, _poses()),
         DoorChannel("/diagnostics", DIAGNOSTICS, (HEALTH,), diagnostics, latched=True),
+        DoorChannel(CLOCK, "", ("control", HEALTH), _tick, hidden=True),
+        DoorChannel(PARAMETERS, "", ("parameters",), _tick, hidden=True),
     ]
 
 
@@ -100,6 +104,11 @@ def _document(sample: Sample) -> Fields:
     value = sample.value
     assert isinstance(value, Mapping)
     return dict(value)
+
+
+def _tick(sample: Sample) -> Fields:
+    """Nothing but its time."""
+    return {"time": sample.time}
 
 
 def _picture(sample: Sample) -> Fields:

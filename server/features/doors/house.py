@@ -1,7 +1,9 @@
 """The doors of a server: which are open, who is connected, and the samples on their way to them."""
 
 import asyncio
+import secrets
 from collections.abc import Awaitable, Callable, Iterable, Mapping
+from contextlib import suppress
 from time import time as utc_time
 from typing import Any, Literal
 
@@ -53,6 +55,8 @@ class Doors:
             "foxglove": Door("foxglove", settings.doors.foxglove, foxglove_channels(simulated)),
         }
         self.robot = settings.robot
+        self.session = secrets.token_hex(8)
+        """Names this run of the server: a program that connects again sees whether it is another."""
         self.changed: list[Callable[[], None]] = []
         """Called when topics or clients of a door change."""
         self._clock = clock
@@ -108,7 +112,9 @@ class Doors:
     def note_change(self) -> None:
         """Tell those who watch the connections between programs and topics."""
         for changed in [*self.changed]:
-            changed()
+            # A program that reads too little of it is disconnected by its own messages.
+            with suppress(EvictedError):
+                changed()
 
     def dismiss(self, device: int, reason: str) -> None:
         """End all connections of this device, with a reason."""

@@ -77,9 +77,10 @@ class RosbridgeSession(DoorSession):
 
     async def run(self, receive: Callable[[], Awaitable[str | bytes | None]]) -> None:
         """Act on operations until the program leaves. Raises EvictedError."""
-        await self.listen(receive, self._act, lambda text: self._say("error", text))
+        await self.listen(receive, self.act, lambda text: self._say("error", text))
 
-    def _act(self, text: str | bytes) -> None:
+    def act(self, text: str | bytes) -> None:
+        """Act on an operation. Raises UnusableMessageError."""
         message = read_operation(text)
         name = message.get("op")
         operation = self._operations.get(name) if isinstance(name, str) else None

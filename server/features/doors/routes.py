@@ -7,6 +7,7 @@ from fastapi import WebSocket, WebSocketDisconnect
 
 from robot_runtime.clock import Clock
 from server.features.doors.commands import DoorCommands, DoorPilot
+from server.features.doors.foxglove import SUBPROTOCOLS, FoxgloveSession, choose_subprotocol
 from server.features.doors.house import Door, Doors
 from server.features.doors.rosbridge import RosbridgeSession, read_operation
 from server.features.doors.schemas import DoorClientDetails, DoorDetails
@@ -53,6 +54,12 @@ async def open_rosbridge(socket: WebSocket) -> None:
     await _Visit(socket, "rosbridge").serve(None)
 
 
+@FOXGLOVE.socket("/foxglove")
+async def open_foxglove(socket: WebSocket) -> None:
+    """Serve a program that speaks Foxglove's protocol until it leaves."""
+    await _Visit(socket, "foxglove").serve(choose_subprotocol(socket.scope["subprotocols"]))
+
+
 class _Visit:
     """One connection of a program, from its sign-in to its end."""
 
@@ -78,6 +85,8 @@ class _Visit:
         """Accept the connection, and serve it until its end."""
         await self._socket.accept(subprotocol=subprotocol)
         try:
+            if self._door.name == "foxglove" and subprotocol is None:
+                raise EvictedError(f"Offer a subprotocol: {' or '.join(SUBPROTOCOLS)}.", POLICY_VIOLATION)
             caller = self._socket.scope.get(IDENTITY) or await self._sign_in()
             # Access may have been revoked while the socket opened; from here on the door dismisses it.
             if self._access.refresh(caller) != caller:
@@ -96,8 +105,8 @@ class _Visit:
 
     async def _listen(self, client: DoorClient, pilot: DoorPilot) -> None:
         client.owner = pilot.owner.number
-        session = RosbridgeSession(client, pilot, self._doors, self._door, self._commands)
-        await session.run(self._receive)
+        kind = RosbridgeSession if self._door.name == "rosbridge" else FoxgloveSession
+        await kind(client, pilot, self._doors, self._door, self._commands).run(self._receive)
 
     async def _sign_in(self) -> Identity:
         """The identity by the first message. Raises EvictedError."""
@@ -163,7 +172,9 @@ def _describe(door: Door, arbiter: ControlArbiter) -> DoorDetails:
                 role=client.identity.role,
                 address=client.address,
                 since=client.since,
-                topics=sorted({one.channel.name for one in client.subscriptions.values()}),
+                topics=sorted(
+                    {one.channel.name for one in client.subscriptions.values() if not one.channel.hidden}
+                ),
                 sent=client.sent,
                 in_control=holder is not None and holder == client.owner,
             )

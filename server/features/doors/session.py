@@ -51,9 +51,15 @@ class DoorSession:
                         ) from problem
                     complain(str(problem))
         finally:
-            for call in self._calls:
-                call.cancel()
-            await asyncio.gather(*self._calls, return_exceptions=True)
+            calls = self.cancel_calls()
+            await asyncio.gather(*calls, return_exceptions=True)
+
+    def cancel_calls(self) -> list[asyncio.Task[None]]:
+        """Give up the calls that still wait; returns them."""
+        calls = [*self._calls]
+        for call in calls:
+            call.cancel()
+        return calls
 
     def begin(self, call: Coroutine[Any, Any, None], *, always: bool = False) -> None:
         """Work on a call beside the messages that follow it; STOP always may."""

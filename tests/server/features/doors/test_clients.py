@@ -87,3 +87,31 @@ def test_roslibpy_reads_commands_and_stops(robot: Stack) -> None:
     assert said["armed"]["success"]
     assert said["stopped"]["success"]
     assert "set_point" in said["refused"]
+
+
+def test_foxgloves_own_client_shows_sets_drives_and_stops(robot: Stack) -> None:
+    said = run(
+        "node", "foxglove.mjs", address(robot, "foxglove", "operate"), address(robot, "foxglove", "read")
+    )
+    assert said["info"]["supportedEncodings"] == ["json"]
+    for channel in said["channels"]:
+        assert json.loads(channel["schema"])["type"] == "object", channel["topic"]
+    latest = said["latest"]
+    assert latest["/imu"]["force"][2] == pytest.approx(-9.8, abs=1.5)
+    assert latest["/tf"]["parent_frame_id"] == "ned"
+    assert latest["/tf_static"]["rotation"] == {"w": 0.0, "x": 1.0, "y": 0.0, "z": 0.0}
+    assert latest["/pose"]["pose"]["position"]["z"] == pytest.approx(latest["/depth"]["depth"], abs=0.1)
+    assert latest["/camera"]["format"] == "jpeg"
+    assert {one["name"] for one in latest["/diagnostics"]["status"]} >= {"mucat: runtime", "mucat: board"}
+    assert said["parameters"]
+    assert {"name": "/imu", "publisherIds": ["/mucat"]} in said["graph"]["publishedTopics"]
+    assert "operator" in said["refused"]["refused"]
+    assert "control" in said["before"]["refused"]
+    assert said["taken"]["success"]
+    assert said["changed"] == said["parameters"]["vision.rate"] + 1
+    assert said["armed"]["success"]
+    assert said["driven"]["x"] == pytest.approx(0.5, abs=0.01)
+    assert said["driven"]["yaw"] == pytest.approx(-0.25, abs=0.01)
+    assert said["stopped"]["success"]
+    assert "configById" in said["asset"]
+    assert "no asset" in said["none"]

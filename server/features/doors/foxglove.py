@@ -1,0 +1,379 @@
+"""The Foxglove WebSocket protocol (foxglove/ws-protocol, version 1) for one program."""
+
+import json
+from collections.abc import Awaitable, Callable
+from struct import Struct, error
+from typing import Any
+
+from server.features.doors.channels import ChannelMessage, DoorChannel, encode_json
+from server.features.doors.commands import REFUSALS, DoorCommands, DoorPilot, parameter_values
+from server.features.doors.foxglove_channels import CLOCK, PARAMETERS, schema_text
+from server.features.doors.foxglove_services import SERVICES, advertise_services
+from server.features.doors.graph import Graph, draw_graph, list_changes
+from server.features.doors.house import Door, Doors
+from server.features.doors.layouts import ASSETS, read_asset
+from server.features.doors.ros_channels import type_name
+from server.features.doors.session import (
+    NAME_MAX,
+    DoorSession,
+    UnusableMessageError,
+    mapping_of,
+    text_of,
+)
+from server.features.doors.subscriptions import SUBSCRIPTIONS_MAX, DoorClient, DoorSubscription
+from server.features.doors.twist import CMD_VEL, STOP_TOPIC, TAKEN_IN, read_twist
+
+SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
+CAPABILITIES = (
+    "clientPublish",
+    "parameters",
+    "parametersSubscribe",
+    "services",
+    "time",
+    "connectionGraph",
+    "assets",
+)
+MESSAGE, TIME, SERVICE_ANSWER, ASSET = range(1, 5)
+PUBLISHED, SERVICE_CALL = 1, 2
+ERROR = 2
+"""The status level."""
+NUMBER_MAX = 2**32 - 1
+_MESSAGE = Struct("<BIQ")
+_TIME = Struct("<BQ")
+_PUBLISHED = Struct("<BI")
+_SERVICE = Struct("<BIII")
+_ASSET = Struct("<BIBI")
+
+
+class FoxgloveSession(DoorSession):
+    """Acts on a program's messages; `doors` passes the samples on to it."""
+
+    def __init__(
+        self, client: DoorClient, pilot: DoorPilot, doors: Doors, door: Door, commands: DoorCommands
+    ) -> None:
+        super().__init__(client)
+        self._pilot = pilot
+        self._doors = doors
+        self._door = door
+        self._commands = commands
+        channels = [one for one in door.publisher.channels.values() if not one.hidden]
+        self._channels: dict[int, DoorChannel] = dict(enumerate(channels, 1))
+        self._published: dict[int, str] = {}
+        """The topics that the program publishes, by its own numbers."""
+        self._watched: set[str] = set()
+        """The parameters whose changes it wants to know."""
+        self._known: dict[str, Any] = {}
+        self._graph: Graph | None = None
+        self._operations: dict[str, Callable[[dict[str, Any]], None]] = {
+            "subscribe": self._subscribe,
+            "unsubscribe": self._unsubscribe,
+            "advertise": self._advertise,
+            "unadvertise": self._unadvertise,
+            "getParameters": self._get_parameters,
+            "setParameters": self._set_parameters,
+            "subscribeParameterUpdates": self._watch_parameters,
+            "unsubscribeParameterUpdates": self._forget_parameters,
+            "subscribeConnectionGraph": lambda _: self._watch_graph(),
+            "unsubscribeConnectionGraph": lambda _: self._forget_graph(),
+            "fetchAsset": self._fetch_asset,
+        }
+
+    async def run(self, receive: Callable[[], Awaitable[str | bytes | None]]) -> None:
+        """Greet the program, and act on its messages until it leaves. Raises EvictedError."""
+        self._greet()
+        self._doors.changed.append(self._send_graph)
+        try:
+            await self.listen(receive, self.act, lambda text: self._say(ERROR, text))
+        finally:
+            self._doors.changed.remove(self._send_graph)
+
+    def _greet(self) -> None:
+        self._answer(
+            op="serverInfo",
+            name=f"µ-CAT {self._doors.robot}",
+            capabilities=CAPABILITIES,
+            supportedEncodings=["json"],
+            metadata={"robot": self._doors.robot},
+            sessionId=self._doors.session,
+        )
+        self._answer(
+            op="advertise",
+            channels=[
+                {
+                    "id": number,
+                    "topic": channel.name,
+                    "encoding": "json",
+                    "schemaName": channel.type,
+                    "schema": schema_text(channel),
+                    "schemaEncoding": "jsonschema",
+                }
+                for number, channel in self._channels.items()
+            ],
+        )
+        self._answer(op="advertiseServices", services=advertise_services())
+        self._follow(CLOCK, lambda message: [_TIME.pack(TIME, message.time)])
+        self._follow(PARAMETERS, lambda _: self._parameter_changes())
+
+    def _follow(self, name: str, form: Callable[[ChannelMessage], list[bytes | str]]) -> None:
+        """Send something with each message of a hidden channel."""
+        subscription = DoorSubscription(self._door.publisher.channels[name], form)
+        self.client.subscriptions[name] = subscription
+        self._door.publisher.subscribe(self.client, subscription)
+
+    def act(self, message: str | bytes) -> None:
+        """Act on a message. Raises UnusableMessageError."""
+        if isinstance(message, bytes):
+            self._act_on_bytes(message)
+            return
+        try:
+            said = json.loads(message, parse_constant=_refuse_constant)
+        except (ValueError, RecursionError) as problem:
+            raise UnusableMessageError("Messages of text must be JSON.") from problem
+        said = mapping_of(said, "A message")
+        name = said.get("op")
+        operation = self._operations.get(name) if isinstance(name, str) else None
+        if operation is None:
+            raise UnusableMessageError(f"Unknown op {json.dumps(name)[:80]}.")
+        operation(said)
+
+    def _act_on_bytes(self, data: bytes) -> None:
+        try:
+            if data[:1] == bytes([PUBLISHED]):
+                _, number = _PUBLISHED.unpack_from(data)
+                self._take_published(number, data[_PUBLISHED.size :])
+            elif data[:1] == bytes([SERVICE_CALL]):
+                _, service, call, size = _SERVICE.unpack_from(data)
+                start = _SERVICE.size + size
+                self._call_service(service, call, data[_SERVICE.size : start], data[start:])
+            else:
+                raise UnusableMessageError("Unknown kind of binary message; there are 1 and 2.")
+        except error as problem:
+            raise UnusableMessageError("A binary message is cut off.") from problem
+
+    def _subscribe(self, said: dict[str, Any]) -> None:
+        for one in _list(said, "subscriptions"):
+            asked = mapping_of(one, "A subscription")
+            number, channel = _number(asked, "id"), self._channels.get(_number(asked, "channelId"))
+            if channel is None:
+                raise UnusableMessageError(f"There is no channel {asked['channelId']}.")
+            if number in self.client.subscriptions:
+                raise UnusableMessageError(f"The subscription {number} exists already.")
+            if len(self.client.subscriptions) >= SUBSCRIPTIONS_MAX:
+                raise UnusableMessageError(f"A program may have {SUBSCRIPTIONS_MAX} subscriptions.")
+            subscription = DoorSubscription(channel, _form(number))
+            self.client.subscriptions[number] = subscription
+            self._door.publisher.greet(self.client, subscription, self._doors.newest())
+            self._door.publisher.subscribe(self.client, subscription)
+        self._doors.count_audience()
+
+    def _unsubscribe(self, said: dict[str, Any]) -> None:
+        for number in _list(said, "subscriptionIds"):
+            subscription = self.client.subscriptions.pop(_whole(number), None)
+            if subscription is not None:
+                self._door.publisher.unsubscribe(subscription)
+        self._doors.count_audience()
+
+    def _advertise(self, said: dict[str, Any]) -> None:
+        for one in _list(said, "channels"):
+            asked = mapping_of(one, "A channel")
+            number, topic = _number(asked, "id"), text_of(asked.get("topic"), "topic")
+            if topic not in TAKEN_IN:
+                raise UnusableMessageError(f"Programs may publish {', '.join(TAKEN_IN)}, and not {topic}.")
+            if asked.get("encoding") != "json":
+                raise UnusableMessageError(f"{topic} is taken in as json alone.")
+            if type_name(text_of(asked.get("schemaName"), "schemaName")) != TAKEN_IN[topic]:
+                raise UnusableMessageError(f"{topic} has the type {TAKEN_IN[topic]}.")
+            self._published[number] = topic
+        self._note_published()
+
+    def _unadvertise(self, said: dict[str, Any]) -> None:
+        for number in _list(said, "channelIds"):
+            self._published.pop(_whole(number), None)
+        self._note_published()
+
+    def _note_published(self) -> None:
+        if len(self._published) > SUBSCRIPTIONS_MAX:
+            self._published.clear()
+            raise UnusableMessageError(f"A program may advertise {SUBSCRIPTIONS_MAX} channels.")
+        self._door.published[self.client] = frozenset(self._published.values())
+        self._doors.note_change()
+
+    def _take_published(self, number: int, payload: bytes) -> None:
+        topic = self._published.get(number)
+        if topic == STOP_TOPIC:
+            self.begin(self._stop(), always=True)
+        elif topic == CMD_VEL:
+            linear, angular = read_twist(_read_json(payload))
+            try:
+                self._commands.drive(self._pilot, linear, angular)
+            except REFUSALS as problem:
+                self._say(ERROR, f"{CMD_VEL}: {problem}", "drive")
+        else:
+            raise UnusableMessageError(f"The channel {number} is not advertised.")
+
+    async def _stop(self) -> None:
+        try:
+            await self._commands.perform(self._pilot, "stop", {})
+        except REFUSALS as problem:
+            self._say(ERROR, f"STOP has not been confirmed: {problem}")
+
+    def _call_service(self, service: int, call: int, encoding: bytes, payload: bytes) -> None:
+        name = SERVICES.get(service)
+        try:
+            if name is None:
+                raise UnusableMessageError(f"There is no service {service}.")
+            if encoding != b"json":
+                raise UnusableMessageError("Services take json alone.")
+            fields = mapping_of(_read_json(payload) if payload else {}, "A request")
+            self.begin(self._answer_call(service, call, name, fields), always=name == "stop")
+        except UnusableMessageError as problem:
+            self._fail_call(service, call, str(problem))
+
+    async def _answer_call(self, service: int, call: int, name: str, fields: dict[str, Any]) -> None:
+        try:
+            text = await self._commands.perform(self._pilot, name, fields)
+        except REFUSALS as problem:
+            self._fail_call(service, call, str(problem))
+            return
+        payload = encode_json({"success": True, "message": text}).encode()
+        self.client.answer(_SERVICE.pack(SERVICE_ANSWER, service, call, 4) + b"json" + payload)
+
+    def _fail_call(self, service: int, call: int, why: str) -> None:
+        self._answer(op="serviceCallFailure", serviceId=service, callId=call, message=why)
+
+    def _get_parameters(self, said: dict[str, Any]) -> None:
+        self._send_parameters(_names(said), said.get("id"))
+
+    def _set_parameters(self, said: dict[str, Any]) -> None:
+        given = [mapping_of(one, "A parameter") for one in _list(said, "parameters")]
+        values = {text_of(one.get("name"), "name"): _typed(one.get("value")) for one in given}
+        if not values:
+            raise UnusableMessageError("setParameters needs one parameter at least.")
+        self.begin(self._perform_set(values, said.get("id")))
+
+    async def _perform_set(self, values: dict[str, Any], identifier: object) -> None:
+        current = parameter_values(self._doors.document("parameters"))
+        whole = {name for name, value in current.items() if isinstance(value, int)}
+        values = {
+            name: int(one) if name in whole and isinstance(one, float) and one.is_integer() else one
+            for name, one in values.items()
+        }
+        try:
+            await self._commands.set_parameters(self._pilot, values)
+        except REFUSALS as problem:
+            self._say(ERROR, f"The parameters were not set: {problem}", "parameters")
+            self._send_parameters([*values], identifier)
+            return
+        listed = [_parameter(name, value) for name, value in values.items()]
+        self._answer(op="parameterValues", parameters=listed, **_with(identifier))
+
+    def _watch_parameters(self, said: dict[str, Any]) -> None:
+        current = parameter_values(self._doors.document("parameters"))
+        # The names of the robot's parameters alone: nobody fills the memory with others.
+        self._watched |= set(_names(said)) & current.keys()
+        self._known = current
+
+    def _forget_parameters(self, said: dict[str, Any]) -> None:
+        self._watched -= set(_names(said))
+
+    def _parameter_changes(self) -> list[bytes | str]:
+        current = parameter_values(self._doors.document("parameters"))
+        changed = [
+            _parameter(name, value)
+            for name, value in current.items()
+            if name in self._watched and self._known.get(name) != value
+        ]
+        self._known = current
+        return [encode_json({"op": "parameterValues", "parameters": changed})] if changed else []
+
+    def _send_parameters(self, names: list[str], identifier: object) -> None:
+        """The values of these parameters; of all where none is named."""
+        current = parameter_values(self._doors.document("parameters"))
+        listed = [_parameter(name, value) for name, value in current.items() if not names or name in names]
+        self._answer(op="parameterValues", parameters=listed, **_with(identifier))
+
+    def _watch_graph(self) -> None:
+        self._graph = Graph()
+        self._send_graph()
+
+    def _forget_graph(self) -> None:
+        self._graph = None
+
+    def _send_graph(self) -> None:
+        if self._graph is None:
+            return
+        graph = draw_graph(self._door)
+        changes = list_changes(self._graph, graph)
+        self._graph = graph
+        if any(changes.values()):
+            self._answer(op="connectionGraphUpdate", **changes)
+
+    def _fetch_asset(self, said: dict[str, Any]) -> None:
+        uri, number = text_of(said.get("uri"), "uri"), _number(said, "requestId")
+        if uri in ASSETS:
+            self.client.answer(_ASSET.pack(ASSET, number, 0, 0) + read_asset(uri))
+            return
+        why = f"There is no asset {uri}; there are {', '.join(ASSETS)}.".encode()
+        self.client.answer(_ASSET.pack(ASSET, number, 1, len(why)) + why)
+
+    def _say(self, level: int, text: str, identifier: str = "") -> None:
+        self._answer(op="status", level=level, message=text, **_with(identifier or None))
+
+    def _answer(self, **message: Any) -> None:
+        self.client.answer(encode_json(message))
+
+
+def choose_subprotocol(offered: list[str]) -> str | None:
+    """The subprotocol to speak; None where none that is offered is known."""
+    return next((one for one in offered if one in SUBPROTOCOLS), None)
+
+
+def _form(number: int) -> Callable[[ChannelMessage], list[bytes | str]]:
+    return lambda message: [_MESSAGE.pack(MESSAGE, number, message.time) + message.json.encode()]
+
+
+def _parameter(name: str, value: Any) -> dict[str, Any]:
+    number = isinstance(value, float)
+    return {"name": name, "value": value, **({"type": "float64"} if number else {})}
+
+
+def _typed(value: Any) -> Any:
+    if not isinstance(value, bool | int | float | str):
+        raise UnusableMessageError("A parameter's value is a number, a text, true or false.")
+    return value
+
+
+def _with(identifier: object) -> dict[str, str]:
+    return {"id": identifier[:NAME_MAX]} if isinstance(identifier, str) else {}
+
+
+def _list(said: dict[str, Any], name: str) -> list[Any]:
+    value = said.get(name)
+    if not isinstance(value, list):
+        raise UnusableMessageError(f"{name} must be a list.")
+    return value
+
+
+def _names(said: dict[str, Any]) -> list[str]:
+    return [text_of(one, "A parameter's name") for one in _list(said, "parameterNames")]
+
+
+def _number(said: dict[str, Any], name: str) -> int:
+    return _whole(said.get(name), name)
+
+
+def _whole(value: object, name: str = "id") -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= NUMBER_MAX:
+        raise UnusableMessageError(f"{name} must be a whole number from 0 to {NUMBER_MAX}.")
+    return value
+
+
+def _read_json(payload: bytes) -> Any:
+    try:
+        return json.loads(payload, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as problem:
+        raise UnusableMessageError("The payload must be JSON.") from problem
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(f"{name} is no JSON")

@@ -1,0 +1,11 @@
+"""Layouts of Foxglove and Lichtblick for this robot, which they fetch as assets, or a person as a file."""
+
+from pathlib import Path
+
+FOLDER = Path(__file__).parent / "documents"
+ASSETS = {f"package://mucat/{name}.json": FOLDER / f"{name}.json" for name in ("foxglove", "lichtblick")}
+
+
+def read_asset(uri: str) -> bytes:
+    """The bytes of an asset. Raises KeyError where there is no such one."""
+    return ASSETS[uri].read_bytes()
