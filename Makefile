@@ -31,7 +31,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages \
+.PHONY: help run test test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -215,6 +215,10 @@ wheels: setup ## build the wheels into dist/, with the emulated board for this c
 
 all-wheels: build/.packages-packages setup ## the same with the emulated board for every architecture
 	@$(PYTHON) -m packages.wheels x86_64 aarch64 i686
+
+release: setup ## build a signed release for robots into dist/: make release KEY=~/release-key.pem (MACHINE=aarch64 PYTHON_OF=3.13)
+	@test -n "$(KEY)" || { echo "Name the secret key, which is made where there is none: make release KEY=FILE"; exit 1; }
+	@$(PYTHON) -m packages.release $(KEY) $(addprefix --machine ,$(MACHINE)) $(addprefix --python ,$(PYTHON_OF))
 
 clean: ## remove everything that was built
 	rm -rf build dist .venv frontend/node_modules tests/clients/node_modules server/page server/help

@@ -1,4 +1,4 @@
-"""Messages to systemd, where it has started this process: ready, alive, still starting (sd_notify(3))."""
+"""Messages to systemd, where it has started this process: ready, waiting, alive (sd_notify(3))."""
 
 import os
 import socket
@@ -14,11 +14,13 @@ class ServiceManager:
         address = os.environ.get("NOTIFY_SOCKET", "")
         # A leading @ stands for the zero byte of Linux's abstract sockets.
         self._address = "\0" + address[1:] if address.startswith("@") else address
+        period = os.environ.get("WATCHDOG_USEC", "")
+        self._watch = f"\nWATCHDOG_USEC={period}" if period else ""
         self._fed = float("-inf")
 
     def ready(self) -> None:
-        """Tell it that the service has started."""
-        self._send(b"READY=1")
+        """Tell it that the service has started, and is watched from now on."""
+        self._send(f"READY=1{self._watch}".encode())
 
     def feed(self, now: float) -> None:
         """Tell its watchdog that the service is alive; at most once a second, however often it is called."""
@@ -26,9 +28,10 @@ class ServiceManager:
             self._fed = now
             self._send(b"WATCHDOG=1")
 
-    def still_starting(self, seconds: float) -> None:
-        """Ask it to wait for another so many seconds for the service's start."""
-        self._send(f"EXTEND_TIMEOUT_USEC={round(seconds * 1e6)}".encode())
+    def wait(self, seconds: float) -> None:
+        """Tell it that the service waits for others, and starts within so many s after that."""
+        watch = f"\nWATCHDOG_USEC={round(seconds * 1e6)}\nWATCHDOG=1" if self._watch else ""
+        self._send(f"READY=1{watch}".encode())
 
     def _send(self, message: bytes) -> None:
         if not self._address:

@@ -14,6 +14,8 @@ from server.platform.terminal import PlainFormatter
 COMMANDS = {
     "run": "server.startup:run",
     "runtime": "server.processes.runtime_service:run_runtime",
+    "install": "server.features.installation.command:install",
+    "uninstall": "server.features.installation.command:uninstall",
     "doctor": "server.features.doctor.command:doctor",
     "bring-up": "server.features.bring_up.command:bring_up",
     "upload": "server.features.board.command:upload",

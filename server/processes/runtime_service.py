@@ -14,8 +14,8 @@ from server.platform.pidfile import hold_still, pid_file, running_parts
 from server.platform.settings import Settings, SetupError
 
 WAIT_SECONDS = 0.2
-PATIENCE_SECONDS = 30.0
-"""systemd is asked for this time again and again while the runtime waits."""
+START_SECONDS = 60.0
+"""A start after waiting, on a Raspberry Pi Zero; until then systemd's watchdog is as patient."""
 
 
 @click.command("runtime")
@@ -49,5 +49,5 @@ def _wait_for_turn(paused: Path, lock: Path, needs: tuple[Path, ...]) -> None:
     """Wait until the files exist that the runtime needs, and nobody else uses its board."""
     service = ServiceManager()
     while (paused.exists() and is_served(lock)) or not all(path.exists() for path in needs):
-        service.still_starting(PATIENCE_SECONDS)
+        service.wait(START_SECONDS)
         time.sleep(WAIT_SECONDS)

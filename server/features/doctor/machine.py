@@ -322,7 +322,7 @@ def _list_cameras(root: Path) -> tuple[str, ...]:
 def _is_synchronised() -> bool:
     """True where the kernel says so; asking for it needs no right (adjtimex(2) without a mode)."""
     state = int(ctypes.CDLL(None).adjtimex(ctypes.create_string_buffer(TIMEX_BYTES)))
-    return state != TIME_ERROR
+    return 0 <= state < TIME_ERROR
 
 
 def _read_throttled(root: Path) -> int | None:

@@ -22,6 +22,7 @@ from tests.server.waiting import alive, until
 from tests.stack import ROOT
 
 CONFIG = '[robot]\nname = "tested"\nmode = "robot"\n[link]\nport = "/nowhere"\n'
+WAITS = b"READY=1\nWATCHDOG_USEC=60000000\nWATCHDOG=1"
 
 
 def wait_for(condition: Callable[[], bool], seconds: float = 20.0) -> None:
@@ -42,7 +43,8 @@ def service(settings: Settings, notify: Path | None = None) -> Iterator[subproce
     settings.config.write_text(CONFIG)
     command = [sys.executable, "-m", "server.cli", "runtime"]
     command += ["--config", str(settings.config), "--data", str(settings.data.path)]
-    environment = os.environ | ({"NOTIFY_SOCKET": str(notify)} if notify else {})
+    manager = {"NOTIFY_SOCKET": str(notify), "WATCHDOG_USEC": "5000000"}
+    environment = os.environ | (manager if notify else {})
     with subprocess.Popen(
         command,
         cwd=ROOT,
@@ -156,7 +158,7 @@ def test_it_waits_while_another_program_uses_its_board(settings: Settings) -> No
                 manager.bind(str(path))
                 manager.settimeout(20)
                 with service(settings, path) as second:
-                    assert [manager.recv(100) for _ in range(3)] == [b"EXTEND_TIMEOUT_USEC=30000000"] * 3
+                    assert [manager.recv(100) for _ in range(3)] == [WAITS] * 3
                     assert runtime_of(folder) is None
                     folder.runtime_paused.unlink()
                     wait_for(lambda: runtime_of(folder) == second.pid)
@@ -174,7 +176,7 @@ def test_it_feeds_systemd_from_the_control_loop(settings: Settings) -> None:
         manager.bind(str(path))
         manager.settimeout(20)
         with service(settings, path):
-            assert manager.recv(100) == b"READY=1"
+            assert manager.recv(100) == b"READY=1\nWATCHDOG_USEC=5000000"
             assert [manager.recv(100) for _ in range(2)] == [b"WATCHDOG=1"] * 2
 
 
@@ -190,8 +192,8 @@ def test_systemd_is_fed_once_a_second_and_without_it_nothing_happens(
         for tick in range(21):
             one.feed(tick / 10)
         assert [manager.recv(100) for _ in range(3)] == [b"WATCHDOG=1"] * 3
-        one.still_starting(1.5)
-        assert manager.recv(100) == b"EXTEND_TIMEOUT_USEC=1500000"
+        one.wait(1.5)
+        assert manager.recv(100) == b"READY=1"
         with pytest.raises(BlockingIOError):
             manager.recv(100)
     one.ready()  # to nobody

@@ -1,0 +1,78 @@
+"""`python -m packages.release KEY [--machine aarch64] [--python 3.13]`: builds a signed release into `dist`.
+
+A release is a folder with the wheel of mucat, those of everything that it needs on such a computer, their
+checksums, the signature, the public key, and `install.sh`. A robot needs no network to install it.
+"""
+
+import argparse
+import platform
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from packages.architectures import ARCHITECTURES, PackagingError
+from packages.signing import PUBLIC_KEY, make_key, sign_folder, write_public_key
+from packages.wheels import DIST, build_emulator, build_mucat
+from robot_runtime.places import PACKAGES
+from server import VERSION
+
+PLATFORMS = ("manylinux_2_34", "manylinux_2_28", "manylinux_2_17", "manylinux2014")
+PURE = ("cobs",)
+"""Packages without wheels for every computer, which are plain Python where there is no C compiler."""
+
+
+def main() -> int:
+    """Builds the release. Returns 1 where it cannot."""
+    parser = argparse.ArgumentParser(prog="python -m packages.release", description=__doc__)
+    parser.add_argument("key", type=Path, help="the secret key; made where there is none")
+    parser.add_argument("--machine", default=platform.machine(), choices=("x86_64", "aarch64"))
+    parser.add_argument("--python", default=".".join(platform.python_version_tuple()[:2]))
+    options = parser.parse_args()
+    try:
+        print(build_release(options.key, options.machine, options.python, DIST))
+    except PackagingError as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    except subprocess.CalledProcessError as problem:
+        print(f"{problem.cmd[0]} failed: {(problem.stderr or b'').decode(errors='replace')}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def build_release(secret: Path, machine: str, python: str, dist: Path) -> Path:
+    """Builds the folder of a release; an older one of this name is replaced. Returns its path.
+
+    Raises PackagingError, CalledProcessError.
+    """
+    folder = dist / f"mucat-{VERSION}-{machine}-python{python}"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    wheel = build_mucat(dist)
+    shutil.copy(wheel, folder)
+    if machine in ARCHITECTURES:
+        shutil.copy(build_emulator(ARCHITECTURES[machine], dist), folder)
+    _gather(folder, wheel, machine, python)
+    shutil.copy(PACKAGES / "packages/install.sh", folder)
+    if not secret.exists():
+        make_key(secret)
+    write_public_key(secret, folder / PUBLIC_KEY)
+    sign_folder(folder, secret)
+    return folder
+
+
+def _gather(folder: Path, wheel: Path, machine: str, python: str) -> None:
+    """Put the wheels of what mucat needs into the folder, in the pinned versions."""
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
+    pins = ["--constraint", str(PACKAGES / "constraints.txt")]
+    for package in PURE:
+        command = [*pip, "wheel", "--no-deps", "--no-cache-dir", *pins, "--wheel-dir", str(folder), package]
+        subprocess.run(["env", "CC=/bin/false", *command], check=True, capture_output=True)
+    tags = [word for tag in PLATFORMS for word in ("--platform", f"{tag}_{machine}")]
+    command = [*pip, "download", "--only-binary", ":all:", *tags, "--python-version", python, *pins]
+    command += ["--find-links", str(folder), "--dest", str(folder), f"{wheel}[pi]"]
+    subprocess.run(command, check=True, capture_output=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Installation on a Raspberry Pi or any Debian: environments, services, and settings of the computer."""

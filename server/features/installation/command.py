@@ -1,0 +1,73 @@
+"""`mucat install` and `mucat uninstall`: on a Raspberry Pi or any Debian, as root."""
+
+import os
+import socket
+from contextlib import suppress
+from pathlib import Path
+
+import click
+
+from server.features.installation.effects import CommandFailedError, Effects
+from server.features.installation.installer import Installer
+from server.features.installation.places import InstallPlaces
+from server.features.installation.release import SIGNATURE, check_signature, read_release
+from server.platform.command_line import FILE, CommandError
+from server.platform.settings import SetupError
+from server.platform.terminal import echo
+
+OPEN_UMASK = 0o022
+"""Programs and settings may be read by everybody; what is private says so itself."""
+
+
+@click.command()
+@click.argument("release", type=FILE)
+@click.option("--yes", is_flag=True, help="Change the boot settings without asking.")
+@click.option("--dry-run", is_flag=True, help="Say what would be done, and do nothing.")
+def install(release: Path, *, yes: bool, dry_run: bool) -> None:
+    """Install µ-CAT as services on this computer.
+
+    RELEASE is a folder of wheels. What is there already stays; done again, it mends what is missing.
+    """
+    places = InstallPlaces()
+    _require_root("install", dry=dry_run)
+    os.umask(OPEN_UMASK)
+    effects = Effects(echo, dry=dry_run)
+    installer = Installer(places, effects, lambda question: yes or click.confirm(question, default=False))
+    try:
+        found = read_release(release.absolute())
+        if (found.folder / SIGNATURE).exists():
+            own = found.folder / "release.pem"
+            check_signature(found, places.key if places.key.exists() or not own.exists() else own)
+        installer.install(found)
+    except SetupError as problem:
+        raise CommandError(str(problem)) from problem
+    if not dry_run:
+        _greet(places, effects)
+
+
+@click.command()
+@click.option("--dry-run", is_flag=True, help="Say what would be done, and do nothing.")
+def uninstall(*, dry_run: bool) -> None:
+    """Remove the services and the software; the data stay."""
+    places = InstallPlaces()
+    _require_root("uninstall", dry=dry_run)
+    try:
+        Installer(places, Effects(echo, dry=dry_run), lambda _: False).uninstall()
+    except SetupError as problem:
+        raise CommandError(str(problem)) from problem
+    echo(f"{places.data} and {places.settings} stay. The boot settings before are in *.before-mucat beside.")
+
+
+def _require_root(command: str, *, dry: bool) -> None:
+    if not dry and os.geteuid() != 0:
+        raise CommandError(f"This changes the computer: sudo mucat {command}. With --dry-run it says how.")
+
+
+def _greet(places: InstallPlaces, effects: Effects) -> None:
+    """Print the doctor's findings, and the link by which the first browser signs in."""
+    echo(f"The page: https://{socket.gethostname()}.local:8000 (the name needs avahi-daemon)")
+    with suppress(CommandFailedError):
+        # Its status is 1 where something is wrong.
+        echo(effects.run(places.command, "doctor", quiet=True, accepted=(0, 1)))
+    with suppress(CommandFailedError):
+        echo(effects.run(places.command, "pair", quiet=True))

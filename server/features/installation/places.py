@@ -1,0 +1,52 @@
+"""Places of an installation, below the root of the file system or a folder that stands for it."""
+
+from pathlib import Path
+
+USER = "mucat"
+SERVICES = ("mucat-runtime.service", "mucat.service")
+COMPLETE = "mucat-complete"
+"""File of an environment that was built to its end."""
+
+
+class InstallPlaces:
+    """The paths; `root` is / but in tests."""
+
+    def __init__(self, root: Path = Path("/")) -> None:
+        self.root = root
+        self.software = root / "opt/mucat"
+        """Everything that an update replaces; it belongs to root."""
+        self.versions = self.software / "versions"
+        """A virtual environment for each version."""
+        self.current = self.software / "current"
+        """Link to the environment in use."""
+        self.previous = self.software / "previous"
+        """Link to the environment before it, to which one can go back."""
+        self.journal = self.software / "update.json"
+        """Exists while an update is not yet confirmed."""
+        self.incoming = self.software / "incoming"
+        """A release while it is checked, out of reach of the server."""
+        self.settings = root / "etc/mucat"
+        self.config = self.settings / "robot.toml"
+        self.key = self.settings / "release.pem"
+        """The public key (Ed25519) by which releases are signed."""
+        self.data = root / "var/lib/mucat"
+        self.units = root / "etc/systemd/system"
+        self.command = root / "usr/local/bin/mucat"
+
+    def version(self, name: str) -> Path:
+        """The environment of this version."""
+        return self.versions / name
+
+    def is_complete(self, environment: Path) -> bool:
+        """True for an environment that was built to its end."""
+        return (environment / COMPLETE).exists()
+
+    def version_of(self, link: Path) -> str:
+        """The version that `current` or `previous` leads to; empty without one."""
+        return link.resolve().name if link.is_symlink() and link.exists() else ""
+
+    @property
+    def boot(self) -> Path | None:
+        """The folder of config.txt; None where this is no Raspberry Pi."""
+        folders = (self.root / "boot/firmware", self.root / "boot")
+        return next((one for one in folders if (one / "config.txt").exists()), None)

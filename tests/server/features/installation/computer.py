@@ -1,0 +1,115 @@
+"""A computer made of files: it carries out the commands of an installation in a folder."""
+
+import shutil
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from robot_runtime.places import DEFAULT_CONFIG
+from server.features.installation.effects import Effects
+from server.features.installation.installer import Installer
+from server.features.installation.places import COMPLETE, InstallPlaces
+
+CONFIG_TXT = "# Raspberry Pi\ndtparam=audio=on\n\n[cm5]\ndtoverlay=dwc2\n"
+KERNEL_LINE = "console=serial0,115200 console=tty1 root=PARTUUID=1-02 rootwait\n"
+
+
+class PowerCutError(Exception):
+    """The power is cut."""
+
+
+class Computer:
+    """Its files are below `root`; `commands` are those that it was given, `broken` those that fail."""
+
+    def __init__(self, root: Path, *, pi: bool = True) -> None:
+        self.places = InstallPlaces(root)
+        self.commands: list[str] = []
+        self.lines: list[str] = []
+        self.broken: dict[str, str] = {}
+        self.answers: dict[str, str] = {}
+        (root / "etc").mkdir(parents=True)
+        (root / "etc/passwd").write_text("root:x:0:0::/root:/bin/sh\n")
+        (root / "etc/group").write_text("dialout:x:20:\nvideo:x:44:somebody\nlp:x:7:\n")
+        if pi:
+            (root / "boot/firmware").mkdir(parents=True)
+            (root / "boot/firmware/config.txt").write_text(CONFIG_TXT)
+            (root / "boot/firmware/cmdline.txt").write_text(KERNEL_LINE)
+
+    def run(
+        self, command: Sequence[str], _environment: Mapping[str, str], _seconds: float
+    ) -> "subprocess.CompletedProcess[str]":
+        words = " ".join(command)
+        self.commands.append(words)
+        problem = next((text for part, text in self.broken.items() if part in words), "")
+        if problem:
+            return subprocess.CompletedProcess(command, 1, "", problem)
+        answer = next((text for part, text in self.answers.items() if part in words), None)
+        if answer is None:
+            answer = self._carry_out(command) or ""
+        return subprocess.CompletedProcess(command, 0, answer, "")
+
+    def _carry_out(self, command: Sequence[str]) -> str | None:
+        program, *rest = command
+        etc = self.places.root / "etc"
+        if program == "useradd":
+            with (etc / "passwd").open("a") as file:
+                file.write(f"{rest[-1]}:x:999:999::{rest[-4]}:/usr/sbin/nologin\n")
+        elif program == "usermod":
+            chosen = rest[2].split(",")
+            lines = [line.split(":") for line in (etc / "group").read_text().splitlines()]
+            for one in lines:
+                if one[0] in chosen:
+                    one[-1] = ",".join(filter(None, [*one[-1].split(","), rest[-1]]))
+            (etc / "group").write_text("".join(":".join(one) + "\n" for one in lines))
+        elif program == "install":
+            Path(rest[-1]).mkdir(parents=True)
+        elif rest[:2] == ["-m", "venv"]:
+            (Path(rest[-1]) / "bin").mkdir(parents=True)
+        elif "DEFAULT_CONFIG" in command[-1]:
+            return DEFAULT_CONFIG.read_text()
+        elif "/health" in command[-1]:
+            return self.places.version_of(self.places.current) + "\n"
+        return None
+
+    def effects(self, cut: int = -1, *, dry: bool = False) -> Effects:
+        """Its effects; the power is cut before the one of number `cut`."""
+        left = [cut]
+
+        def before(_: str) -> None:
+            if left[0] == 0:
+                raise PowerCutError
+            left[0] -= 1
+
+        return Effects(self.lines.append, dry=dry, run=self.run, before=before)
+
+    def installer(self, effects: Effects, *, yes: bool = True) -> Installer:
+        return Installer(self.places, effects, lambda _: yes)
+
+    def tree(self) -> dict[str, str]:
+        """Every file with its text, every link with its target, and every folder."""
+        root = self.places.root
+        found = {}
+        for path in sorted(root.rglob("*")):
+            name = str(path.relative_to(root))
+            if path.is_symlink():
+                found[name] = f"link to {path.readlink()}"
+            else:
+                found[name] = path.read_text() if path.is_file() else "folder"
+        return found
+
+
+def place_release(folder: Path, version: str = "1.0.0") -> Path:
+    """A folder with wheels of this version, which hold nothing."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for name in (f"mucat-{version}-py3-none-any.whl", "numpy-2.0-cp311-cp311-linux_x86_64.whl"):
+        (folder / name).write_text(f"{name} of {version}")
+    return folder
+
+
+def place_version(computer: Computer, version: str) -> Path:
+    """A complete environment."""
+    environment = computer.places.version(version)
+    (environment / "bin").mkdir(parents=True)
+    (environment / COMPLETE).write_text(f"{version}\n")
+    return environment

@@ -1,0 +1,239 @@
+"""An installation into a folder: whole, repeated, cut off at every effect, and taken away again."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.config import load
+from server.features.installation.boot_settings import describe_change, edit_config, edit_kernel_line
+from server.features.installation.installer import adapt_config
+from server.features.installation.places import InstallPlaces
+from server.features.installation.release import read_release
+from server.features.installation.units import write_command, write_units
+from server.platform.settings import SetupError
+from tests.server.features.installation.computer import (
+    CONFIG_TXT,
+    KERNEL_LINE,
+    Computer,
+    PowerCutError,
+    place_release,
+)
+
+
+def install(computer: Computer, folder: Path, cut: int = -1) -> None:
+    computer.installer(computer.effects(cut)).install(read_release(folder))
+
+
+@pytest.fixture
+def release(tmp_path: Path) -> Path:
+    return place_release(tmp_path / "release")
+
+
+def test_an_installation_is_whole(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    install(computer, release)
+    places = computer.places
+    assert places.version_of(places.current) == "1.0.0"
+    assert places.is_complete(places.current)
+    assert "mucat" in (tmp_path / "pi/etc/passwd").read_text()
+    assert (
+        tmp_path / "pi/etc/group"
+    ).read_text() == "dialout:x:20:mucat\nvideo:x:44:somebody,mucat\nlp:x:7:\n"
+    config = load(places.config)
+    assert (config.robot.mode, config.vision.camera) == ("robot", "pi")
+    assert (config.server.host, config.server.tls) == ("0.0.0.0", True)
+    assert {one.name for one in places.units.iterdir()} == set(write_units(places))
+    assert places.command.stat().st_mode & 0o777 == 0o755
+    assert (places.current / "wheels/numpy-2.0-cp311-cp311-linux_x86_64.whl").exists()
+    assert "µ-CAT 1.0.0 runs" in computer.lines
+
+
+def test_done_again_it_changes_nothing(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    install(computer, release)
+    before = computer.tree()
+    computer.places.config.write_text(before["etc/mucat/robot.toml"] + "# mine\n")
+    computer.commands.clear()
+    install(computer, release)
+    assert computer.tree() == before | {"etc/mucat/robot.toml": before["etc/mucat/robot.toml"] + "# mine\n"}
+    assert not [
+        one for one in computer.commands if one.startswith(("useradd", "usermod", "/usr/bin/python3"))
+    ]
+    assert any(one.startswith("systemctl start") for one in computer.commands)
+
+
+def test_cut_off_at_any_effect_it_is_done_again_to_the_same_end(tmp_path: Path, release: Path) -> None:
+    whole = Computer(tmp_path / "whole")
+    install(whole, release)
+    expected = {name: text.replace("/whole/", "/N/") for name, text in whole.tree().items()}
+    cuts = 0
+    while True:
+        computer = Computer(tmp_path / str(cuts))
+        try:
+            install(computer, release, cuts)
+        except PowerCutError:
+            install(computer, release)
+            found = {name: text.replace(f"/{cuts}/", "/N/") for name, text in computer.tree().items()}
+            assert found == expected, f"cut {cuts}: {computer.lines}"
+            cuts += 1
+        else:
+            break
+    assert cuts == sum(
+        not line.startswith(("---", "µ-CAT", "They")) and "\n" not in line for line in whole.lines
+    )
+
+
+def test_an_environment_that_was_cut_off_is_built_anew(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    half = computer.places.version("1.0.0")
+    half.mkdir(parents=True)
+    (half / "half").touch()
+    install(computer, release)
+    assert not (half / "half").exists()
+
+
+def test_a_dry_run_says_all_and_changes_nothing(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    before = computer.tree()
+    computer.installer(computer.effects(dry=True)).install(read_release(release))
+    assert computer.tree() == before
+    assert computer.commands == []
+    dry = [line.removeprefix("would ") for line in computer.lines if line.startswith("would ")]
+    install(computer, release)
+    done = [line for line in computer.lines if not line.startswith("would ")]
+    assert [one for one in dry if one not in done and "-c from" not in one] == []
+
+
+def test_boot_settings_change_only_if_that_is_confirmed(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    computer.installer(computer.effects(), yes=False).install(read_release(release))
+    boot = tmp_path / "pi/boot/firmware"
+    assert sorted(one.name for one in boot.iterdir()) == ["cmdline.txt", "config.txt"]
+    assert (boot / "config.txt").read_text() == CONFIG_TXT
+    assert any("+dtoverlay=disable-bt" in line for line in computer.lines)
+    install(computer, release)
+    assert (boot / "config.txt.before-mucat").read_text() == CONFIG_TXT
+    assert (boot / "cmdline.txt.before-mucat").read_text() == KERNEL_LINE
+    assert "console=serial0" not in (boot / "cmdline.txt").read_text()
+
+
+def test_another_computer_has_no_boot_settings_and_an_emulated_board(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pc", pi=False)
+    install(computer, release)
+    assert load(computer.places.config).robot.mode == "emulated"
+    assert not (tmp_path / "pc/boot").exists()
+
+
+def test_it_is_removed_without_the_data(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    install(computer, release)
+    (computer.places.data / "mucat.db").write_text("dives")
+    computer.installer(computer.effects()).uninstall()
+    places = computer.places
+    assert (places.data / "mucat.db").read_text() == "dives"
+    assert places.config.exists()
+    assert not places.software.exists()
+    assert not places.command.exists()
+    assert list(places.units.iterdir()) == []
+    assert any("systemctl disable --quiet --now mucat-runtime.service" in one for one in computer.commands)
+    computer.installer(computer.effects()).uninstall()
+
+
+@pytest.mark.parametrize(
+    ("stderr", "words"),
+    [
+        (
+            "ERROR: Could not find a version\nERROR: No matching distribution found for numpy",
+            "no wheel of numpy",
+        ),
+        ("ERROR: x.whl is not a supported wheel on this platform.", "for this computer"),
+        ("OSError: [Errno 28] No space left on device", "disk is full"),
+        ("something else", "something else"),
+    ],
+)
+def test_an_environment_that_cannot_be_built_is_one_line_and_nothing_half_done(
+    tmp_path: Path, release: Path, stderr: str, words: str
+) -> None:
+    computer = Computer(tmp_path / "pi")
+    computer.broken[" install --quiet"] = stderr
+    with pytest.raises(SetupError, match=words) as caught:
+        install(computer, release)
+    assert "\n" not in str(caught.value)
+    assert not computer.places.version("1.0.0").exists()
+    assert not computer.places.current.is_symlink()
+
+
+def test_a_disk_without_room_is_refused_before_anything(
+    tmp_path: Path, release: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    computer = Computer(tmp_path / "pi")
+    before = computer.tree()
+    monkeypatch.setattr("server.features.installation.installer.free_bytes", lambda _: 10**8)
+    with pytest.raises(SetupError, match="100 MB are free"):
+        install(computer, release)
+    assert computer.tree() == before
+
+
+def test_a_server_that_does_not_start_is_one_line(
+    tmp_path: Path, release: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    computer = Computer(tmp_path / "pi")
+    computer.broken["/health"] = "No server works on it"
+    monkeypatch.setattr("server.features.installation.installer.HEALTHY_SECONDS", 0.1)
+    monkeypatch.setattr("server.features.installation.installer.LOOK_SECONDS", 0.01)
+    with pytest.raises(SetupError, match=r"not healthy within 0\.1 s: .*No server works on it"):
+        install(computer, release)
+
+
+def test_the_boot_settings_hold_for_every_model() -> None:
+    header = "[all]\n# For the serial line to the robot's board, by mucat install\n"
+    assert edit_config(CONFIG_TXT).endswith(f"{header}enable_uart=1\ndtoverlay=disable-bt\n")
+    once = edit_config(CONFIG_TXT)
+    assert edit_config(once) == once
+    assert "enable_uart" not in edit_config("enable_uart = 1 # mine\n").partition("[all]")[2]
+    # In another model's section it does not hold.
+    assert edit_config("[pi5]\nenable_uart=1\ndtoverlay=disable-bt\n").count("enable_uart=1") == 2
+    assert edit_config("").startswith("\n[all]\n")
+
+
+def test_the_kernel_line_stays_one_line() -> None:
+    assert edit_kernel_line(KERNEL_LINE) == "console=tty1 root=PARTUUID=1-02 rootwait cgroup_enable=memory\n"
+    once = edit_kernel_line(KERNEL_LINE)
+    assert edit_kernel_line(once) == once
+    assert "+console=tty1" in describe_change("cmdline.txt", KERNEL_LINE, once)
+
+
+def test_the_default_configuration_is_adapted_and_stays_valid(tmp_path: Path) -> None:
+    from robot_runtime.places import DEFAULT_CONFIG
+
+    path = tmp_path / "robot.toml"
+    path.write_text(adapt_config(DEFAULT_CONFIG.read_text(), robot=False))
+    config = load(path)
+    assert (config.robot.mode, config.server.host, config.vision.camera) == ("emulated", "0.0.0.0", "scene")
+
+
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="there is no systemd")
+def test_systemd_accepts_the_units(tmp_path: Path) -> None:
+    places = InstallPlaces(tmp_path)
+    (tmp_path / "opt/mucat/current/bin").mkdir(parents=True)
+    for link in (places.current, places.previous):
+        program = link / "bin/mucat"
+        program.parent.mkdir(parents=True, exist_ok=True)
+        program.write_text("#!/bin/sh\n")
+        program.chmod(0o755)
+    for name, text in write_units(places).items():
+        (tmp_path / name).write_text(text)
+    files = [str(tmp_path / name) for name in write_units(places)]
+    done = subprocess.run(
+        ["systemd-analyze", "verify", "--man=no", *files], capture_output=True, text=True, check=False
+    )
+    complaints = [line for line in done.stderr.splitlines() if "mucat" in line]
+    assert (done.returncode, complaints) == (0, [])
+
+
+def test_the_shell_accepts_the_command(tmp_path: Path) -> None:
+    script = tmp_path / "mucat"
+    script.write_text(write_command(InstallPlaces(tmp_path)))
+    assert subprocess.run(["sh", "-n", str(script)], check=False).returncode == 0
