@@ -33,7 +33,7 @@ def run_command(
         capture_output=True,
         text=True,
         errors="replace",
-        env={name: text for name, text in os.environ.items() if name != "PYTHONPATH"} | environment,
+        env={name: text for name, text in os.environ.items() if name != "PYTHONPATH"} | dict(environment),
         timeout=seconds,
         check=False,
     )
