@@ -21,6 +21,7 @@ from server.features.layouts import routes as layouts
 from server.features.lease import routes as control
 from server.features.lease.admission import admit
 from server.features.live import routes as live
+from server.features.missions import routes as missions
 from server.features.operate import routes as robot
 from server.features.panels import routes as panels
 from server.features.parameters import routes as parameters
@@ -45,8 +46,8 @@ from server.processes.managed_process import ProcessCommand
 
 ROUTES = (
     *(access, audit, backup, bring_up, comm_tests, compare, control, doctor, doors, exports),
-    *(identification, layouts, live, panels, parameters, robot, scenarios, sessions, simulator),
-    *(tuning, vision),
+    *(identification, layouts, live, missions, panels, parameters, robot, scenarios, sessions),
+    *(simulator, tuning, vision),
 )
 
 

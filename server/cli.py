@@ -22,6 +22,7 @@ COMMANDS = {
     "commtest": "server.features.comm_tests.command:commtest",
     "simulator": "server.features.simulator.command:simulator",
     "scenario": "server.features.scenarios.command:scenario",
+    "mission": "server.features.missions.command:mission",
     "report": "server.features.comparison.command:report",
     "identify": "server.features.identification.command:identify",
     "export": "server.features.exports.command:export_session",

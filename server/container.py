@@ -28,6 +28,8 @@ from server.features.identification.runner import IdentificationRunner
 from server.features.layouts.library import Layouts
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.sync import LeaseSync
+from server.features.missions.marks import MissionMarks
+from server.features.missions.trials import MissionTrials
 from server.features.operate.performing import CommandDesk
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import Profiles
@@ -120,6 +122,7 @@ class Container:
         self.recorder = Recorder(self.store, self.clock, self.notices, self._notify_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.bookmarks = Bookmarks(self.store, self.clock, self.recorder)
+        self.mission_marks = MissionMarks(self.recorder, self.bookmarks)
         self.retention = RetentionWorker(self.store, self.settings, self.notices, self.clock)
         self.arming = AutoRecorder(self.recorder, self.clock, self.notices, self._armed_row)
         self.jobs = Jobs(self.settings.data, self.store, self.clock)
@@ -156,6 +159,7 @@ class Container:
         simulated = SimulatedExecutor(self.settings, self.store, self.notices)
         self.scenarios = ScenarioRunner(self._live, simulated, self.hub.notify)
         self.bridge.on_stop = self._see_stop
+        self.mission_trials = MissionTrials(self.settings)
 
     def _add_identification(self) -> None:
         self.craft_adoption = CraftAdoption(self.settings, self.monitor, self.processes, self.changes)
@@ -231,6 +235,7 @@ class Container:
             await self.bring_up.close()
             await self.comparison.close()
             await self.identification.close()
+            await self.mission_trials.close()
             await self.processes.stop()
             await self.arming.close()
             await self._end_session()
@@ -258,6 +263,8 @@ class Container:
             self.monitor.see(block)
             self.tuning.see(block)
             self.doors.see(block)
+            if block.topic.name == "event":
+                self.mission_marks.see(block)
             if block.topic.name == "state":
                 self.lease_sync.see_run(self.bridge.run)
                 if self.settings.sessions.record_at_arming:

@@ -72,6 +72,8 @@ class DebugLine(Document):
 
 
 Severity = Literal["info", "caution", "alarm"]
+MISSION_MARK = "mission_mark"
+"""Kind of the event with which a mission marks the session."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

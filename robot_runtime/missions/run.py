@@ -6,6 +6,7 @@ from math import inf
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import (
+    MISSION_MARK,
     Event,
     Mission,
     MissionStepState,
@@ -138,7 +139,7 @@ class MissionRun:
 
     def mark(self, text: str) -> None:
         """Publishes the marker, which the server puts into the session."""
-        self._on_event(Event(time=self._clock.now(), kind="mission_mark", severity="info", text=text))
+        self._on_event(Event(time=self._clock.now(), kind=MISSION_MARK, severity="info", text=text))
 
     def surface(self) -> None:
         """Ends the mission after this tick."""

@@ -84,10 +84,17 @@ class HealthMonitor:
 
     def state(self) -> dict[str, Any] | None:
         """The newest `state` document; None without a readable one."""
-        if "state" not in self._newest:
+        return self._document("state")
+
+    def mission(self) -> dict[str, Any] | None:
+        """The newest `mission` document; None without a readable one."""
+        return self._document("mission")
+
+    def _document(self, topic: str) -> dict[str, Any] | None:
+        if topic not in self._newest:
             return None
         try:
-            document = json.loads(self._newest["state"][1].payload)[-1]
+            document = json.loads(self._newest[topic][1].payload)[-1]
         except (ValueError, IndexError, KeyError, RecursionError):
             return None
         return document if isinstance(document, dict) else None

@@ -24,6 +24,7 @@ from robot_runtime.config import (
 )
 from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.places import BUILD, DEFAULT_CONFIG, IN_REPOSITORY
 from server.platform.pidfile import RUNTIME_PAUSED, hold_still, running_parts
@@ -100,6 +101,8 @@ class DataFolder:
         """Exists while a scenario runs on the robot: the settings before it."""
         self.scenarios = path / "scenarios"
         """Your own scenarios."""
+        self.missions = path / "missions"
+        """Your own missions: a folder each, with their versions."""
         self.config = path / "robot.toml"
         """The robot's configuration, unless the present folder has one."""
         self.craft = path / ADOPTED_CRAFT
@@ -121,6 +124,7 @@ class Settings:
     link: LinkConfig = field(default_factory=LinkConfig)
     hil: HilConfig = field(default_factory=HilConfig)
     sessions: SessionsConfig = field(default_factory=SessionsConfig)
+    missions: MissionLimits = NO_LIMITS
     zenoh: ZenohConfig = field(default_factory=ZenohConfig)
     doors: DoorsConfig = field(default_factory=DoorsConfig)
     host: str = "127.0.0.1"
@@ -226,6 +230,7 @@ def read_settings(
         link=loaded.link,
         hil=loaded.hil,
         sessions=loaded.sessions,
+        missions=loaded.missions,
         zenoh=loaded.zenoh,
         doors=loaded.doors,
         craft=None if craft == folder.craft else craft,

@@ -162,6 +162,16 @@ PROBES: dict[tuple[str, str], Probe] = {
         422, {"text": "?", "place": "emulated"}, words="JSON", because=STARTS
     ),
     ("POST", "/api/comm-tests/cancel"): Probe(204),
+    ("POST", "/api/missions"): Probe(422, {"text": "?"}, words="TOML", because="There would be more."),
+    ("GET", "/api/missions/versions/{name}"): Probe(
+        404, named={"name": "none"}, words="no own mission", because="There is none."
+    ),
+    ("POST", "/api/missions/check"): Probe(body={"text": "?"}),
+    ("POST", "/api/missions/start"): Probe(422, {"text": "?"}, words="TOML", because=STARTS),
+    ("POST", "/api/missions/trial"): Probe(422, {"text": "?"}, words="TOML", because=STARTS),
+    ("POST", "/api/missions/trial/cancel"): Probe(
+        409, words="No trial is running", because="There would have to be one."
+    ),
     ("POST", "/api/scenarios"): Probe(422, {"text": "?"}, words="TOML", because="There would be more."),
     ("POST", "/api/scenarios/check"): Probe(body={"text": "?"}),
     ("POST", "/api/scenarios/runs"): Probe(

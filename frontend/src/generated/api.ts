@@ -965,6 +965,174 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/missions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the missions: those of the program, then those of the data folder in their newest version
+         * @description List the missions: those of the program, then those of the data folder in their newest version.
+         */
+        get: operations["listMissions"];
+        put?: never;
+        /**
+         * Store a mission in the data folder under its own name, as a new version
+         * @description Store a mission in the data folder under its own name, as a new version.
+         */
+        post: operations["keepMission"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check a mission: its problems by entry, or its summary
+         * @description Check a mission: its problems by entry, or its summary.
+         */
+        post: operations["checkMission"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/nodes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the leaves and branches that a mission may have, with their fields and limits
+         * @description List the leaves and branches that a mission may have, with their fields and limits.
+         */
+        get: operations["listMissionNodes"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/start": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Arm the robot and begin a mission, or refuse with every reason against either
+         * @description Arm the robot and begin a mission, or refuse with every reason against either.
+         */
+        post: operations["startMission"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/state": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Return the running mission, or the last one, as on the live socket; null where there was none
+         * @description Return the running mission, or the last one, as on the live socket; null where there was none.
+         */
+        get: operations["getMissionState"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/trial": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Return the running trial, or the last one, with its results so far
+         * @description Return the running trial, or the last one, with its results so far.
+         */
+        get: operations["getMissionTrial"];
+        put?: never;
+        /**
+         * Try a mission in simulated water, once for each seed
+         * @description Try a mission in simulated water, once for each seed.
+         */
+        post: operations["startMissionTrial"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/trial/cancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Cancel the running trial; its results stay
+         * @description Cancel the running trial; its results stay.
+         */
+        post: operations["cancelMissionTrial"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/versions/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the versions of a mission of the data folder, the newest first
+         * @description List the versions of a mission of the data folder, the newest first.
+         */
+        get: operations["listMissionVersions"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/panels": {
         parameters: {
             query?: never;
@@ -3930,6 +4098,7 @@ export interface components {
             state: "waiting" | "running" | "done" | "failed";
             wanted: components["schemas"]["ExportOptions"];
         };
+        JsonValue: unknown;
         /**
          * LayoutDetails
          * @description A saved layout with its document, which may be of another version of the program.
@@ -4164,10 +4333,105 @@ export interface components {
             ultimate_gain: number;
         };
         /**
+         * Mission
+         * @description A mission as it stands: sent at its start, at each change, once a second, and at its end.
+         *
+         *     Each states everything but `document`, which only the first and the last one have.
+         */
+        Mission: {
+            /** Deepest */
+            deepest: number;
+            /**
+             * Document
+             * @default
+             */
+            document: string;
+            /** Elapsed */
+            elapsed: number;
+            /** Name */
+            name: string;
+            /** Number */
+            number: number;
+            /** Pause */
+            pause: number;
+            /** Paused */
+            paused: number;
+            /**
+             * Phase
+             * @enum {string}
+             */
+            phase: "running" | "paused" | "succeeded" | "failed" | "ended";
+            /** Progress */
+            progress: number;
+            /** Remaining */
+            remaining: number;
+            /** Sequence */
+            sequence: number;
+            /** Steps */
+            steps: components["schemas"]["MissionStepState"][];
+            /** Text */
+            text: string;
+            /** Time */
+            time: number;
+            /** Title */
+            title: string;
+        };
+        /**
+         * MissionBody
+         * @description The text of a mission.
+         */
+        MissionBody: {
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
+        };
+        /**
+         * MissionCheck
+         * @description A mission's problems by entry, or its summary.
+         */
+        MissionCheck: {
+            /** Problems */
+            problems: components["schemas"]["EntryProblem"][];
+            summary: components["schemas"]["MissionSummary"] | null;
+            /**
+             * Table
+             * @description what the TOML says; null where it is no TOML
+             */
+            table: {
+                [key: string]: components["schemas"]["JsonValue"];
+            } | null;
+        };
+        /**
          * MissionEndCommand
          * @description Ends the mission: its changes are put back, and the robot is stopped.
          */
         MissionEndCommand: Record<string, never>;
+        /**
+         * MissionNodeKind
+         * @description A leaf or a branch that documents may have.
+         */
+        MissionNodeKind: {
+            /** Branch */
+            branch: boolean;
+            /** Do */
+            do: string;
+            /** Fields */
+            fields: components["schemas"]["NodeField"][];
+            /**
+             * Least
+             * @description steps below it at least
+             */
+            least: number;
+            /** Meaning */
+            meaning: string;
+            /**
+             * Most
+             * @description steps below it at most; null: any
+             */
+            most: number | null;
+        };
         /**
          * MissionPauseCommand
          * @description Pauses the mission: the robot stays at its depth, and the mission's clocks stand still.
@@ -4185,6 +4449,204 @@ export interface components {
          * @description Ends the steps of the mission that run now, as a success.
          */
         MissionSkipCommand: Record<string, never>;
+        /**
+         * MissionStepState
+         * @description A step of a running mission.
+         */
+        MissionStepState: {
+            /** Do */
+            do: string;
+            /** Elapsed */
+            elapsed: number;
+            /** Longest */
+            longest: number;
+            /** Note */
+            note: string;
+            /** Path */
+            path: string;
+            /** Rounds */
+            rounds: number;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "waiting" | "running" | "done" | "failed" | "stopped";
+            /** Text */
+            text: string;
+            /** Words */
+            words: string;
+        };
+        /**
+         * MissionStepSummary
+         * @description A step of a mission.
+         */
+        MissionStepSummary: {
+            /** Do */
+            do: string;
+            /**
+             * Longest
+             * @description s that it takes at most
+             */
+            longest: number;
+            /** Note */
+            note: string;
+            /**
+             * Path
+             * @description from 1 along the branches, as "3.1.2"; empty for the first step
+             */
+            path: string;
+            /** Words */
+            words: string;
+        };
+        /**
+         * MissionSummary
+         * @description The summary of a mission.
+         */
+        MissionSummary: {
+            /**
+             * Alone
+             * @description s for which it may go on without the server
+             */
+            alone: number;
+            /**
+             * Battery
+             * @description V; its limit; 0: none
+             */
+            battery: number;
+            /**
+             * Depth
+             * @description m; its limit
+             */
+            depth: number;
+            /** Description */
+            description: string;
+            /**
+             * Longest
+             * @description s that it takes at most, without pauses
+             */
+            longest: number;
+            /** Name */
+            name: string;
+            /**
+             * Pause
+             * @description s that it may be paused in all
+             */
+            pause: number;
+            /** Steps */
+            steps: components["schemas"]["MissionStepSummary"][];
+            /**
+             * Time
+             * @description s; its limit
+             */
+            time: number;
+            /** Title */
+            title: string;
+            /**
+             * Unwatched
+             * @description s; its limit; 0: none
+             */
+            unwatched: number;
+        };
+        /**
+         * MissionText
+         * @description A mission; `shipped` ones are part of the program, the others are in the data folder.
+         */
+        MissionText: {
+            /** Name */
+            name: string;
+            /** Shipped */
+            shipped: boolean;
+            /** @description null if it is not valid */
+            summary: components["schemas"]["MissionSummary"] | null;
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
+            /** Title */
+            title: string;
+            /** Versions */
+            versions: number;
+        };
+        /**
+         * MissionTrial
+         * @description The running trial, or the last one.
+         */
+        MissionTrial: {
+            /** Name */
+            name: string;
+            /**
+             * Number
+             * @description from 1 since the server started; 0: there was none
+             */
+            number: number;
+            /**
+             * Problem
+             * @description the reason of an early end; empty without one
+             */
+            problem: string;
+            /** Results */
+            results: components["schemas"]["MissionTrialResult"][];
+            /** Running */
+            running: boolean;
+            /** Seeds */
+            seeds: number;
+            /**
+             * Text
+             * @description the mission's TOML
+             */
+            text: string;
+        };
+        /**
+         * MissionTrialResult
+         * @description The outcome with one seed. `phase` is null where the mission did not begin; `text` says why.
+         */
+        MissionTrialResult: {
+            /**
+             * Curve
+             * @description depth, m, twice a second
+             */
+            curve: number[];
+            /**
+             * Deepest
+             * @description m
+             */
+            deepest: number;
+            /**
+             * Elapsed
+             * @description s
+             */
+            elapsed: number;
+            /**
+             * Failed
+             * @description path of the step that failed
+             */
+            failed: string | null;
+            /** Phase */
+            phase: ("running" | "paused" | "succeeded" | "failed" | "ended") | null;
+            /** Seed */
+            seed: number;
+            /** Text */
+            text: string;
+        };
+        /**
+         * MissionVersion
+         * @description A version of a mission of one's own.
+         */
+        MissionVersion: {
+            /**
+             * Made
+             * @description s since 1970
+             */
+            made: number;
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
+            /** Version */
+            version: number;
+        };
         /**
          * ModeCommand
          * @description Lets the pilot or the depth controller steer the armed robot.
@@ -4335,6 +4797,31 @@ export interface components {
              * @enum {string}
              */
             scope: "read" | "operate" | "administer";
+        };
+        /**
+         * NodeField
+         * @description A field of a leaf or a branch.
+         */
+        NodeField: {
+            /** Default */
+            default: number | string | boolean | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "number" | "whole" | "text" | "value" | "sight" | "parameter" | "mission";
+            /** Maximum */
+            maximum: number | null;
+            /** Meaning */
+            meaning: string;
+            /** Minimum */
+            minimum: number | null;
+            /** Name */
+            name: string;
+            /** Required */
+            required: boolean;
+            /** Unit */
+            unit: string;
         };
         /**
          * OwnPanel
@@ -5603,6 +6090,22 @@ export interface components {
              * @enum {string}
              */
             state: "recording" | "complete" | "interrupted";
+        };
+        /**
+         * TrialStart
+         * @description A mission to try, once for each seed from 1 on.
+         */
+        TrialStart: {
+            /**
+             * Seeds
+             * @default 20
+             */
+            seeds: number;
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
         };
         /**
          * TunableParameter
@@ -8623,6 +9126,501 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listMissions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionText"][];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    keepMission: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["MissionBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionSummary"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The mission cannot be used */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    checkMission: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["MissionBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionCheck"];
+                };
+            };
+            /** @description This device has several such requests under way already */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listMissionNodes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionNodeKind"][];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    startMission: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["MissionBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionSummary"];
+                };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The mission cannot be used */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getMissionState: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Mission"] | null;
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getMissionTrial: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionTrial"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    startMissionTrial: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TrialStart"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionTrial"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The mission cannot be used */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    cancelMissionTrial: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description None runs */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listMissionVersions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionVersion"][];
+                };
+            };
+            /** @description The library has no such mission */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -1,0 +1,150 @@
+"""`mucat mission`: list, check, try, run and show missions from a shell."""
+
+import asyncio
+from pathlib import Path
+from time import sleep
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from server.platform.command_line import with_settings
+from server.platform.settings import Settings, SetupError
+from server.platform.terminal import echo
+
+if TYPE_CHECKING:
+    from robot_runtime.missions.document import MissionDocument
+    from server.features.missions.schemas import MissionTrialResult
+
+MISSION = click.argument("file", metavar="MISSION")
+POLL_SECONDS = 0.5
+
+
+@click.group()
+def mission() -> None:
+    """Check, try and run missions: what the robot does by itself.
+
+    A MISSION is a TOML file, or the name of one in the list.
+    """
+
+
+@mission.command("list")
+@with_settings
+def list_all(settings: Settings) -> None:
+    """List the missions."""
+    from server.features.missions.library import MissionLibrary
+
+    for one in MissionLibrary(settings.data.missions, settings.missions).describe():
+        echo(f"{one.name:<24} {one.title}{'' if one.shipped else f' (your own, version {one.versions})'}")
+
+
+@mission.command()
+@MISSION
+@with_settings
+def check(settings: Settings, file: str) -> None:
+    """Show what is wrong with a mission, or that nothing is."""
+    _, read = _read(file, settings)
+    echo(f"{read.title}: {read.longest:.0f} s at most, {len(list(read.root.walk()))} steps, no problem.")
+
+
+@mission.command()
+@MISSION
+@with_settings
+def show(settings: Settings, file: str) -> None:
+    """Show a mission's steps, its longest time and its limits."""
+    _, read = _read(file, settings)
+    limits = read.limits
+    echo(f"{read.title}: {read.longest:.0f} s at most")
+    echo(f"limits: {limits.depth:g} m, {limits.time:g} s, {limits.battery:g} V, pause {limits.pause:g} s")
+    for step in read.root.walk():
+        indent = "  " * len(step.path)
+        note = f" ({step.node.note})" if step.node.note else ""
+        echo(f"{indent}{step.place or '-'} {step.node.words}{note}")
+
+
+@mission.command("try")
+@MISSION
+@click.option("--seeds", type=click.IntRange(1, 100), default=20, help="How many; each has its own noise.")
+@with_settings
+def try_out(settings: Settings, file: str, seeds: int) -> int:
+    """Try a mission in simulated water, once for each seed: successes, durations, depths, failed steps."""
+    from server.features.missions.library import MissionLibrary
+    from server.features.missions.trials import MissionTrials
+
+    text, read = _read(file, settings)
+    called = MissionLibrary(settings.data.missions, settings.missions).called_by(text)
+
+    async def perform() -> MissionTrials:
+        trials = MissionTrials(settings)
+        trials.start(read.name, text, called, seeds)
+        await trials.wait()
+        return trials
+
+    trial = asyncio.run(perform()).state()
+    for one in trial.results:
+        outcome = one.phase or "did not begin"
+        echo(f"seed {one.seed:>3}  {outcome:<9} {one.elapsed:7.1f} s  {one.deepest:5.2f} m  {one.text}")
+    if trial.problem:
+        raise SetupError(trial.problem)
+    good = [one for one in trial.results if one.phase == "succeeded"]
+    echo(f"{len(good)} of {len(trial.results)} succeeded.{_describe_span(good)}")
+    return 0 if len(good) == len(trial.results) else 1
+
+
+def _describe_span(good: "list[MissionTrialResult]") -> str:
+    if not good:
+        return ""
+    times, depths = [one.elapsed for one in good], [one.deepest for one in good]
+    return f" They took {min(times):.1f} to {max(times):.1f} s and went down to {max(depths):.2f} m."
+
+
+@mission.command()
+@MISSION
+@with_settings
+def run(settings: Settings, file: str) -> int:
+    """Arm the robot of the running server, begin a mission, and follow it to its end. Ctrl-C ends it."""
+    from server.features.lease.command import in_control, renew_control
+    from server.platform.running_server import ask
+
+    text, read = _read(file, settings)
+    folder = settings.data
+    with in_control(folder):
+        before = (ask(folder, "GET", "/missions/state") or {}).get("number")
+        ask(folder, "POST", "/missions/start", {"text": text}, seconds=30.0)
+        echo(f"{read.title} begins.")
+        said: set[tuple[str, str, int]] = set()
+        try:
+            while True:
+                renew_control(folder)
+                state = ask(folder, "GET", "/missions/state")
+                if state is not None and state["number"] != before:
+                    _print_changes(state, said)
+                    if state["phase"] not in ("running", "paused"):
+                        echo(f"{state['phase']}: {state['text']}")
+                        return 0 if state["phase"] == "succeeded" else 1
+                sleep(POLL_SECONDS)
+        except KeyboardInterrupt:
+            ask(folder, "POST", "/robot/commands/mission_end")
+            raise SetupError("The mission was ended.") from None
+
+
+def _print_changes(state: dict[str, Any], said: set[tuple[str, str, int]]) -> None:
+    for step in state["steps"]:
+        change = (step["path"], step["status"], step["rounds"])
+        if step["status"] != "waiting" and change not in said:
+            said.add(change)
+            echo(f"{state['elapsed']:8.1f} s  {step['path'] or '-'} {step['words']}: {step['status']}")
+
+
+def _read(file: str, settings: Settings) -> "tuple[str, MissionDocument]":
+    from robot_runtime.contract.limits import ConfigError
+    from server.features.missions.library import MissionLibrary
+
+    library = MissionLibrary(settings.data.missions, settings.missions)
+    there = library.texts()
+    try:
+        text = there[file] if file in there else Path(file).read_text(encoding="utf-8")
+        return text, library.read(text)
+    except (OSError, UnicodeDecodeError) as problem:
+        raise SetupError(f"{file} cannot be read: {problem}. Known missions: {', '.join(there)}") from problem
+    except ConfigError as problem:
+        raise SetupError("\n  ".join([f"{file} cannot be used:", *problem.texts])) from problem

@@ -1,0 +1,139 @@
+"""The missions that ship with the program, and those of the data folder with their versions."""
+
+import json
+import logging
+from pathlib import Path
+
+from pydantic import JsonValue
+
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.missions import MissionLimits
+from robot_runtime.contract.toml_text import BYTES_MAX, TomlError, read_toml
+from robot_runtime.durable_files import make_folder, write_whole
+from robot_runtime.errors import RefusedError
+from robot_runtime.missions.document import NAME, MissionDocument, called_by, read_mission
+from robot_runtime.missions.library import SHIPPED, shipped_missions
+from server.features.missions.schemas import MissionText, MissionVersion, summarize_mission
+from server.platform.disk_space import explain_write_error
+from server.platform.errors import NotFoundError
+
+log = logging.getLogger(__name__)
+
+MISSIONS_MAX = 200
+VERSIONS_MAX = 50
+"""Of one mission; the oldest go."""
+
+
+class UnknownMissionError(NotFoundError):
+    """The library has no such mission"""
+
+
+class MissionLibrary:
+    """The missions of one data folder, and those that ship with the program.
+
+    A mission of one's own is a folder with a file for each version, the newest with the highest number.
+    """
+
+    def __init__(self, own: Path, limits: MissionLimits) -> None:
+        self._own = own
+        self._limits = limits
+
+    def texts(self) -> dict[str, str]:
+        """The newest text of every mission by name; unreadable files are left out."""
+        found = dict(shipped_missions())
+        for folder in sorted(self._own.iterdir()) if self._own.is_dir() else ():
+            if NAME.fullmatch(folder.name) and folder.name not in SHIPPED:
+                versions = _versions(folder)
+                text = _read(versions[-1]) if versions else None
+                if text is not None:
+                    found[folder.name] = text
+        return found
+
+    def read(self, text: str) -> MissionDocument:
+        """The mission of this text, with what it calls. Raises ConfigError with all problems."""
+        return read_mission(text, self.texts(), self._limits)
+
+    def called_by(self, text: str) -> dict[str, str]:
+        """The texts of the missions that this one calls."""
+        return called_by(text, self.texts())
+
+    def describe(self) -> list[MissionText]:
+        """The shipped missions, then one's own by name."""
+        return [self._describe(name, text) for name, text in self.texts().items()]
+
+    def versions(self, name: str) -> list[MissionVersion]:
+        """The versions of one's own mission, the newest first. Raises UnknownMissionError."""
+        found = _versions(self._own / name) if NAME.fullmatch(name) else []
+        if not found:
+            raise UnknownMissionError(f"The library has no own mission {name!r}.")
+        return [
+            MissionVersion(version=int(path.stem), made=path.stat().st_mtime, text=text)
+            for path in reversed(found)
+            if (text := _read(path)) is not None
+        ]
+
+    def keep(self, text: str) -> MissionDocument:
+        """Stores a mission under its own name, as a new version where it differs from the newest.
+
+        Raises ConfigError if it is not valid, RefusedError if it may not or cannot be written.
+        """
+        mission = self.read(text)
+        if mission.name in SHIPPED:
+            raise RefusedError(f"{mission.name} ships with the program. Choose another name.")
+        folder = self._own / mission.name
+        versions = _versions(folder)
+        if not versions and len(self.texts()) >= MISSIONS_MAX:
+            raise RefusedError(
+                f"The library has {MISSIONS_MAX} missions already. Remove one from {self._own}."
+            )
+        if versions and _read(versions[-1]) == text:
+            return mission
+        path = folder / f"{int(versions[-1].stem) + 1 if versions else 1}.toml"
+        try:
+            make_folder(self._own)
+            make_folder(folder)
+            write_whole(path, text.encode())
+            for old in versions[: max(len(versions) + 1 - VERSIONS_MAX, 0)]:
+                old.unlink(missing_ok=True)
+        except OSError as problem:
+            raise RefusedError(explain_write_error(problem, path)) from problem
+        return mission
+
+    def _describe(self, name: str, text: str) -> MissionText:
+        """A mission; the title of an invalid one is its name."""
+        try:
+            summary = summarize_mission(self.read(text))
+        except ConfigError:
+            summary = None
+        versions = 0 if name in SHIPPED else len(_versions(self._own / name))
+        title = summary.title if summary else name
+        shipped = name in SHIPPED
+        return MissionText(
+            name=name, title=title, text=text, shipped=shipped, versions=versions, summary=summary
+        )
+
+
+def _versions(folder: Path) -> list[Path]:
+    """The files of a mission's versions, the oldest first."""
+    if not folder.is_dir():
+        return []
+    return sorted((one for one in folder.glob("*.toml") if one.stem.isdigit()), key=lambda one: int(one.stem))
+
+
+def _read(path: Path) -> str | None:
+    try:
+        if path.stat().st_size <= BYTES_MAX:
+            return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as problem:
+        log.warning("the mission %s cannot be read: %s", path, problem)
+    return None
+
+
+def read_table(text: str) -> dict[str, JsonValue] | None:
+    """A mission's TOML as a table, for the page's editor; None where it is no TOML, or not JSON either."""
+    try:
+        table: dict[str, JsonValue] = read_toml(text)
+        json.dumps(table, allow_nan=False)
+    except (TomlError, TypeError, ValueError):
+        return None
+    return table

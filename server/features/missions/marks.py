@@ -1,0 +1,41 @@
+"""Puts the marks of missions into the session that records."""
+
+import asyncio
+import json
+import logging
+
+from robot_runtime.contract.documents import MISSION_MARK
+from robot_runtime.transport.blocks import Block
+from server.features.sessions.bookmarks import Bookmarks
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.session import SessionStateError
+from server.platform.errors import NotFoundError
+from server.platform.store import StoreError
+
+log = logging.getLogger(__name__)
+
+
+class MissionMarks:
+    """Makes bookmarks of the runtime's events of the kind `MISSION_MARK`."""
+
+    def __init__(self, recorder: Recorder, bookmarks: Bookmarks) -> None:
+        self._recorder = recorder
+        self._bookmarks = bookmarks
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def see(self, block: Block) -> None:
+        """Takes a block of events."""
+        session = self._recorder.session
+        if session is None or MISSION_MARK.encode() not in block.payload:
+            return
+        for event in json.loads(block.payload):
+            if event.get("kind") == MISSION_MARK:
+                task = asyncio.create_task(self._add(session.id, str(event["text"])))
+                self._tasks.add(task)
+                task.add_done_callback(self._tasks.discard)
+
+    async def _add(self, session: int, text: str) -> None:
+        try:
+            await self._bookmarks.add(session, None, text)
+        except (StoreError, SessionStateError, NotFoundError) as problem:
+            log.warning("the mark %r of a mission is not stored: %s", text, problem)

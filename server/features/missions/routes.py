@@ -1,0 +1,126 @@
+"""Missions: library, check, trial, start."""
+
+from fastapi import Request
+from fastapi.concurrency import run_in_threadpool
+from pydantic import TypeAdapter
+
+from robot_runtime.contract.commands import MissionCommand
+from robot_runtime.contract.documents import Mission
+from robot_runtime.contract.limits import ConfigError
+from server.features.lease.admission import admit, require_control
+from server.features.missions.library import MissionLibrary, UnknownMissionError, read_table
+from server.features.missions.nodes import list_node_kinds
+from server.features.missions.schemas import (
+    MissionBody,
+    MissionCheck,
+    MissionNodeKind,
+    MissionSummary,
+    MissionText,
+    MissionTrial,
+    MissionVersion,
+    TrialStart,
+    summarize_mission,
+)
+from server.features.missions.trials import MissionTrials
+from server.features.parameters.changes import COMMAND_ERRORS, Changes
+from server.health.monitor import HealthMonitor
+from server.http.dependencies import Provided
+from server.http.heavy_requests import TooManyHeavyError, Turn
+from server.http.operations import Operations
+from server.http.sign_in.identity import Caller
+from server.http.sign_in.policy import Need
+from server.platform.settings import Settings
+
+REFUSED = {409: "Refused now", 422: "The mission cannot be used"}
+
+router = Operations(prefix="/api/missions", tags=["missions"])
+
+
+def _library(settings: Settings) -> MissionLibrary:
+    return MissionLibrary(settings.data.missions, settings.missions)
+
+
+@router.operation("GET", Need.VIEWER)
+def list_missions(settings: Provided[Settings]) -> list[MissionText]:
+    """List the missions: those of the program, then those of the data folder in their newest version."""
+    return _library(settings).describe()
+
+
+@router.operation("POST", Need.OPERATOR, REFUSED, status_code=201)
+async def keep_mission(settings: Provided[Settings], body: MissionBody) -> MissionSummary:
+    """Store a mission in the data folder under its own name, as a new version."""
+    return summarize_mission(await run_in_threadpool(_library(settings).keep, body.text))
+
+
+@router.operation("GET /versions/{name}", Need.VIEWER, UnknownMissionError)
+def list_mission_versions(settings: Provided[Settings], name: str) -> list[MissionVersion]:
+    """List the versions of a mission of the data folder, the newest first."""
+    return _library(settings).versions(name)
+
+
+@router.operation("GET /nodes", Need.VIEWER)
+def list_mission_nodes() -> list[MissionNodeKind]:
+    """List the leaves and branches that a mission may have, with their fields and limits."""
+    return list_node_kinds()
+
+
+@router.operation("POST /check", Need.VIEWER, TooManyHeavyError)
+def check_mission(_: Turn, settings: Provided[Settings], body: MissionBody) -> MissionCheck:
+    """Check a mission: its problems by entry, or its summary."""
+    table = read_table(body.text)
+    try:
+        summary = summarize_mission(_library(settings).read(body.text))
+        return MissionCheck(problems=[], summary=summary, table=table)
+    except ConfigError as problem:
+        return MissionCheck(problems=list(problem.problems), summary=None, table=table)
+
+
+@router.operation("POST /start", Need.CONTROL, REFUSED, *COMMAND_ERRORS, status_code=201)
+async def start_mission(
+    request: Request,
+    settings: Provided[Settings],
+    changes: Provided[Changes],
+    caller: Caller,
+    body: MissionBody,
+) -> MissionSummary:
+    """Arm the robot and begin a mission, or refuse with every reason against either."""
+    library = _library(settings)
+    mission = await run_in_threadpool(library.read, body.text)
+    called = await run_in_threadpool(library.called_by, body.text)
+    # Access may have been revoked, and control changed hands, in the meantime.
+    await admit(request)
+    require_control(request)
+    await changes.command(caller.name, MissionCommand(text=body.text, library=called))
+    return summarize_mission(mission)
+
+
+@router.operation("GET /state", Need.VIEWER)
+async def get_mission_state(monitor: Provided[HealthMonitor]) -> Mission | None:
+    """Return the running mission, or the last one, as on the live socket; null where there was none."""
+    state = monitor.mission()
+    return None if state is None else TypeAdapter(Mission).validate_python(state)
+
+
+@router.operation("GET /trial", Need.VIEWER)
+async def get_mission_trial(trials: Provided[MissionTrials]) -> MissionTrial:
+    """Return the running trial, or the last one, with its results so far."""
+    return trials.state()
+
+
+@router.operation("POST /trial", Need.OPERATOR, REFUSED, status_code=201)
+async def start_mission_trial(
+    request: Request, settings: Provided[Settings], trials: Provided[MissionTrials], body: TrialStart
+) -> MissionTrial:
+    """Try a mission in simulated water, once for each seed."""
+    library = _library(settings)
+    mission = await run_in_threadpool(library.read, body.text)
+    called = await run_in_threadpool(library.called_by, body.text)
+    await admit(request)
+    trials.start(mission.name, body.text, called, body.seeds)
+    return trials.state()
+
+
+@router.operation("POST /trial/cancel", Need.OPERATOR, {409: "None runs"})
+async def cancel_mission_trial(trials: Provided[MissionTrials]) -> None:
+    """Cancel the running trial; its results stay."""
+    trials.cancel()

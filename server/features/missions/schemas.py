@@ -1,0 +1,156 @@
+"""Schemas of missions."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, Field, JsonValue
+
+from robot_runtime.contract.documents import ParameterValue
+from robot_runtime.contract.missions import MissionPhase
+from robot_runtime.contract.problems import EntryProblem
+from robot_runtime.contract.toml_text import BYTES_MAX
+from robot_runtime.missions.document import MissionDocument
+from server.http.request_body import RequestBody
+
+SEEDS_MAX = 100
+MissionToml = Annotated[str, Field(max_length=BYTES_MAX, description="TOML")]
+
+
+class MissionBody(RequestBody):
+    """The text of a mission."""
+
+    text: MissionToml
+
+
+class MissionStepSummary(BaseModel):
+    """A step of a mission."""
+
+    path: str = Field(description='from 1 along the branches, as "3.1.2"; empty for the first step')
+    do: str
+    words: str
+    note: str
+    longest: float = Field(description="s that it takes at most")
+
+
+class MissionSummary(BaseModel):
+    """The summary of a mission."""
+
+    name: str
+    title: str
+    description: str
+    longest: float = Field(description="s that it takes at most, without pauses")
+    depth: float = Field(description="m; its limit")
+    time: float = Field(description="s; its limit")
+    battery: float = Field(description="V; its limit; 0: none")
+    unwatched: float = Field(description="s; its limit; 0: none")
+    alone: float = Field(description="s for which it may go on without the server")
+    pause: float = Field(description="s that it may be paused in all")
+    steps: list[MissionStepSummary]
+
+
+class MissionText(BaseModel):
+    """A mission; `shipped` ones are part of the program, the others are in the data folder."""
+
+    name: str
+    title: str
+    text: str = Field(description="TOML")
+    shipped: bool
+    versions: int
+    summary: MissionSummary | None = Field(description="null if it is not valid")
+
+
+class MissionVersion(BaseModel):
+    """A version of a mission of one's own."""
+
+    version: int
+    made: float = Field(description="s since 1970")
+    text: str = Field(description="TOML")
+
+
+class MissionCheck(BaseModel):
+    """A mission's problems by entry, or its summary."""
+
+    problems: list[EntryProblem]
+    summary: MissionSummary | None
+    table: dict[str, JsonValue] | None = Field(description="what the TOML says; null where it is no TOML")
+
+
+class NodeField(BaseModel):
+    """A field of a leaf or a branch."""
+
+    name: str
+    kind: Literal["number", "whole", "text", "value", "sight", "parameter", "mission"]
+    meaning: str
+    unit: str
+    minimum: float | None
+    maximum: float | None
+    required: bool
+    default: ParameterValue | None
+
+
+class MissionNodeKind(BaseModel):
+    """A leaf or a branch that documents may have."""
+
+    do: str
+    branch: bool
+    least: int = Field(description="steps below it at least")
+    most: int | None = Field(description="steps below it at most; null: any")
+    meaning: str
+    fields: list[NodeField]
+
+
+class TrialStart(RequestBody):
+    """A mission to try, once for each seed from 1 on."""
+
+    text: MissionToml
+    seeds: Annotated[int, Field(ge=1, le=SEEDS_MAX)] = 20
+
+
+class MissionTrialResult(BaseModel):
+    """The outcome with one seed. `phase` is null where the mission did not begin; `text` says why."""
+
+    seed: int
+    phase: MissionPhase | None
+    text: str
+    elapsed: float = Field(description="s")
+    deepest: float = Field(description="m")
+    failed: str | None = Field(description="path of the step that failed")
+    curve: list[float] = Field(description="depth, m, twice a second")
+
+
+class MissionTrial(BaseModel):
+    """The running trial, or the last one."""
+
+    number: int = Field(description="from 1 since the server started; 0: there was none")
+    name: str
+    text: str = Field(description="the mission's TOML")
+    running: bool
+    seeds: int
+    problem: str = Field(description="the reason of an early end; empty without one")
+    results: list[MissionTrialResult]
+
+
+def summarize_mission(mission: MissionDocument) -> MissionSummary:
+    """The summary of a mission."""
+    limits = mission.limits
+    return MissionSummary(
+        name=mission.name,
+        title=mission.title,
+        description=mission.description,
+        longest=mission.longest,
+        depth=limits.depth,
+        time=limits.time,
+        battery=limits.battery,
+        unwatched=limits.unwatched,
+        alone=limits.alone,
+        pause=limits.pause,
+        steps=[
+            MissionStepSummary(
+                path=one.place,
+                do=one.node.do,
+                words=one.node.words,
+                note=one.node.note,
+                longest=one.longest,
+            )
+            for one in mission.root.walk()
+        ],
+    )

@@ -1,0 +1,116 @@
+"""Missions over HTTP: the library with versions, problems by entry, kinds of steps, and trials."""
+
+import asyncio
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.missions import MissionLimits
+from robot_runtime.errors import RefusedError
+from robot_runtime.missions.leaf import NODES
+from robot_runtime.missions.library import SHIPPED
+from server.features.missions.library import VERSIONS_MAX, MissionLibrary, UnknownMissionError
+from server.features.missions.nodes import list_node_kinds
+from server.features.missions.trials import MissionTrials
+from server.platform.settings import Settings
+from tests.runtime.missions.water import DIVE, HOLD, mission
+from tests.server.serving import serve
+
+OWN = mission(DIVE, HOLD)
+
+
+def test_a_mission_is_kept_with_its_versions(tmp_path: Path) -> None:
+    library = MissionLibrary(tmp_path / "missions", MissionLimits())
+    assert [one.name for one in library.describe()] == list(SHIPPED)
+    library.keep(OWN)
+    library.keep(OWN)
+    later = mission(HOLD, DIVE)
+    library.keep(later)
+    assert library.texts()["test"] == later
+    assert [(one.version, one.text) for one in library.versions("test")] == [(2, later), (1, OWN)]
+    own = library.describe()[-1]
+    assert (own.name, own.shipped, own.versions) == ("test", False, 2)
+    for number in range(VERSIONS_MAX):
+        library.keep(OWN + f"# {number}\n")
+    assert [one.version for one in library.versions("test")][-1] == 3
+    assert len(library.versions("test")) == VERSIONS_MAX
+
+
+def test_what_is_not_valid_or_ships_is_not_kept(tmp_path: Path) -> None:
+    library = MissionLibrary(tmp_path / "missions", MissionLimits(depth=0.5))
+    with pytest.raises(ConfigError, match=r"goes to 0.6 m, and the depth is limited to 0.5 m"):
+        library.keep(OWN)
+    with pytest.raises(RefusedError, match="ships with the program"):
+        library.keep(mission(HOLD).replace('"test"', '"two_depths"'))
+    with pytest.raises(UnknownMissionError):
+        library.versions("../test")
+    assert not (tmp_path / "missions").exists()
+
+
+def test_every_leaf_and_branch_is_listed_with_its_limits() -> None:
+    kinds = {one.do: one for one in list_node_kinds()}
+    assert kinds.keys() == NODES.keys()
+    depth = kinds["dive"].fields[0]
+    assert (depth.name, depth.kind, depth.minimum, depth.maximum, depth.unit) == (
+        "depth",
+        "number",
+        0,
+        10,
+        "m",
+    )
+    assert kinds["turn"].fields[0].minimum == pytest.approx(-3.1416, abs=1e-4)
+    assert kinds["repeat"].branch
+    assert kinds["set"].fields[1].kind == "value"
+    assert all(one.meaning for one in kinds.values())
+
+
+def test_the_page_is_told_problems_by_entry_and_keeps_missions(settings: Settings) -> None:
+    async def run() -> None:
+        async with serve(settings) as served:
+            check: dict[str, Any] = (await served.api.post("/missions/check", json={"text": OWN})).json()
+            assert check["problems"] == []
+            assert [one["path"] for one in check["summary"]["steps"]] == ["", "1", "2"]
+            bad = mission("{ do = 'repeat', times = 0, steps = [{ do = 'fly' }] }")
+            check = (await served.api.post("/missions/check", json={"text": bad})).json()
+            paths = [one["path"] for one in check["problems"]]
+            assert paths == [["mission", "steps", 0, "times"], ["mission", "steps", 0, "steps", 0, "do"]]
+            assert (await served.api.post("/missions", json={"text": OWN})).status_code == 201
+            versions = (await served.api.get("/missions/versions/test")).json()
+            assert [one["text"] for one in versions] == [OWN]
+            assert (await served.api.get("/missions/state")).json() is None
+            started = await served.api.post("/missions/start", json={"text": bad})
+            assert started.status_code == 422
+
+    asyncio.run(run())
+
+
+def test_a_trial_tells_the_outcome_of_each_seed(settings: Settings) -> None:
+    async def run() -> None:
+        trials = MissionTrials(settings)
+        trials.start("test", mission(DIVE, "{ do = 'wait_for', sees = 'red', timeout = 1 }"), {}, 2)
+        with pytest.raises(RefusedError, match="A trial is running"):
+            trials.start("test", OWN, {}, 1)
+        await trials.wait()
+        state = trials.state()
+        assert (state.running, state.problem) == (False, "")
+        assert [(one.seed, one.phase, one.failed) for one in state.results] == [
+            (1, "failed", "2"),
+            (2, "failed", "2"),
+        ]
+        assert all(0.5 < one.deepest < 0.75 for one in state.results)
+        assert all(max(one.curve) == pytest.approx(one.deepest, abs=0.06) for one in state.results)
+        trials.start("test", OWN + "[trial]\nseed = 4\n", {}, 1)
+        await trials.wait()
+        assert "trial.seed is the trial's own" in trials.state().problem
+        trials.start("test", OWN, {}, 100)
+        trials.cancel()
+        await trials.wait()
+        assert trials.state().problem == "It was cancelled."
+        with pytest.raises(RefusedError, match="No trial is running"):
+            trials.cancel()
+        json.loads(trials.state().model_dump_json())
+
+    asyncio.run(run())
