@@ -27,6 +27,7 @@ export type Storage = Schemas['Storage'];
 export type ExportJob = Schemas['Job'];
 export type ExportFormat = Schemas['ExportOptions']['format'];
 export type NewExport = Pick<Schemas['NewExport'], 'session' | 'format'> & Partial<Schemas['NewExport']>;
+export type DoorDetails = Schemas['DoorDetails'];
 export type Finding = Schemas['Finding'];
 export type CommTestDocument = Schemas['TestDocument'];
 export type CommTestCheck = Schemas['Check'];
@@ -181,6 +182,7 @@ export const api = {
   removeMark: (id: Session['id'], mark: Mark['id']) => command('DELETE', `/sessions/${id}/markers/${mark}`),
   thumbnail: (id: Session['id'], time: number) => `/api/sessions/${id}/thumbnail?time=${time}`,
   backup: (progress: (received: number, total: number) => void) => download('/backup', progress),
+  doors: () => request<DoorDetails[]>('GET', '/doors'),
   findings: () => request<Finding[]>('GET', '/doctor'),
   examine: () => request<Finding[]>('POST', '/doctor', undefined, TIMEOUT_COMM_TEST),
   storage: () => request<Storage>('GET', '/storage'),

@@ -229,6 +229,15 @@ export const system = {
       camera: 'Camera',
     },
   },
+  doors: {
+    title: 'Other programs',
+    closed: 'Closed. [doors] in robot.toml opens them to roslib, Foxglove and others.',
+    names: { rosbridge: 'rosbridge', foxglove: 'Foxglove' },
+    shut: 'closed',
+    connected: (count: number) => (count === 0 ? 'open, nobody connected' : `open, ${count} connected`),
+    topics: (count: number) => (count === 1 ? '1 topic' : `${count} topics`),
+    control: 'has control',
+  },
   people: {
     title: 'People',
     signedInAs: 'Signed in as',
