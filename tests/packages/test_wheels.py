@@ -1,11 +1,14 @@
 """The wheels on a computer without repository, Node or compiler."""
 
 import shutil
+import subprocess
 import time
 from pathlib import Path
 
 import pytest
 
+from packages.wheels import PYTHON_PACKAGES
+from robot_runtime.places import PACKAGES
 from robot_runtime.provenance import hash_firmware
 from server import VERSION
 from tests.packages.installation import Installation
@@ -32,6 +35,14 @@ def test_the_software_comes_from_the_wheels(installation: Installation, elsewher
         for file in ("robot.hex", "bring_up.hex", "hil/robot.hex"):
             assert (packages / "mucat_build/firmware" / speed / file).read_text().startswith(":")
     assert (packages / "mucat_build/firmware/optiboot.hex").exists()
+
+
+def test_every_file_of_the_packages_is_in_the_wheel(installation: Installation) -> None:
+    listed = subprocess.run(
+        ["git", "ls-files", *PYTHON_PACKAGES], cwd=PACKAGES, capture_output=True, text=True, check=True
+    )
+    missing = [file for file in listed.stdout.splitlines() if not (installation.packages / file).exists()]
+    assert missing == []
 
 
 def test_a_scenario_swims_in_simulated_time(installation: Installation, elsewhere: Path) -> None:

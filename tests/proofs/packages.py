@@ -40,7 +40,7 @@ ARMED = 20.0
 ENVIRONMENT = "/opt/mucat"
 MUCAT = f"{ENVIRONMENT}/bin/mucat"
 DATA = "var/lib/mucat"
-COMMANDS: tuple[tuple[str, ...], ...] = (("--version",), ("sessions",))
+COMMANDS: tuple[tuple[str, ...], ...] = (("--version",), ("sessions", "list"))
 """Commands of mucat that must work in each root, after the run."""
 CONFIG = """[robot]
 mode = "robot"
@@ -189,8 +189,9 @@ def _swim(root: RootSystem, figures: Figures, mode: str, config: str | None) -> 
         recording: dict[str, Any] = {}
 
         def has_recorded() -> bool:
-            newest = robot.api.get("/sessions").json()
-            recording.update(newest[0] if newest else {})
+            for session in robot.api.get("/sessions").json():
+                if session["state"] == "recording":
+                    recording.update(session)
             return float(recording.get("duration") or 0.0) >= ARMED
 
         robot.wait(has_recorded, f"recording of {ARMED:g} s")

@@ -1,5 +1,6 @@
 """The requirements of rendering, checked without loading MuJoCo."""
 
+import sys
 from ctypes.util import find_library
 from importlib.util import find_spec
 
@@ -9,7 +10,7 @@ def missing() -> str | None:
     if find_spec("mujoco") is None:
         return (
             "MuJoCo is not installed; where there is a wheel for this computer, "
-            "“.venv/bin/python -m pip install mujoco” adds it"
+            f"“{sys.executable} -m pip install mujoco” adds it"
         )
     if find_library("EGL") is None:
         return "there is no EGL library; “sudo apt install libegl1 libegl-mesa0 libgl1-mesa-dri” adds it"
