@@ -88,8 +88,8 @@ def _import_library() -> Any:
     except ValueError as problem:
         # The system's simplejpeg, which picamera2 loads, says so where its NumPy is another one.
         raise CameraError(
-            f"picamera2 was built for another NumPy than this environment's ({problem}): on Raspberry Pi "
-            "OS 12 run `pip install 'numpy<2'` in it, or use Raspberry Pi OS 13"
+            f"picamera2 was built for another NumPy than this environment's ({problem}): use Raspberry Pi "
+            "OS 13, whose picamera2 fits, or a USB camera"
         ) from problem
     except Exception as problem:
         raise CameraError(f"picamera2 cannot be loaded ({problem}); install it again") from problem

@@ -25,6 +25,7 @@ AFTER_IT = (
     "run/install.md",
     "run/backup.md",
 )
+# Those of docs/run/packages.md are run by tests/packages and, in other systems, by `make packages`.
 WITH_A_SERVER = ("run/access.md",)
 
 

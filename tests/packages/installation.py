@@ -14,6 +14,7 @@ class Installation:
     """A virtual environment with wheels; what they depend on is taken from this one's packages."""
 
     def __init__(self, folder: Path, wheels: Sequence[Path]) -> None:
+        self.wheels = wheels
         _run([UV, "venv", "--quiet", "--python", sys.executable, str(folder)])
         python = folder / "bin/python"
         _run([UV, "pip", "install", "--quiet", "--no-deps", "--python", str(python), *map(str, wheels)])

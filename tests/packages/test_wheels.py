@@ -1,5 +1,6 @@
 """The wheels on a computer without repository, Node or compiler."""
 
+import os
 import shutil
 import subprocess
 import time
@@ -11,6 +12,7 @@ from packages.wheels import PYTHON_PACKAGES
 from robot_runtime.places import PACKAGES
 from robot_runtime.provenance import hash_firmware
 from server import VERSION
+from tests.documents.blocks import read_blocks
 from tests.packages.installation import Installation
 from tests.stack import READY_SECONDS, Stack
 
@@ -120,3 +122,22 @@ def test_an_emulator_of_another_architecture_is_refused(installation: Installati
     assert done.returncode == 1
     assert "cannot run" in in_one_line(done.stderr)
     assert "Exec format error" in done.stderr
+
+
+def test_the_commands_of_the_manual_install_the_wheels(installation: Installation, elsewhere: Path) -> None:
+    (block,) = [one for one in read_blocks("run/packages.md") if one.title == "Any Linux"]
+    *install, run = block.text.splitlines()
+    assert run == "mucat/bin/mucat run"
+    for file in installation.wheels:
+        (elsewhere / file.name).symlink_to(file)
+    shutil.copy(PACKAGES / "constraints.txt", elsewhere)
+    alone = {**os.environ, "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PYTHONPATH": ""}
+    for line in install:
+        done = subprocess.run(
+            ["sh", "-c", line], cwd=elsewhere, env=alone, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+    (packages,) = elsewhere.glob("mucat/lib/python*/site-packages")
+    assert (packages / "mucat_build/board").stat().st_mode & 0o111
+    assert (packages / "mucat_build/firmware/robot.hex").exists()
+    assert (elsewhere / "mucat/bin/mucat").exists()

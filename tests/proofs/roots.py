@@ -18,6 +18,8 @@ PYTHON = ("python3", "python3-venv", "ca-certificates")
 SMALL = ("python3-numpy", "python3-pydantic", "python3-pydantic-core")
 """What a 32-bit system has from apt: pip finds no wheels of them."""
 PIP_FILES = (Path("/etc/pip.conf"), Path.home() / ".config/pip/pip.conf", Path.home() / ".pip/pip.conf")
+PI_64 = "Raspberry Pi OS 12 or 13, 64 bits"
+PI_32 = "Raspberry Pi OS 13, 32 bits"
 BINFMT = Path("/proc/sys/fs/binfmt_misc")
 ENTER = """
 set -e
@@ -38,6 +40,8 @@ class RootSystem:
     name: str
     architecture: str
     suite: str
+    page: str
+    """The title of its commands in docs/run/packages.md."""
     packages: tuple[str, ...] = PYTHON
     interpreter: str = ""
     """The emulator of a foreign processor, as update-binfmts names it."""
@@ -102,11 +106,11 @@ def _enable(interpreter: str) -> None:
 
 
 ROOTS = (
-    RootSystem("amd64-trixie", "amd64", "trixie"),
+    RootSystem("amd64-trixie", "amd64", "trixie", "Any Linux"),
     RootSystem(
-        "i386-trixie", "i386", "trixie", (*PYTHON, *SMALL, "python3-opencv"), setarch=("setarch", "linux32")
+        "i386-trixie", "i386", "trixie", PI_32, (*PYTHON, *SMALL, "python3-opencv"), setarch=("linux32",)
     ),
-    RootSystem("arm64-bookworm", "arm64", "bookworm", interpreter="qemu-aarch64"),
-    RootSystem("arm64-trixie", "arm64", "trixie", interpreter="qemu-aarch64"),
-    RootSystem("armhf-trixie", "armhf", "trixie", (*PYTHON, *SMALL), interpreter="qemu-arm"),
+    RootSystem("arm64-bookworm", "arm64", "bookworm", PI_64, interpreter="qemu-aarch64"),
+    RootSystem("arm64-trixie", "arm64", "trixie", PI_64, interpreter="qemu-aarch64"),
+    RootSystem("armhf-trixie", "armhf", "trixie", PI_32, (*PYTHON, *SMALL), interpreter="qemu-arm"),
 )
