@@ -31,9 +31,10 @@ def measure() -> dict[str, float]:
         (hour,) = copy_hours(data)
         with Stack(data) as stack:
             viewer = _Viewer(stack)
-            stack.arm()
+            # Before arming, which would begin a recording of its own.
             recording = {"name": "bench"}
             session = stack.api.post("/sessions", json=recording).raise_for_status().json()["id"]
+            stack.arm()
             time.sleep(_SETTLE)
             began = time.monotonic()
             found = _load(stack, viewer)

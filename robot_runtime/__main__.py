@@ -10,6 +10,7 @@ from robot_runtime.config import Config, craft_in, craft_path, load
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.durable_files import keep_private
+from robot_runtime.profile import fit_to_this_computer
 from robot_runtime.robot import Robot
 from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
 from robot_runtime.transport.network import LOCAL_ONLY, listen_settings
@@ -25,7 +26,7 @@ def main() -> int:
     if options.with_parent:
         end_with_parent()
     try:
-        config = load(options.config)
+        config = fit_to_this_computer(load(options.config))
         craft = craft_in(craft_path(config, options.config, options.data))
         config = replace(config, control=tune_to_craft(config.control, craft))
         with open_transport(config, options.data) as messages:

@@ -35,10 +35,11 @@ def _chip_baud(baud: int) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotConfig:
-    """The robot's name and mode."""
+    """The robot's name and mode; `profile` is the amount of work, which "auto" fits to the computer."""
 
     name: str = "turtle"
     mode: Literal["emulated", "robot", "hil"] = "emulated"
+    profile: Literal["auto", "full", "lean"] = "auto"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

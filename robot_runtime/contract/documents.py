@@ -265,6 +265,10 @@ class State(Document):
     set_point_detected: float
     steering: Steering = field(default="none", metadata={"meaning": "course while the robot holds its depth"})
     control_rate: float
+    profile: Literal["full", "lean"] = field(
+        default="full",
+        metadata={"meaning": "lean: smaller and fewer pictures, larger batches, for a slow computer"},
+    )
     vision_rate: float
     vision_colour: str
     colours: list[str]

@@ -8,7 +8,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Alarm, Event, Mode, Severity
 from robot_runtime.contract.packets import Hello, Start, Status, StatusFlag, Stop
 from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
-from robot_runtime.control.fault_detector import BoardLink, FaultDetector
+from robot_runtime.control.fault_detector import ARRIVAL, BoardLink, FaultDetector
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.fin_check import FinCheck
 from robot_runtime.control.hil_feed import HilFeed
@@ -67,11 +67,12 @@ class Supervisor:
         heartbeat: float | None = None,
         on_mode: Callable[[Mode], None] = lambda _: None,
         arming_obstacles: Callable[[], list[str]] = list,
+        arrival: float = ARRIVAL,
     ) -> None:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
         self.pilot = Pilot(clock)
-        self.detector = FaultDetector(clock, line, self.pilot, hil, heartbeat, arming_obstacles)
+        self.detector = FaultDetector(clock, line, self.pilot, hil, heartbeat, arming_obstacles, arrival)
         self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line
@@ -100,7 +101,7 @@ class Supervisor:
     def board_armed(self) -> bool:
         """True if the board reports that it is armed."""
         status = self.detector.status
-        return status is not None and bool(status.flags & StatusFlag.ARMED)
+        return status is not None and bool(status.flags & _ARMED_FLAG)
 
     def see_status(self, status: Status) -> None:
         """Takes the board's status."""
@@ -110,7 +111,7 @@ class Supervisor:
             if self.mode != "disarmed" and old is not None and old.epoch != status.epoch:
                 # Its silence may have been detected first; this is the cause.
                 self._fail("board_restarted")
-            elif self.armed and not status.flags & StatusFlag.ARMED:
+            elif self.armed and not status.flags & _ARMED_FLAG:
                 self._fail("board_disarmed")
             self._changed.notify_all()
 
@@ -298,4 +299,6 @@ class Supervisor:
 
 
 _ACKNOWLEDGE = "Acknowledge the alarms before the robot is armed again."
+_ARMED_FLAG = int(StatusFlag.ARMED)
+"""A plain integer: an enumeration's operators cost ten times as much."""
 _ALL_FINS_FOLLOWED = "Fin check: all four fins followed."

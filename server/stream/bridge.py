@@ -8,7 +8,6 @@ otherwise begin rounds in which the robot's own samples wait.
 
 import asyncio
 import logging
-import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -91,10 +90,10 @@ class Bridge:
         }
         self._ready: list[Block] = []
         self._emptying = False
-        self._resting = True
-        """True while no emptying of the queue is scheduled: the next arrival wakes the event loop."""
-        self._due = threading.Event()
-        """Set while the queue has more than a single message of the simulator."""
+        self._scheduled = False
+        """True while the queue will be emptied without another arrival."""
+        self._emptied = float("-inf")
+        """Time of the last emptying, by the event loop's clock."""
         self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
@@ -258,24 +257,28 @@ class Bridge:
         self._queue.append((name, data, run))
         if name == SIMULATOR_STREAM and len(self._queue) == 1:
             return
-        self._due.set()
-        if self._resting:
-            self._resting = False
-            try:
-                self._loop.call_soon_threadsafe(self._drain)
-            except RuntimeError:
-                log.debug("a block of %s arrived after the event loop had ended", name)
+        # Two threads may get here at once: then the queue is emptied twice, the second time of nothing.
+        if self._scheduled:
+            return
+        self._scheduled = True
+        try:
+            self._loop.call_soon_threadsafe(self._schedule)
+        except RuntimeError:
+            log.debug("a block of %s arrived after the event loop had ended", name)
+
+    def _schedule(self) -> None:
+        """Empties the queue now, or `ROUND_SECONDS` after it was emptied last."""
+        wait = self._emptied + ROUND_SECONDS - self._loop.time()
+        if wait > 0:
+            self._loop.call_later(wait, self._drain)
+        else:
+            self._drain()
 
     def _drain(self) -> None:
-        if not self._due.is_set():
-            self._resting = True
-            # A block that arrived before the line above has not woken the event loop.
-            if not self._due.is_set():
-                return
-            self._resting = False
-        self._due.clear()
+        # Before the queue is read: what arrives from now on schedules an emptying of its own.
+        self._scheduled = False
+        self._emptied = self._loop.time()
         self._empty_queue()
-        self._loop.call_later(ROUND_SECONDS, self._drain)
 
     def _empty_queue(self) -> None:
         self._emptying = True

@@ -5839,6 +5839,12 @@ export interface components {
             pilot_dropped: number;
             /** Port */
             port: string;
+            /**
+             * Profile
+             * @default full
+             * @enum {string}
+             */
+            profile: "full" | "lean";
             /** Refusals */
             refusals: string[];
             /** Run */

@@ -494,6 +494,7 @@ export interface State {
   set_point_detected: number;
   steering: 'none' | 'beacons';
   control_rate: number;
+  profile: 'full' | 'lean';
   vision_rate: number;
   vision_colour: string;
   colours: string[];

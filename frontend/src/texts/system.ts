@@ -265,6 +265,8 @@ export const system = {
     clock: 'Robot’s clock',
     camera: 'Camera',
     controlRate: 'Control rate',
+    profile: 'Profile',
+    profiles: { full: 'full', lean: 'lean: fewer and smaller pictures, larger batches' },
   },
   link: { title: 'Serial link' },
 } as const;

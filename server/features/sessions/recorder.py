@@ -17,7 +17,7 @@ from datetime import UTC, datetime
 from time import time
 from typing import Any, TypeVar
 
-from sqlalchemy import Connection, insert, update
+from sqlalchemy import Connection, bindparam, insert, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
@@ -45,6 +45,8 @@ SPAN_BYTES_MAX = 4_000_000
 """Payloads in one chunk while writing takes long; readers accept `chunks.CHUNK_BYTES_MAX`."""
 
 _PARAMETERS = BY_NAME["parameters"]
+_UPDATE_SESSION = update(SessionRow).where(col(SessionRow.id) == bindparam("session"))
+"""The values come with each execution: building the statement anew costs more than executing it."""
 
 
 class RecordingRefusedError(ConflictError):
@@ -371,7 +373,7 @@ def _insert(connection: Connection, session: int, batch: _Batch, changes: dict[s
         connection.execute(insert(Chunk), batch.chunks)
     if batch.gaps:
         connection.execute(insert(Gap), [gap | {"session_id": session} for gap in batch.gaps.values()])
-    connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(changes))
+    connection.execute(_UPDATE_SESSION, {"session": session} | changes)
 
 
 def _interrupt(connection: Connection, gaps: list[dict[str, Any]]) -> None:

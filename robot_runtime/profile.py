@@ -1,0 +1,58 @@
+"""The profile: a computer with little processor time looks at smaller pictures, less often, and sends in
+larger batches.
+
+Control and the checks for faults are the same in both profiles, and so are the limits within which a fault is
+found.
+"""
+
+import os
+from dataclasses import replace
+from typing import Literal
+
+from robot_runtime.config import Config
+from robot_runtime.link.link_driver import PERIOD
+from robot_runtime.transport.lifetime import memory_bytes
+
+Profile = Literal["full", "lean"]
+
+LEAN_BYTES = 1_000_000_000
+"""Memory below which a computer with one processor is lean: a Raspberry Pi Zero W has 512 MB."""
+LEAN_RATE = 2.0
+"""Hz: pictures looked at, at most."""
+LEAN_WIDTH, LEAN_HEIGHT = 160, 120
+"""Pixels of a picture, at most."""
+LEAN_PERIOD = 0.08
+"""s for which the board's bytes accumulate: half as many rounds in every process as with `PERIOD`."""
+
+
+def choose_profile(config: Config, processors: int, memory: int) -> Profile:
+    """Returns the profile for a computer with so many processors and bytes of memory."""
+    if config.robot.profile != "auto":
+        return config.robot.profile
+    return "lean" if processors == 1 and memory < LEAN_BYTES else "full"
+
+
+def fit(config: Config, profile: Profile) -> Config:
+    """Returns the configuration in this profile, which it then names."""
+    config = replace(config, robot=replace(config.robot, profile=profile))
+    if profile == "full":
+        return config
+    now = config.vision
+    smaller = min(LEAN_WIDTH / now.width, LEAN_HEIGHT / now.height, 1.0)
+    vision = replace(
+        now,
+        rate=min(now.rate, LEAN_RATE),
+        width=round(now.width * smaller),
+        height=round(now.height * smaller),
+    )
+    return replace(config, vision=vision)
+
+
+def fit_to_this_computer(config: Config) -> Config:
+    """Returns the configuration in the profile of this computer."""
+    return fit(config, choose_profile(config, len(os.sched_getaffinity(0)), memory_bytes()))
+
+
+def gathering(config: Config) -> float:
+    """Returns the s for which the board's bytes accumulate."""
+    return LEAN_PERIOD if config.robot.profile == "lean" else PERIOD
