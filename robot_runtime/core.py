@@ -44,14 +44,13 @@ from robot_runtime.contract.topics import TELEMETRY, TOPICS, Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.controllers.base import Controller
 from robot_runtime.control.experiments import Experiments
-from robot_runtime.control.fault_detector import ARRIVAL
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.pilot import PILOT_LOOK
 from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.link.dissection import dissect
-from robot_runtime.link.link_driver import PERIOD, LinkDriver
+from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.link.session import BoardMessage
 from robot_runtime.link.timing import periods
 from robot_runtime.missions.node import MissionRunner
@@ -129,7 +128,6 @@ class Core:
             heartbeat,
             on_mode=lambda mode: self.control.change_mode(mode),
             arming_obstacles=self._arming_obstacles,
-            arrival=ARRIVAL + line.period - PERIOD,
         )
         self.control = ControlNode(self.bus, clock, line.send, self.supervisor.pilot)
         self.experiments = Experiments(clock, self._publish_experiment)

@@ -1,5 +1,4 @@
-"""The profile: a computer with little processor time looks at smaller pictures, less often, and sends in
-larger batches.
+"""The profile: a computer with little processor time looks at smaller pictures, less often.
 
 Control and the checks for faults are the same in both profiles, and so are the limits within which a fault is
 found.
@@ -10,7 +9,6 @@ from dataclasses import replace
 from typing import Literal
 
 from robot_runtime.config import Config
-from robot_runtime.link.link_driver import PERIOD
 from robot_runtime.transport.lifetime import memory_bytes
 
 Profile = Literal["full", "lean"]
@@ -21,8 +19,6 @@ LEAN_RATE = 2.0
 """Hz: pictures looked at, at most."""
 LEAN_WIDTH, LEAN_HEIGHT = 160, 120
 """Pixels of a picture, at most."""
-LEAN_PERIOD = 0.08
-"""s for which the board's bytes accumulate: half as many rounds in every process as with `PERIOD`."""
 
 
 def choose_profile(config: Config, processors: int, memory: int) -> Profile:
@@ -51,8 +47,3 @@ def fit(config: Config, profile: Profile) -> Config:
 def fit_to_this_computer(config: Config) -> Config:
     """Returns the configuration in the profile of this computer."""
     return fit(config, choose_profile(config, len(os.sched_getaffinity(0)), memory_bytes()))
-
-
-def gathering(config: Config) -> float:
-    """Returns the s for which the board's bytes accumulate."""
-    return LEAN_PERIOD if config.robot.profile == "lean" else PERIOD

@@ -14,7 +14,6 @@ from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.core import PUBLISH_EVERY, Core
 from robot_runtime.link.serial_link import SerialLink
-from robot_runtime.profile import gathering
 from robot_runtime.service_manager import ServiceManager
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import Outbox
@@ -46,7 +45,7 @@ class Robot(Core):
         # Any number that differs from the last run's.
         epoch = time.time_ns() // 1_000_000 & 0xFFFF
         self.connection = SerialLink(
-            port, config.link.baud, clock, epoch, self.take_messages, self.link_changed, gathering(config)
+            port, config.link.baud, clock, epoch, self.take_messages, self.link_changed
         )
         self.hil: HilFeed | None = None
         if config.robot.mode == "hil":

@@ -267,7 +267,7 @@ class State(Document):
     control_rate: float
     profile: Literal["full", "lean"] = field(
         default="full",
-        metadata={"meaning": "lean: smaller and fewer pictures, larger batches, for a slow computer"},
+        metadata={"meaning": "lean: smaller and fewer pictures, for a slow computer"},
     )
     vision_rate: float
     vision_colour: str

@@ -27,7 +27,7 @@ from robot_runtime.control.pilot import Pilot
 from robot_runtime.link.timing import frames_airtime, stale_after
 
 ARRIVAL = 0.05
-"""s that a message of the board may take to arrive; more where bytes accumulate for longer than usual."""
+"""s that a message of the board may take to arrive."""
 DEPTH_MIN, DEPTH_MAX = -1.0, 20.0
 """m: air pressure and sensor drift stay above the minimum, and the set point ends at 10 m."""
 REPEATS = 10
@@ -87,7 +87,7 @@ class Repetition:
 class FaultDetector:
     """Detects faults: `see_...` take the inputs, `active_faults` and `refusals` return the results.
 
-    Without `heartbeat` no server is expected. `arrival`: s that a message of the board may take to arrive."""
+    Without `heartbeat` no server is expected."""
 
     def __init__(
         self,
@@ -97,7 +97,6 @@ class FaultDetector:
         hil: HilFeed | None,
         heartbeat: float | None,
         arming_obstacles: Callable[[], list[str]],
-        arrival: float = ARRIVAL,
     ) -> None:
         self.status: Status | None = None
         self.server_patience = heartbeat
@@ -108,9 +107,9 @@ class FaultDetector:
         self._hil = hil
         self._arming_obstacles = arming_obstacles
         baud = line.baud
-        self._silent = max(_limit("board_silent") - arrival, frames_airtime(3, baud))
+        self._silent = max(_limit("board_silent") - ARRIVAL, frames_airtime(3, baud))
         self._depth_stale = stale_after(_limit("depth_stale"), Depth, baud)
-        self._imu_stale = stale_after(BY_NAME["imu_stale"].limit - arrival, Imu, baud)
+        self._imu_stale = stale_after(BY_NAME["imu_stale"].limit - ARRIVAL, Imu, baud)
         self._status_stale = stale_after(_STATUS_STALE, Status, baud)
         self._heard = self._imu = self._upright = _NEVER
         self._status_time = self._depth_time = self._depth_sane = _NEVER

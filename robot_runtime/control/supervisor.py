@@ -8,7 +8,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Alarm, Event, Mode, Severity
 from robot_runtime.contract.packets import Hello, Start, Status, StatusFlag, Stop
 from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
-from robot_runtime.control.fault_detector import ARRIVAL, BoardLink, FaultDetector
+from robot_runtime.control.fault_detector import BoardLink, FaultDetector
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.fin_check import FinCheck
 from robot_runtime.control.hil_feed import HilFeed
@@ -67,12 +67,11 @@ class Supervisor:
         heartbeat: float | None = None,
         on_mode: Callable[[Mode], None] = lambda _: None,
         arming_obstacles: Callable[[], list[str]] = list,
-        arrival: float = ARRIVAL,
     ) -> None:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
         self.pilot = Pilot(clock)
-        self.detector = FaultDetector(clock, line, self.pilot, hil, heartbeat, arming_obstacles, arrival)
+        self.detector = FaultDetector(clock, line, self.pilot, hil, heartbeat, arming_obstacles)
         self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line

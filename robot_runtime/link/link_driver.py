@@ -15,7 +15,7 @@ from robot_runtime.places import UPLOAD_REMEDY
 
 log = logging.getLogger(__name__)
 
-PERIOD = 0.04
+PERIOD = 0.03
 """s for which bytes accumulate while nothing is urgent. Frames come in pieces, a hundred a second, and each
 wake-up costs CPU time on a Pi."""
 _POLL = 0.05
@@ -41,8 +41,7 @@ class LinkDriver:
 
     `on_messages` gets every batch of messages, `on_change` is called when the connection was established or
     lost, both in the thread that calls `poll` and `receive`. `send`, `statistics` and `frames` may be called
-    from any thread. `text` is the state in words; `fault` is the last failure. Bytes accumulate for `period`
-    s while nothing is urgent.
+    from any thread. `text` is the state in words; `fault` is the last failure.
     """
 
     def __init__(
@@ -53,9 +52,7 @@ class LinkDriver:
         epoch: int,
         on_messages: Callable[[list[BoardMessage]], None],
         on_change: Callable[[], None],
-        period: float = PERIOD,
     ) -> None:
-        self.period = period
         self.path = path
         self.baud = baud
         self.text = "not opened yet"
@@ -82,7 +79,7 @@ class LinkDriver:
 
     @property
     def gathering(self) -> bool:
-        """True if bytes may accumulate for `period`, as nothing is urgent."""
+        """True if bytes may accumulate for `PERIOD`, as nothing is urgent."""
         return self.connected and not self._session.urgent
 
     def send(self, *packets: Packet) -> bool:

@@ -23,9 +23,8 @@ class SerialLink(LinkDriver):
         epoch: int,
         on_messages: Callable[[list[BoardMessage]], None],
         on_change: Callable[[], None],
-        period: float = PERIOD,
     ) -> None:
-        super().__init__(path, baud, clock, epoch, on_messages, on_change, period)
+        super().__init__(path, baud, clock, epoch, on_messages, on_change)
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="link", daemon=True)
 
@@ -62,7 +61,7 @@ class SerialLink(LinkDriver):
     def _receive_next(self, port: Port) -> None:
         wait = self.wait()
         if self.gathering:
-            time.sleep(self.period)
+            time.sleep(PERIOD)
             wait = 0.0
         # An idle port and one that has gone both read as nothing; only the latter claims to be ready.
         if port.wait(wait):

@@ -26,7 +26,7 @@ AFTER_IT = (
     "run/backup.md",
 )
 # Those of docs/run/packages.md are run by tests/packages and, in other systems, by `make packages`.
-WITH_A_SERVER = ("run/access.md",)
+WITH_A_SERVER = ("run/access.md", "use/doors.md")
 
 
 def run(commands: list[str], folder: Path) -> list[str]:

@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 
 from robot_runtime.config import Config, RobotConfig, VisionConfig
-from robot_runtime.link.link_driver import PERIOD
-from robot_runtime.profile import Profile, choose_profile, fit, gathering
+from robot_runtime.profile import Profile, choose_profile, fit
 
 ZERO_W = (1, 447_000_000)
 ZERO_2_W = (4, 447_000_000)
@@ -29,14 +28,12 @@ def test_a_profile_of_the_configuration_is_taken(profile: Profile) -> None:
 def test_the_full_one_leaves_everything_as_it_is() -> None:
     config = Config()
     assert fit(config, "full") == replace(config, robot=RobotConfig(profile="full"))
-    assert gathering(fit(config, "full")) == PERIOD
 
 
-def test_the_lean_one_has_fewer_and_smaller_pictures_and_larger_batches() -> None:
+def test_the_lean_one_has_fewer_and_smaller_pictures() -> None:
     lean = fit(Config(vision=VisionConfig(width=640, height=360)), "lean")
     assert lean.robot.profile == "lean"
     assert (lean.vision.width, lean.vision.height, lean.vision.rate) == (160, 90, 2.0)
-    assert gathering(lean) > PERIOD
     assert lean.control == Config().control
 
 

@@ -67,6 +67,7 @@ def state_block(first: int, **changes: Any) -> Block:
         "set_point_default": 0.5,
         "set_point_detected": 1.0,
         "control_rate": 10.0,
+        "profile": "full",
         "vision_rate": 4.0,
         "vision_colour": "yellow",
         "colours": ["yellow"],

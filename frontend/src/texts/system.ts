@@ -266,7 +266,7 @@ export const system = {
     camera: 'Camera',
     controlRate: 'Control rate',
     profile: 'Profile',
-    profiles: { full: 'full', lean: 'lean: fewer and smaller pictures, larger batches' },
+    profiles: { full: 'full', lean: 'lean: fewer and smaller pictures' },
   },
   link: { title: 'Serial link' },
 } as const;

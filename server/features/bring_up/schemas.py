@@ -2,13 +2,14 @@
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from robot_runtime.contract.packets import FIN_COUNT
 from robot_runtime.experiments.bring_up.procedure import StepState
 from robot_runtime.experiments.bring_up.readings import Field as MagneticField
 from robot_runtime.experiments.bring_up.results import Verdict
 from robot_runtime.simulation.boards.workbench import Lamp, Pose
+from server.http.request_body import RequestBody
 
 Phase = Literal["idle", "starting", "ready", "ending"]
 
@@ -112,29 +113,23 @@ class BringUpState(BaseModel):
     report: str | None = Field(description="address of the newest report")
 
 
-class BringUpOrder(BaseModel):
+class BringUpOrder(RequestBody):
     """An action of a step, with what the person gives."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     step: str = Field(max_length=40)
     action: str = Field(max_length=40, description="an action of this step, or skip")
     inputs: dict[str, float | str] = Field(default_factory=dict, max_length=4)
 
 
-class FinTurn(BaseModel):
+class FinTurn(RequestBody):
     """A fin that is turned by hand."""
-
-    model_config = ConfigDict(extra="forbid")
 
     fin: int = Field(ge=0, le=FIN_COUNT - 1)
     to: Literal["along", "down"] = Field(description="along its mount, or its tip down")
 
 
-class HandsOrder(BaseModel):
+class HandsOrder(RequestBody):
     """Something that hands do at the emulated robot; what is not named stays as it is."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     turn: FinTurn | None = None
     pose: Pose | None = None
