@@ -44,7 +44,7 @@ def test_every_problem_is_told_with_its_place() -> None:
     assert told[4] == "step 3.1: needs heading or by, one of the two"
     assert told[5].startswith("step 3.2: 'x' is not known here")
     assert told[6] == "step 3.2: seconds is 1000000000.0; it must lie between 0.1 and 3600"
-    assert told[7] == "step 4: steps 4.1 and 4.2 would both steer the depth at once"
+    assert told[7] == "step 4: steps 4.1 and 4.2 would both steer the depth, side by side"
     assert told[8] == "step 5: its first step must be a condition (is)"
     assert told[9] == "step 6: steps has 1; while_true needs 2 at least"
     assert told[10] == "step 7 must be a table"
