@@ -1,7 +1,8 @@
 """`python -m packages.release KEY [--machine aarch64] [--python 3.13]`: builds a signed release into `dist`.
 
 A release is a folder with the wheel of mucat, those of everything that it needs on such a computer, their
-checksums, the signature, the public key, and `install.sh`. A robot needs no network to install it.
+checksums, the signature, the public key, and `install.sh`; beside it lies the same as a ZIP file.
+A robot needs no network to install it.
 """
 
 import argparse
@@ -9,6 +10,7 @@ import platform
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 from packages.architectures import ARCHITECTURES, PackagingError
@@ -58,6 +60,10 @@ def build_release(secret: Path, machine: str, python: str, dist: Path) -> Path:
         make_key(secret)
     write_public_key(secret, folder / PUBLIC_KEY)
     sign_folder(folder, secret)
+    # Wheels are packed already: the archive only joins them.
+    with zipfile.ZipFile(folder.with_name(folder.name + ".zip"), "w", zipfile.ZIP_STORED) as archive:
+        for file in sorted(folder.iterdir()):
+            archive.write(file, f"{folder.name}/{file.name}")
     return folder
 
 

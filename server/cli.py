@@ -15,6 +15,8 @@ COMMANDS = {
     "run": "server.startup:run",
     "runtime": "server.processes.runtime_service:run_runtime",
     "install": "server.features.installation.command:install",
+    "update": "server.features.installation.command:update",
+    "rollback": "server.features.installation.command:rollback",
     "uninstall": "server.features.installation.command:uninstall",
     "doctor": "server.features.doctor.command:doctor",
     "bring-up": "server.features.bring_up.command:bring_up",

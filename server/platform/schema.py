@@ -68,10 +68,10 @@ def refuse_unknown(revision: str, database: Path, folder: DataFolder | None = No
 
     It names the backup in `folder` that fits this version.
     """
-    known = _known_revisions()
+    known = known_revisions()
     if revision in known:
         return
-    fitting = None if folder is None else _find_copy(folder, known)
+    fitting = None if folder is None else find_copy(folder, known)
     remedy = (
         "Install that version, or choose another data folder with --data."
         if fitting is None
@@ -84,13 +84,14 @@ def refuse_unknown(revision: str, database: Path, folder: DataFolder | None = No
     )
 
 
-def _known_revisions() -> set[str]:
+def known_revisions() -> set[str]:
+    """Return the schema revisions that this version can read or upgrade."""
     from alembic.script import ScriptDirectory
 
     return {script.revision for script in ScriptDirectory(_scripts()).walk_revisions()}
 
 
-def _find_copy(folder: DataFolder, known: Collection[str]) -> Path | None:
+def find_copy(folder: DataFolder, known: Collection[str]) -> Path | None:
     """The newest copy in the folder that has one of these revisions."""
     for copy in sorted(folder.backups.glob("mucat-*.db"), key=lambda path: path.stem[-19:], reverse=True):
         try:

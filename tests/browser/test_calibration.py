@@ -67,7 +67,8 @@ def test_the_gyroscope_is_measured_saved_and_restored(any_page: Page, stack: Sta
     wanted = before | {"pressure_offset": 250, "fin_zeros": [188, 161, 700, 356]}
     choose(panel, tmp_path / "other.json", wanted)
     rows = panel.get_by_role("region", name="other.json would change:").get_by_role("row")
-    expect(rows.filter(has_text="Pressure sensor")).to_have_text("Pressure sensor0.00 hPa2.50 hPa")
+    offset = f"{before['pressure_offset'] / 100:.2f} hPa"
+    expect(rows.filter(has_text="Pressure sensor")).to_have_text(f"Pressure sensor{offset}2.50 hPa")
     expect(rows.filter(has_text="zero")).to_have_text("Fin back left: zero726700")
     panel.get_by_role("button", name="Store on the board").click()
     expect(panel.get_by_text("Stored on the board.")).to_be_visible()

@@ -51,5 +51,5 @@ topic(looking, '/mucat/stop', 'std_msgs/Empty').publish(ROSLIB.Message ? new ROS
 said.stopped = await new Promise((done) => {
   topic(ros, '/mucat/state', 'mucat/msg/State').subscribe((one) => !one.armed && done(one.mode))
 })
-console.log(JSON.stringify(said))
-process.exit(0)
+// A pipe takes 64 kB at once: the rest is lost at an exit that does not wait for it.
+process.stdout.write(JSON.stringify(said), () => process.exit(0))

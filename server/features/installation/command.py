@@ -1,4 +1,4 @@
-"""`mucat install` and `mucat uninstall`: on a Raspberry Pi or any Debian, as root."""
+"""`mucat install`, `update`, `rollback` and `uninstall`: on a Raspberry Pi or any Debian, as root."""
 
 import os
 import socket
@@ -11,6 +11,7 @@ from server.features.installation.effects import CommandFailedError, Effects
 from server.features.installation.installer import Installer
 from server.features.installation.places import InstallPlaces
 from server.features.installation.release import SIGNATURE, check_signature, read_release
+from server.features.installation.updater import Updater, write_result
 from server.platform.command_line import FILE, CommandError
 from server.platform.settings import SetupError
 from server.platform.terminal import echo
@@ -43,6 +44,64 @@ def install(release: Path, *, yes: bool, dry_run: bool) -> None:
         raise CommandError(str(problem)) from problem
     if not dry_run:
         _greet(places, effects)
+
+
+@click.command()
+@click.argument("release", type=FILE, required=False)
+@click.option("--asked-by-page", is_flag=True, hidden=True, help="Take the release that the page has sent.")
+def update(release: Path | None, *, asked_by_page: bool) -> None:
+    """Update µ-CAT as installed on this computer, or leave it as it is.
+
+    RELEASE is a folder or ZIP file, signed with the key that the installation knows. It is refused while the
+    robot is armed or a session is recorded. A version that is not healthy within a minute is taken back.
+    """
+    _require_root("update", dry=False)
+    os.umask(OPEN_UMASK)
+    places, effects = InstallPlaces(), Effects(echo)
+    if asked_by_page:
+        effects.remove(places.request)
+        release = places.requested
+    if release is None:
+        raise click.UsageError("Name the release: a folder or a ZIP file.")
+    try:
+        version = Updater(places, effects).update(release.absolute())
+    except SetupError as problem:
+        if asked_by_page:
+            write_result(effects, places, updated=False, text=str(problem))
+        raise CommandError(str(problem)) from problem
+    finally:
+        if asked_by_page:
+            effects.remove(places.requested)
+    if asked_by_page:
+        write_result(effects, places, updated=True, text=f"µ-CAT {version} is in use.")
+    echo(f"µ-CAT {version} is in use. sudo mucat rollback goes back.")
+
+
+@click.command()
+@click.option("--cut-off", is_flag=True, hidden=True, help="Go back from an update that a power cut ended.")
+def rollback(*, cut_off: bool) -> None:
+    """Go back to the version before the last update.
+
+    A database that the older version cannot read is replaced by its copy from before the update; the present
+    one is put aside.
+    """
+    _require_root("rollback", dry=False)
+    os.umask(OPEN_UMASK)
+    places = InstallPlaces()
+    updater = Updater(places, Effects(echo))
+    try:
+        if cut_off:
+            updater.recover(starting=True)
+            write_result(
+                Effects(echo),
+                places,
+                updated=False,
+                text="The update was cut off: the old version is back.",
+            )
+        else:
+            echo(f"µ-CAT {updater.roll_back()} is in use.")
+    except SetupError as problem:
+        raise CommandError(str(problem)) from problem
 
 
 @click.command()

@@ -7,8 +7,10 @@ done again. `before` is called with the words of each effect: tests cut the powe
 import os
 import shutil
 import subprocess
+import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from re import Pattern
 
 from robot_runtime.durable_files import PART, make_folder, sync, write_whole
 from server.platform.disk_space import explain_write_error
@@ -134,6 +136,36 @@ class Effects:
         except OSError as problem:
             raise SetupError(explain_write_error(problem, folder)) from problem
 
+    def copy(self, files: Sequence[Path], folder: Path) -> None:
+        """Copy the files into a new folder: nobody else can change what lies there."""
+        if not self._begin(f"copy {len(files)} files into {folder}"):
+            return
+        try:
+            make_folder(folder)
+            for file in files:
+                shutil.copyfile(file, folder / file.name)
+        except OSError as problem:
+            raise SetupError(explain_write_error(problem, folder)) from problem
+
+    def unpack(self, archive: Path, folder: Path, names: Pattern[str], limit: int) -> None:
+        """Unpack the files whose names match, of an archive that has `limit` bytes at most."""
+        if not self._begin(f"unpack {archive} into {folder}"):
+            return
+        try:
+            make_folder(folder)
+            with zipfile.ZipFile(archive) as content:
+                members = [one for one in content.infolist() if not one.is_dir()]
+                if sum(one.file_size for one in members) > limit:
+                    raise SetupError(f"{archive} unpacks to over {limit / 1e6:.0f} MB: it is no release.")
+                for member in members:
+                    name = member.filename.rpartition("/")[2]
+                    if names.fullmatch(name):
+                        _unpack_member(content, member, folder / name)
+        except (zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError) as problem:
+            raise SetupError(f"{archive} is no whole ZIP file: {problem}. Copy it again.") from problem
+        except OSError as problem:
+            raise SetupError(explain_write_error(problem, folder)) from problem
+
     def remove(self, path: Path) -> None:
         """Remove a file, a link or a folder with all that is in it; where it is not there nothing happens."""
         if not path.is_symlink() and not path.exists():
@@ -148,3 +180,9 @@ class Effects:
             sync(path.parent)
         except OSError as problem:
             raise SetupError(f"{path} cannot be removed: {problem.strerror}.") from problem
+
+
+def _unpack_member(content: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> None:
+    """Unpack as many bytes as the archive announced: zipfile refuses what has more, or another CRC."""
+    with content.open(member) as packed, path.open("wb") as file:
+        shutil.copyfileobj(packed, file)

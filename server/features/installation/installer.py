@@ -11,6 +11,7 @@ from server.features.installation.environments import build_environment
 from server.features.installation.places import SERVICES, USER, InstallPlaces
 from server.features.installation.release import Release
 from server.features.installation.units import write_command, write_units
+from server.features.installation.versions import look_at
 from server.platform.disk_space import free_bytes
 from server.platform.settings import SetupError
 
@@ -169,31 +170,17 @@ def wait_until_healthy(effects: Effects, places: InstallPlaces, seconds: float) 
         return
     version, end = places.version_of(places.current), time.monotonic() + seconds
     problem = "it was not asked"
-    question = (
-        "import os; from server.platform.settings import DataFolder; from pathlib import Path\n"
-        "from server.platform.running_server import ask\n"
-        "health = ask(DataFolder(Path(os.environ['MUCAT_DATA'])), 'GET', '/health')\n"
-        "parts = {one['name']: one['state'] for one in health['parts']}\n"
-        "assert parts['database'] == 'ok' and parts['runtime'] == 'ok', parts\n"
-        "print(health['version'])\n"
-    )
     while time.monotonic() < end:
         try:
-            answer = effects.run(
-                places.current / "bin/python",
-                "-c",
-                question,
-                environment={"MUCAT_DATA": str(places.data)},
-                quiet=True,
-            )
+            found = look_at(effects, places, places.current)
         except CommandFailedError as failure:
             problem = str(failure)
         else:
-            if answer.strip() == version:
+            if found.running == version and not found.problem:
                 effects.say(f"µ-CAT {version} runs")
                 return
-            problem = f"the server says that it is of version {answer.strip()}"
+            problem = found.problem or f"the server says that it is of version {found.running}"
         time.sleep(LOOK_SECONDS)
     raise SetupError(
-        f"The server was not healthy within {seconds:g} s: {problem}. See: journalctl -u 'mucat*'"
+        f"The server was not healthy within {seconds:g} s: {problem} See: journalctl -u 'mucat*'"
     )

@@ -11,6 +11,8 @@ from server.platform.settings import SetupError
 SUMS = "SHA256SUMS"
 SIGNATURE = "SHA256SUMS.sig"
 WHEEL = re.compile(r"mucat-([0-9][0-9A-Za-z.+!]*)-py3-none-any\.whl")
+RELEASE_FILE = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+!-]{0,199}\.whl|SHA256SUMS(\.sig)?")
+"""Names of the files of a release that an update takes."""
 SUM_LINE = re.compile(r"([0-9a-f]{64})  ([A-Za-z0-9][A-Za-z0-9._+!-]{0,199})")
 OPENSSL_SECONDS = 60.0
 

@@ -91,7 +91,7 @@ WantedBy=multi-user.target
 Description=Update of the robot turtle that the page has asked for
 
 [Path]
-PathExists={places.data}/update/request.json
+PathExists={places.request}
 
 [Install]
 WantedBy=multi-user.target

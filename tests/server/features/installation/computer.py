@@ -1,14 +1,17 @@
 """A computer made of files: it carries out the commands of an installation in a folder."""
 
+import json
 import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from robot_runtime.places import DEFAULT_CONFIG
 from server.features.installation.effects import Effects
 from server.features.installation.installer import Installer
 from server.features.installation.places import COMPLETE, InstallPlaces
+from server.features.installation.survey import Survey
 
 CONFIG_TXT = "# Raspberry Pi\ndtparam=audio=on\n\n[cm5]\ndtoverlay=dwc2\n"
 KERNEL_LINE = "console=serial0,115200 console=tty1 root=PARTUUID=1-02 rootwait\n"
@@ -67,8 +70,8 @@ class Computer:
             (Path(rest[-1]) / "bin").mkdir(parents=True)
         elif "DEFAULT_CONFIG" in command[-1]:
             return DEFAULT_CONFIG.read_text()
-        elif "/health" in command[-1]:
-            return self.places.version_of(self.places.current) + "\n"
+        elif command[-1].endswith("installation.survey"):
+            return json.dumps(asdict(Survey(running=self.places.version_of(self.places.current))))
         return None
 
     def effects(self, cut: int = -1, *, dry: bool = False) -> Effects:

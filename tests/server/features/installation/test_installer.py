@@ -180,7 +180,7 @@ def test_a_server_that_does_not_start_is_one_line(
     tmp_path: Path, release: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     computer = Computer(tmp_path / "pi")
-    computer.broken["/health"] = "No server works on it"
+    computer.broken["installation.survey"] = "No server works on it"
     monkeypatch.setattr("server.features.installation.installer.HEALTHY_SECONDS", 0.1)
     monkeypatch.setattr("server.features.installation.installer.LOOK_SECONDS", 0.01)
     with pytest.raises(SetupError, match=r"not healthy within 0\.1 s: .*No server works on it"):

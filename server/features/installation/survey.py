@@ -1,0 +1,104 @@
+"""`python -I -m server.features.installation.survey`: what an update must know of a version and its data.
+
+It is asked of the environment of each version, as the user of the data, and prints one line of JSON.
+"""
+
+import hashlib
+import json
+import os
+import sqlite3
+import sys
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from server import VERSION
+from server.platform.running_server import ask
+from server.platform.settings import DataFolder, Settings, SetupError, read_settings
+from server.platform.terminal import echo
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """The findings; without a running server `problem` says so, and nothing is armed or recording.
+
+    `running` is the version of the running server. `reads` is False for a database of a newer version; then
+    `copy` is its newest copy that this version can read, empty without one. `firmware` is the SHA-256 of this
+    version's firmware for a real board, else empty.
+    """
+
+    version: str = VERSION
+    running: str = ""
+    problem: str = ""
+    armed: bool = False
+    recording: bool = False
+    reads: bool = True
+    copy: str = ""
+    firmware: str = ""
+
+
+def survey(settings: Settings) -> Survey:
+    """Look at this version, its data, and the server that runs on them."""
+    reads, copy = _look_at_database(settings.data)
+    running, problem, armed, recording = "", "", False, False
+    try:
+        health = ask(settings.data, "GET", "/health")
+        wrong = [
+            one for one in health["parts"] if one["name"] in ("database", "runtime") and one["state"] != "ok"
+        ]
+        problem = "; ".join(f"{one['name']}: {one['text']}" for one in wrong)
+        running = str(health["version"])
+        recording = any(one["state"] == "recording" for one in _list_sessions(settings.data))
+        armed = ask(settings.data, "GET", "/robot")["armed"] is True
+    except SetupError as failure:
+        problem = problem or str(failure)
+    return Survey(
+        running=running,
+        problem=problem,
+        armed=armed,
+        recording=recording,
+        reads=reads,
+        copy=copy,
+        firmware=_sum_firmware(settings),
+    )
+
+
+def _list_sessions(folder: DataFolder) -> list[dict[str, Any]]:
+    sessions: list[dict[str, Any]] = ask(folder, "GET", "/sessions")
+    return sessions
+
+
+def _look_at_database(folder: DataFolder) -> tuple[bool, str]:
+    """True where this version can read it; else the newest copy that it can read."""
+    from server.platform.schema import find_copy, known_revisions, read_revision
+
+    known = known_revisions()
+    try:
+        revision = read_revision(folder.database)
+    except sqlite3.DatabaseError:
+        readable = False
+    else:
+        readable = revision is None or revision in known
+    return readable, "" if readable else str(find_copy(folder, known) or "")
+
+
+def _sum_firmware(settings: Settings) -> str:
+    from robot_runtime.simulation.boards.firmware import firmware_path
+
+    if settings.emulated_board:
+        return ""
+    path = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else "none"
+
+
+def main() -> None:
+    """Prints the survey. Ends with status 1 where the configuration is not valid, and the reason."""
+    try:
+        settings = read_settings(Path(os.environ["MUCAT_CONFIG"]), None, None, None, os.environ)
+    except SetupError as problem:
+        sys.exit(str(problem))
+    echo(json.dumps(asdict(survey(settings))))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,226 @@
+"""Updates and the way back. Whatever happens, one version runs in the end, with a database that it can read.
+
+Of an update, the journal is the only state: written before anything in force changes, removed when the new
+version was healthy. Where it is found at a start, the update was cut off, and the version before is put back.
+"""
+
+import json
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from server.features.installation.effects import CommandFailedError, Effects
+from server.features.installation.environments import build_environment
+from server.features.installation.installer import INSTALL_BYTES, wait_until_healthy
+from server.features.installation.places import SERVICES, InstallPlaces
+from server.features.installation.release import RELEASE_FILE, Release, check_signature, read_release
+from server.features.installation.versions import list_wrong, look_at, order, write_services_of
+from server.platform.disk_space import free_bytes
+from server.platform.settings import SetupError
+
+HEALTHY_SECONDS = 60.0
+RELEASE_BYTES = 1_000_000_000
+"""A release unpacked, at most; one for 64 bits has some 250 MB."""
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """A change from one version to another; `firmware` is True where the board gets other firmware."""
+
+    before: str
+    after: str
+    firmware: bool
+
+
+class Updater:
+    """Updates the installation at these places."""
+
+    def __init__(self, places: InstallPlaces, effects: Effects) -> None:
+        self._places = places
+        self._effects = effects
+
+    def update(self, path: Path) -> str:
+        """Update to the release in this folder or ZIP file; returns its version. Raises SetupError: then the
+        version before runs, with its database."""
+        self.recover()
+        places, effects = self._places, self._effects
+        before = self._installed()
+        try:
+            release = self._take_in(path)
+            if release.version == before:
+                raise SetupError(f"µ-CAT {before} is in use already. Nothing was changed.")
+            self._refuse_in_use()
+            self._check_room(release)
+            environment = build_environment(effects, places, release)
+            self._refuse_new_faults(environment)
+        finally:
+            effects.remove(places.incoming)
+        # The environment took minutes to build.
+        self._refuse_in_use()
+        self._switch(before, environment)
+        self._remove_others()
+        return release.version
+
+    def roll_back(self) -> str:
+        """Go back to the version before the last update; returns it. Raises SetupError."""
+        self.recover()
+        places = self._places
+        now, before = self._installed(), places.version_of(places.previous)
+        if not before or before == now:
+            raise SetupError("There is no version to go back to: none was before, or one went back already.")
+        self._refuse_in_use()
+        with self._stopped():
+            self._go_back(self._read(places.last_switch) or Switch(before, now, firmware=False))
+        wait_until_healthy(self._effects, places, HEALTHY_SECONDS)
+        return before
+
+    def recover(self, *, starting: bool = False) -> bool:
+        """Go back from an update that was cut off; returns True if there was one.
+
+        `starting`: the computer starts, and nothing of µ-CAT runs yet.
+        """
+        switch = self._read(self._places.journal)
+        if switch is None:
+            return False
+        self._effects.say(f"The update to {switch.after} was cut off: {switch.before} is put back.")
+        if starting:
+            self._go_back(switch)
+        else:
+            with self._stopped():
+                self._go_back(switch)
+        return True
+
+    def _installed(self) -> str:
+        version = self._places.version_of(self._places.current)
+        if not version:
+            raise SetupError(f"µ-CAT is not installed in {self._places.software}: use mucat install.")
+        return version
+
+    def _take_in(self, path: Path) -> Release:
+        """The release, copied to where only root can change it, and then checked."""
+        places, effects = self._places, self._effects
+        effects.remove(places.incoming)
+        if path.suffix == ".zip" and path.is_file():
+            effects.unpack(path, places.incoming, RELEASE_FILE, RELEASE_BYTES)
+        else:
+            folder = read_release(path).folder
+            effects.copy(
+                [one for one in sorted(folder.iterdir()) if RELEASE_FILE.fullmatch(one.name)], places.incoming
+            )
+        release = read_release(places.incoming)
+        check_signature(release, places.key)
+        return release
+
+    def _refuse_in_use(self) -> None:
+        try:
+            found = look_at(self._effects, self._places, self._places.current)
+        except CommandFailedError as problem:
+            # What cannot even look at itself is not in use, and an update may be what mends it.
+            self._effects.say(f"The version in use cannot be asked: {problem}")
+            return
+        if found.armed:
+            raise SetupError("The robot is armed. Disarm it first; nothing was changed.")
+        if found.recording:
+            raise SetupError("A session is being recorded. Stop it first; nothing was changed.")
+
+    def _check_room(self, release: Release) -> None:
+        needed = INSTALL_BYTES
+        database = self._places.data / "mucat.db"
+        needed += database.stat().st_size if database.exists() else 0
+        if (free := free_bytes(self._places.software)) < needed:
+            raise SetupError(
+                f"{free / 1e6:.0f} MB are free, and {release.version} needs {needed / 1e6:.0f} MB. "
+                "Free some space; nothing was changed."
+            )
+
+    def _refuse_new_faults(self, environment: Path) -> None:
+        """Raise SetupError where the new version finds wrong what is not so for the old one."""
+        found = list_wrong(self._effects, self._places, environment)
+        try:
+            known = list_wrong(self._effects, self._places, self._places.current)
+        except CommandFailedError:
+            known = {}
+        if new := sorted(found.keys() - known.keys()):
+            raise SetupError(f"The new version would not work here: {found[new[0]]} Nothing was changed.")
+
+    def _switch(self, before: str, environment: Path) -> None:
+        places, effects = self._places, self._effects
+        firmware = look_at(effects, places, environment).firmware
+        switch = Switch(before, environment.name, firmware not in ("", self._firmware_in_use()))
+        # Where the journal is, the way back is.
+        effects.link(places.previous, places.version(before))
+        effects.write(places.journal, json.dumps(asdict(switch)) + "\n")
+        try:
+            with self._stopped():
+                effects.link(places.current, environment)
+                write_services_of(effects, environment)
+                if switch.firmware:
+                    order(effects, places, environment, "upload")
+            wait_until_healthy(effects, places, HEALTHY_SECONDS)
+        except SetupError as problem:
+            with self._stopped():
+                self._go_back(switch)
+            raise SetupError(f"{problem} {before} is in use again, with its database.") from problem
+        effects.write(places.last_switch, json.dumps(asdict(switch)) + "\n")
+        effects.remove(places.journal)
+
+    def _firmware_in_use(self) -> str:
+        try:
+            return look_at(self._effects, self._places, self._places.current).firmware
+        except CommandFailedError:
+            return ""
+
+    def _go_back(self, switch: Switch) -> None:
+        """Put the version before in force, and its database where it cannot read the present one."""
+        places, effects = self._places, self._effects
+        old = places.version(switch.before)
+        if not places.is_complete(old):
+            raise SetupError(f"{old} is not there any more: install a release with mucat install.")
+        # The migration has made the copy before it changed anything.
+        found = look_at(effects, places, old)
+        if not found.reads and not found.copy:
+            raise SetupError(
+                f"{switch.before} cannot read the database, and no copy of it fits. Nothing was changed."
+            )
+        effects.link(places.current, old)
+        write_services_of(effects, old)
+        if not found.reads:
+            effects.say(order(effects, places, old, "restore", found.copy).strip())
+        if switch.firmware:
+            order(effects, places, old, "upload")
+        effects.remove(places.last_switch)
+        effects.remove(places.journal)
+
+    @contextmanager
+    def _stopped(self) -> Iterator[None]:
+        """Nothing of µ-CAT runs meanwhile; it is started in any case."""
+        self._effects.run("systemctl", "stop", *reversed(SERVICES))
+        try:
+            yield
+        finally:
+            self._effects.run("systemctl", "start", "--no-block", *SERVICES)
+
+    def _read(self, path: Path) -> Switch | None:
+        try:
+            return Switch(**json.loads(path.read_text(encoding="utf-8")))
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError, TypeError) as problem:
+            raise SetupError(f"{path} cannot be read: {problem}.") from problem
+
+    def _remove_others(self) -> None:
+        """Remove environments that nothing leads to any more."""
+        places = self._places
+        in_use = {places.version_of(places.current), places.version_of(places.previous)}
+        for one in sorted(places.versions.iterdir()):
+            if one.name not in in_use:
+                self._effects.remove(one)
+
+
+def write_result(effects: Effects, places: InstallPlaces, *, updated: bool, text: str) -> None:
+    """Write for the page how an update ended. Raises SetupError."""
+    effects.write(
+        places.result, json.dumps({"time": time.time(), "updated": updated, "text": text}, ensure_ascii=False)
+    )

@@ -1,0 +1,57 @@
+"""Asks and orders an environment's own programs, as the user of the data."""
+
+import json
+from pathlib import Path
+
+from server.features.installation.effects import CommandFailedError, Effects
+from server.features.installation.places import USER, InstallPlaces
+from server.features.installation.survey import Survey
+
+ORDER_SECONDS = 600.0
+"""A copy of a large database on a slow card, or an upload of the firmware."""
+
+
+def order(effects: Effects, places: InstallPlaces, environment: Path, *words: str | Path) -> str:
+    """Carry out a command by a version's own `mucat`. Raises CommandFailedError."""
+    program = environment / "bin/mucat"
+    return effects.run(
+        *("runuser", "-u", USER, "--", program, *words),
+        environment=_environment(places),
+        seconds=ORDER_SECONDS,
+    )
+
+
+def look_at(effects: Effects, places: InstallPlaces, environment: Path) -> Survey:
+    """Return what a version finds: its data, and the server that runs on them. Raises CommandFailedError."""
+    # Isolated (-I): no module of the present folder is loaded.
+    program = (environment / "bin/python", "-I", "-m", "server.features.installation.survey")
+    answer = effects.run(
+        *("runuser", "-u", USER, "--", *program), environment=_environment(places), quiet=True
+    )
+    try:
+        return Survey(**json.loads(answer))
+    except (ValueError, TypeError) as problem:
+        raise CommandFailedError(f"{environment.name} gives no survey of itself: {problem}.") from problem
+
+
+def list_wrong(effects: Effects, places: InstallPlaces, environment: Path) -> dict[str, str]:
+    """Return what the doctor of a version finds wrong on this computer: names and texts."""
+    answer = effects.run(
+        *("runuser", "-u", USER, "--", environment / "bin/mucat", "doctor", "--json"),
+        environment=_environment(places),
+        quiet=True,
+        accepted=(0, 1),
+    )
+    try:
+        return {one["name"]: one["text"] for one in json.loads(answer) if one["verdict"] == "wrong"}
+    except (ValueError, TypeError, KeyError) as problem:
+        raise CommandFailedError(f"The doctor of {environment.name} cannot be asked: {problem}.") from problem
+
+
+def write_services_of(effects: Effects, environment: Path) -> None:
+    """Write a version's services, by itself. Raises CommandFailedError."""
+    effects.run(environment / "bin/python", "-I", "-m", "server.features.installation.services")
+
+
+def _environment(places: InstallPlaces) -> dict[str, str]:
+    return {"MUCAT_DATA": str(places.data), "MUCAT_CONFIG": str(places.config), "PYTHONPATH": ""}

@@ -1,0 +1,118 @@
+"""A computer with an installation, whose versions have schemas and firmware; some of them do not work."""
+
+import json
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from server.features.installation.places import SERVICES
+from server.features.installation.survey import Survey
+from server.features.installation.units import write_units
+from server.features.installation.updater import Updater
+from tests.server.features.installation.computer import Computer
+
+
+class UpdatableComputer(Computer):
+    """Its database is a text "SCHEMA sessions"; a version reads every schema up to its own.
+
+    `schemas` and `firmware` are by version; `sick` versions never answer, `wrong` are the doctor's findings.
+    """
+
+    def __init__(self, root: Path) -> None:
+        super().__init__(root)
+        self.schemas: dict[str, int] = {}
+        self.firmware: dict[str, str] = {}
+        self.sick: set[str] = set()
+        self.wrong: dict[str, str] = {}
+        self.running = ""
+        self.armed = self.recording = False
+        self.board = ""
+
+    @property
+    def database(self) -> Path:
+        return self.places.data / "mucat.db"
+
+    @property
+    def schema(self) -> int:
+        return int(self.database.read_text().split()[0]) if self.database.exists() else 0
+
+    def schema_of(self, version: str) -> int:
+        return self.schemas.get(version, 1)
+
+    def boot(self) -> None:
+        """Its power comes back: the way back first, if an update was cut off, then the services."""
+        self.running = ""
+        if self.places.journal.exists():
+            Updater(self.places, self.effects()).recover(starting=True)
+        self.start()
+
+    def start(self) -> None:
+        version = self.places.version_of(self.places.current)
+        if self.schema > self.schema_of(version):
+            return
+        if self.schema < self.schema_of(version):
+            self.migrate(version)
+        self.running = "" if version in self.sick else version
+
+    def migrate(self, version: str) -> None:
+        """As the server does: with a copy from before."""
+        if self.database.exists():
+            self.copy(self.schema).write_text(self.database.read_text())
+        kept = self.database.read_text().partition(" ")[2] if self.database.exists() else "no sessions"
+        self.database.write_text(f"{self.schema_of(version)} {kept}")
+
+    def copy(self, schema: int) -> Path:
+        folder = self.places.data / "backups"
+        folder.mkdir(exist_ok=True)
+        return folder / f"mucat-before-{schema}.db"
+
+    def run(
+        self, command: Sequence[str], environment: Mapping[str, str], seconds: float
+    ) -> "subprocess.CompletedProcess[str]":
+        answered = super().run(command, environment, seconds)
+        if answered.returncode != 0:
+            return answered
+        words = list(command)
+        if words[0] == "systemctl" and set(SERVICES) <= set(words):
+            self.running = ""
+            if words[1] != "stop":
+                self.start()
+        if words[0] == "runuser":
+            answered.stdout = self._answer(Path(words[4]).parents[1].name, words[5:])
+        elif words[-1].endswith("installation.services"):
+            version = Path(words[0]).parents[1].name
+            for name in write_units(self.places):
+                (self.places.units / name).write_text(f"{name} of {version}")
+        return answered
+
+    def _answer(self, link: str, words: list[str]) -> str:
+        version = self.places.version_of(self.places.current) if link == "current" else link
+        if words[0] == "doctor":
+            findings = [{"name": "python", "text": "It is 3.13.", "verdict": "ok"}]
+            if text := self.wrong.get(version):
+                findings.append({"name": text, "text": text, "verdict": "wrong"})
+            return json.dumps(findings)
+        if words[0] == "upload":
+            self.board = self.firmware.get(version, "")
+        elif words[0] == "restore":
+            self.database.write_text(Path(words[1]).read_text())
+        else:
+            reads = self.schema <= self.schema_of(version)
+            copies = [one for one in range(self.schema_of(version), 0, -1) if self.copy(one).exists()]
+            problem = "" if self.running else "No server works on it."
+            return json.dumps(
+                asdict(
+                    Survey(
+                        version=version,
+                        running=self.running,
+                        problem=problem,
+                        armed=self.armed,
+                        recording=self.recording,
+                        reads=reads,
+                        copy="" if reads or not copies else str(self.copy(copies[0])),
+                        firmware=self.firmware.get(version, ""),
+                    )
+                )
+            )
+        return ""
