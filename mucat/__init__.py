@@ -1,0 +1,8 @@
+"""The robot from Python: read it live, command it, and load its sessions as tables with units."""
+
+from mucat.errors import RobotError as RobotError
+from mucat.live import LiveSample as LiveSample
+from mucat.robot import Control as Control
+from mucat.robot import Robot as Robot
+from mucat.sessions import Sessions as Sessions
+from mucat.sessions import SessionTables as SessionTables
