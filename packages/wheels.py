@@ -25,7 +25,7 @@ from server import VERSION
 
 BAUDS = (250_000, 115_200)
 """bit/s for which firmware is packaged: the default, and one that every serial port can make."""
-PYTHON_PACKAGES = ("robot_runtime", "server", "migrations")
+PYTHON_PACKAGES = ("mucat", "robot_runtime", "server", "migrations")
 FILES = ("pyproject.toml", "README.md", "LICENSE", "firmware/emulator/LICENSE")
 DIST = PACKAGES / "dist"
 STAGES = BUILD / "wheels"

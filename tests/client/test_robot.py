@@ -1,13 +1,13 @@
 """The package mucat against the whole emulated robot."""
 
 import asyncio
+from pathlib import Path
 
 import pytest
 
-from mucat import Robot, RobotError, Sessions
+from mucat import Control, Robot, RobotError, Sessions, SessionTables
+from tests.server.waiting import until
 from tests.stack import Stack
-
-pytestmark = pytest.mark.stack
 
 
 def make_token(stack: Stack, scope: str) -> str:
@@ -16,6 +16,7 @@ def make_token(stack: Stack, scope: str) -> str:
     return str(answer.raise_for_status().json()["token"])
 
 
+@pytest.mark.stack
 def test_a_program_reads_drives_and_loads_what_it_recorded(shared_stack: Stack) -> None:
     token = make_token(shared_stack, "operate")
     robot = Robot(shared_stack.url, token)
@@ -48,6 +49,7 @@ def test_a_program_reads_drives_and_loads_what_it_recorded(shared_stack: Stack) 
         tables.pandas("height")
 
 
+@pytest.mark.stack
 def test_a_reader_may_read_and_stop_and_nothing_else(shared_stack: Stack) -> None:
     robot = Robot(shared_stack.url, make_token(shared_stack, "read"))
 
@@ -64,3 +66,68 @@ def test_a_reader_may_read_and_stop_and_nothing_else(shared_stack: Stack) -> Non
         Robot(shared_stack.url, "mucat_wrong").state()
     with pytest.raises(RobotError, match="There is no topic"):
         next(robot.live("height"))
+
+
+SWIM = """
+name = "client"
+title = "A short swim"
+description = "It arms and stops."
+seed = 3
+duration = 6
+
+[scene]
+kind = "pool"
+depth = 3.0
+length = 10.0
+width = 5.0
+
+[[events]]
+at = 1
+do = "arm"
+
+[[events]]
+at = 6
+do = "stop"
+"""
+
+
+@pytest.mark.stack
+def test_scenarios_run_and_their_sessions_are_compared_and_read_from_files(
+    shared_stack: Stack, tmp_path: Path
+) -> None:
+    token = make_token(shared_stack, "operate")
+    robot, sessions = Robot(shared_stack.url, token), Sessions(shared_stack.url, token)
+    first, second = robot.run_scenario(SWIM), robot.run_scenario(SWIM)
+    assert second > first
+    one, other = sessions.compare([first, second], ["depth.depth"])["sessions"]
+    assert one["series"]["depth.depth"] == other["series"]["depth.depth"]
+    job = shared_stack.api.post("/exports", json={"session": first, "format": "csv"}).json()
+    place = f"/exports/{job['id']}"
+    asyncio.run(until(lambda: shared_stack.api.get(place).json()["state"] == "done", "the export"))
+    file = tmp_path / "dive.zip"
+    file.write_bytes(shared_stack.api.get(f"{place}/file").content)
+    tables = Sessions.read(file)
+    assert tables.pandas("depth").equals(sessions.load(first).pandas("depth"))
+    assert tables.polars("depth")["time"].to_list() == tables.pandas("depth")["time"].to_list()
+    with pytest.raises(RobotError, match="title is missing"):
+        robot.run_scenario("name = 1")
+
+
+def test_what_is_no_export_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "dive.zip").write_bytes(b"PK no zip")
+    with pytest.raises(RobotError, match="no export of a session"):
+        Sessions.read(tmp_path / "dive.zip")
+    with pytest.raises(RobotError, match="cannot be read"):
+        Sessions.read(tmp_path / "none.zip")
+    with pytest.raises(RobotError, match="begins with http"):
+        Robot("turtle.local", "mucat_token")
+    with pytest.raises(RobotError, match="does not answer"):
+        Robot("http://127.0.0.1:9", "mucat_token").state()
+
+
+@pytest.mark.parametrize("one", [Robot, Control, Sessions, SessionTables])
+def test_the_reference_has_every_method(one: type) -> None:
+    page = (Path(__file__).parents[2] / "docs/reference/python.md").read_text()
+    methods = [name for name in vars(one) if not name.startswith("_") and callable(getattr(one, name))]
+    assert methods
+    assert [name for name in methods if f"`{name}(" not in page] == []
