@@ -10,6 +10,7 @@ from starlette.routing import BaseRoute
 from server import VERSION
 from server.container import Container
 from server.features.backup import routes as backup
+from server.features.board import routes as board
 from server.features.bring_up import routes as bring_up
 from server.features.comm_tests import routes as comm_tests
 from server.features.comparison import routes as compare
@@ -45,7 +46,7 @@ from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
 
 ROUTES = (
-    *(access, audit, backup, bring_up, comm_tests, compare, control, doctor, doors, exports),
+    *(access, audit, backup, board, bring_up, comm_tests, compare, control, doctor, doors, exports),
     *(identification, layouts, live, missions, panels, parameters, robot, scenarios, sessions),
     *(simulator, tuning, vision),
 )

@@ -13,6 +13,7 @@ from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block
 from server.features.backup.download import DatabaseDownloads
+from server.features.board.firmware_upload import FirmwareUpload
 from server.features.board.reservation import BoardReservation, RobotBoard
 from server.features.bring_up.bring_up_run import BringUpRun
 from server.features.comm_tests.runner import CommTestRunner
@@ -142,6 +143,7 @@ class Container:
             self.board_reservation.reserve,
         )
 
+        self.firmware_upload = FirmwareUpload(self.settings, board, self.board_reservation.reserve)
         self.bring_up = BringUpRun(self.settings, board, self.board_reservation.reserve, self.processes)
 
     def _add_scenarios(self) -> None:
@@ -233,6 +235,7 @@ class Container:
             await self.scenarios.close()
             await self.comm_tests.close()
             await self.bring_up.close()
+            await self.firmware_upload.close()
             await self.comparison.close()
             await self.identification.close()
             await self.mission_trials.close()

@@ -70,6 +70,7 @@ export type Restored = Schemas['Restored'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
+export type FirmwareUploadState = Schemas['UploadState'];
 export type BringUpState = Schemas['BringUpState'];
 export type BringUpStep = Schemas['BringUpStep'];
 export type BringUpAction = Schemas['BringUpAction'];
@@ -237,6 +238,9 @@ export const api = {
   stopTuning: () => order('POST', '/tuning/stop'),
   renameTuning: (id: TuningRun['id'], name: string) => command('PATCH', `/tuning/runs/${id}`, { name }),
   deleteTuning: (id: TuningRun['id']) => command('DELETE', `/tuning/runs/${id}`),
+  firmwareUpload: () => request<FirmwareUploadState>('GET', '/firmware'),
+  uploadFirmware: (firmware: Schemas['UploadOrder']['firmware']) =>
+    request<FirmwareUploadState>('POST', '/firmware', { firmware }, TIMEOUT_COMM_TEST),
   bringUp: () => request<BringUpState>('GET', '/bring-up'),
   beginBringUp: () => orderFor<BringUpState>('POST', '/bring-up', undefined, TIMEOUT_COMM_TEST),
   endBringUp: () => request<BringUpState>('DELETE', '/bring-up'),

@@ -8,6 +8,7 @@ from robot_runtime.control.fin_check import FINS
 from robot_runtime.experiments.bring_up.bench import addresses
 from robot_runtime.experiments.bring_up.guide import NO_FIN, STEPS
 from robot_runtime.experiments.bring_up.procedure import BringUp
+from robot_runtime.simulation.boards.mistakes import FINS as WRITTEN
 from robot_runtime.simulation.boards.workbench import (
     ALONG,
     BAROMETER,
@@ -21,6 +22,31 @@ from tests.board.host import BAUD, Host, P, start
 from tests.board.rig import Rig
 
 POSES: tuple[Pose, ...] = ("level", "nose_up", "right_down")
+NAMED = [
+    ("strap-wrong:back-right", "devices", "answers at 0x62 instead"),
+    ("strap-shared:front-right,back-left", "devices", "two bridges with the same straps"),
+    ("imu-strap", "devices", "its strap AD0 must lie at its supply"),
+    ("missing:imu", "devices", "Check the IMU's supply"),
+    ("missing:pressure", "devices", "Check the pressure sensor's supply"),
+    *((f"missing:bridge-{fin}", "devices", "Check this bridge's supply and straps") for fin in WRITTEN),
+    ("imu-clone:0x55", "sensors", "Another chip answers there"),
+    *((f"missing:encoder-{fin}", "sensors", "No encoder answers") for fin in WRITTEN),
+    ("divider-wrong:3", "battery", "two equal resistors"),
+    ("missing:battery", "battery", "two equal resistors"),
+    ("encoders-swapped:front-right,back-left", "fin_0", "select lines of the front right and the back left"),
+    ("encoders-swapped:front-right,back-left", "fin_2", "select lines of the back left and the front right"),
+    ("encoders-swapped:front-right,back-left", "motor_0", "have swapped select lines"),
+    (
+        "motors-swapped:front-right,back-left",
+        "motor_0",
+        "motors of the front right and the back left fin are",
+    ),
+    ("strap-shared:front-right,back-left", "motor_2", "have the same straps"),
+    ("missing:motor-front-left", "motor_3", "the motor at its bridge"),
+    ("beacons-swapped", "beacons", "The detectors are swapped"),
+    ("missing:beacon-right", "beacons", "Does the lamp blink"),
+]
+"""Mistakes, a step that finds each, and words of its advice. A mistake's first step finds it first."""
 SETTLE = 0.2
 """s that a person takes from a change to the press of a button, at least."""
 HOLD = 0.1

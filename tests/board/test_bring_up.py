@@ -11,9 +11,8 @@ from robot_runtime.contract.calibration import EMULATED
 from robot_runtime.contract.packets import Jog, Start
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.bring_up.guide import STEPS
-from robot_runtime.simulation.boards.mistakes import FINS as WRITTEN
 from server.features.bring_up.report import write_report
-from tests.board.bring_up import Person
+from tests.board.bring_up import NAMED, Person
 from tests.board.rig import ROOT, build
 
 Begin = Callable[..., Person]
@@ -56,33 +55,7 @@ def test_a_fresh_board_is_brought_up_and_calibrated(begin: Begin) -> None:
     assert found.beacons_inverted == EMULATED.beacons_inverted
 
 
-MISTAKES = [
-    ("strap-wrong:back-right", "devices", "answers at 0x62 instead"),
-    ("strap-shared:front-right,back-left", "devices", "two bridges with the same straps"),
-    ("imu-strap", "devices", "its strap AD0 must lie at its supply"),
-    ("missing:imu", "devices", "Check the IMU's supply"),
-    ("missing:pressure", "devices", "Check the pressure sensor's supply"),
-    *((f"missing:bridge-{fin}", "devices", "Check this bridge's supply and straps") for fin in WRITTEN),
-    ("imu-clone:0x55", "sensors", "Another chip answers there"),
-    *((f"missing:encoder-{fin}", "sensors", "No encoder answers") for fin in WRITTEN),
-    ("divider-wrong:3", "battery", "two equal resistors"),
-    ("missing:battery", "battery", "two equal resistors"),
-    ("encoders-swapped:front-right,back-left", "fin_0", "select lines of the front right and the back left"),
-    ("encoders-swapped:front-right,back-left", "fin_2", "select lines of the back left and the front right"),
-    ("encoders-swapped:front-right,back-left", "motor_0", "have swapped select lines"),
-    (
-        "motors-swapped:front-right,back-left",
-        "motor_0",
-        "motors of the front right and the back left fin are",
-    ),
-    ("strap-shared:front-right,back-left", "motor_2", "have the same straps"),
-    ("missing:motor-front-left", "motor_3", "the motor at its bridge"),
-    ("beacons-swapped", "beacons", "The detectors are swapped"),
-    ("missing:beacon-right", "beacons", "Does the lamp blink"),
-]
-
-
-@pytest.mark.parametrize(("mistake", "step", "words"), MISTAKES)
+@pytest.mark.parametrize(("mistake", "step", "words"), NAMED)
 def test_each_mistake_is_found_and_named(begin: Begin, mistake: str, step: str, words: str) -> None:
     person = begin(mistake)
     person.do(step)

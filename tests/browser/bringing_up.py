@@ -33,6 +33,11 @@ class PagePerson:
         self.page.get_by_role("button", name="Begin", exact=True).click()
         expect(self.page.get_by_text(f"of {len(STEPS)} steps done").first).to_be_visible(timeout=UPLOAD_MS)
 
+    def report(self) -> str:
+        """The newest report, written at the end."""
+        self.end()
+        return self._stack.api.get("/bring-up/report").text
+
     def end(self) -> None:
         self.page.get_by_role("button", name="End", exact=True).click()
         self.page.get_by_role("button", name="End the bring-up").click()

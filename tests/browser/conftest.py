@@ -1,10 +1,13 @@
 """One running robot for all browser tests; it ends with them."""
 
+import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
+from robot_runtime.errors import NoAnswerError
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.browser.fixtures import _no_page_is_left, any_page, browser, cookies, page
 from tests.browser.pages import stop_recordings
@@ -47,7 +50,13 @@ def bring_to_surface(stack: Stack) -> None:
     """Put the robot where every test finds it, wherever the one before has left it."""
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
     with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
-        messages.query("simulator/reset", {}, RESET_SECONDS)
+        end = time.monotonic() + RESET_SECONDS
+        while True:
+            # One that has just been started, after a bring-up, is found by others a moment later.
+            with suppress(NoAnswerError):
+                messages.query("simulator/reset", {}, RESET_SECONDS)
+                return
+            assert time.monotonic() < end, "the simulator is not found"
 
 
 def put_to_rest(stack: Stack) -> None:

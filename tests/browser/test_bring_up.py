@@ -1,12 +1,16 @@
 """The bring-up on the page, all of it, with mistakes that are found, named and mended on the way."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from robot_runtime.experiments.bring_up.guide import STEPS
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient
+from tests.browser.axe import AXE, faults
 from tests.browser.bringing_up import PagePerson, wait_for_the_robot
+from tests.browser.opening import DESKTOP, PHONE
+from tests.proofs.watching import wait
 from tests.stack import Stack
 
 FOUND = {
@@ -30,7 +34,7 @@ def person(page: Page, stack: Stack) -> Iterator[PagePerson]:
 
 
 @pytest.mark.timeout(240)
-def test_a_robot_is_brought_up_step_by_step(person: PagePerson, page: Page, stack: Stack) -> None:
+def test_a_robot_is_brought_up_step_by_step(person: PagePerson, page: Page) -> None:
     for step in STEPS:
         if step.name in FOUND:
             mistake, words = FOUND[step.name]
@@ -41,8 +45,56 @@ def test_a_robot_is_brought_up_step_by_step(person: PagePerson, page: Page, stac
             person.mend()
         person.do(step.name)
         assert person.state(step.name) == "done", person.advice()
-    person.end()
-    report = stack.api.get("/bring-up/report").text
+    report = person.report()
     assert "Nothing was found wrong." in report
     assert "The calibration is whole." in report
     expect(page.get_by_role("link", name="Report of the last bring-up")).to_be_visible()
+
+
+RELEASES: dict[str, Callable[[Page], object]] = {
+    "Escape": lambda page: page.keyboard.press("Escape"),
+    "another window": lambda page: page.evaluate("window.dispatchEvent(new Event('blur'))"),
+    "a hidden page": lambda page: page.evaluate(
+        """() => {
+            Object.defineProperty(document, 'hidden', { value: true, configurable: true });
+            document.dispatchEvent(new Event('visibilitychange'));
+            delete document.hidden;
+        }"""
+    ),
+}
+"""Ways in which a held button is released while the pointer stays down on it."""
+
+
+@pytest.mark.timeout(200)
+def test_a_held_motor_is_released_a_step_skipped_and_a_step_accessible(
+    person: PagePerson, page: Page, stack: Stack
+) -> None:
+    expect(page.get_by_text("The robot’s board is at other work")).to_be_visible()
+    expect(page.get_by_text("The runtime does not answer")).to_have_count(0)
+    person.skip("battery")
+    page.reload()
+    expect(page.get_by_role("link", name="Battery")).to_have_text("– Battery skipped")
+
+    person.open("motor_1")
+    with EmulatorClient(stack.data / "run/board.sock") as board:
+        for how, release in RELEASES.items():
+            person.hold_button().hover()
+            page.mouse.down()
+            wait(lambda: abs(board.fins().speeds[1]) > 1, f"the motor, to be stopped by {how}")
+            with page.expect_response("**/api/bring-up/actions"):
+                release(page)
+            expect(page.get_by_role("button", name="Hold to turn it")).to_be_visible()
+            wait(lambda: abs(board.fins().speeds[1]) < 0.05, f"rest after {how}")
+            page.mouse.up()
+
+    page.evaluate(AXE.read_text())
+    person.do("devices")
+    for step in ("devices", "pressure", "fin_0", "motor_1"):
+        person.open(step)
+        for size in (DESKTOP, PHONE):
+            page.set_viewport_size(size)
+            assert faults(page) == [], (step, size)
+            wide = page.evaluate("document.documentElement.scrollWidth - innerWidth")
+            assert wide <= 0, (step, size)
+        page.set_viewport_size(DESKTOP)
+    assert "Skipped: Battery." in person.report()

@@ -80,7 +80,14 @@ STAGES: tuple[Stage, ...] = (
             prefix=("chrt", "--idle", "0"),
         ),
     ),
-    (Lane((Proof("attacks", "No attack of the security review holds up STOP or the control loop."),)),),
+    (
+        Lane(
+            (
+                Proof("attacks", "No attack of the security review holds up STOP or the control loop."),
+                Proof("bring-ups", "Each mistake of a new robot is found and named, on page and shell."),
+            )
+        ),
+    ),
     (Lane((Proof("bench", "The figures and their goals.", ("LONG=1",)),)),),
 )
 

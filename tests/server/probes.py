@@ -76,6 +76,13 @@ PROBES: dict[tuple[str, str], Probe] = {
     ("POST", "/api/access/tokens"): Probe(201, {"name": NEW_NAME}),
     ("POST", "/api/control/take"): Probe(query="over=true"),
     ("POST", "/api/robot/stop"): Probe(204),
+    ("GET", "/api/firmware"): Probe(),
+    ("POST", "/api/firmware"): Probe(
+        409,
+        {"firmware": "previous"},
+        words="There is no previous firmware",
+        because="It would upload to the board.",
+    ),
     ("GET", "/api/bring-up"): Probe(),
     ("GET", "/api/bring-up/report"): Probe(
         NOT_THERE, words="There was no bring-up yet", because="A bring-up would upload to the board."

@@ -70,6 +70,8 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/doctor"): "operator",
     ("GET", "/api/robot"): "viewer",
     ("POST", "/api/robot/stop"): "viewer",
+    ("GET", "/api/firmware"): "viewer",
+    ("POST", "/api/firmware"): "administer",
     ("GET", "/api/bring-up"): "viewer",
     ("GET", "/api/bring-up/report"): "viewer",
     ("POST", "/api/bring-up"): "control",

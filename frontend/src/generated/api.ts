@@ -767,6 +767,30 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/firmware": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Return the present or last upload of firmware, and the previous firmware
+         * @description Return the present or last upload of firmware, and the previous firmware.
+         */
+        get: operations["getFirmwareUpload"];
+        put?: never;
+        /**
+         * Upload firmware to the robot's board, and verify it; what is on the board is stored before
+         * @description Upload firmware to the robot's board, and verify it; what is on the board is stored before.
+         */
+        post: operations["uploadFirmware"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/health": {
         parameters: {
             query?: never;
@@ -5024,6 +5048,22 @@ export interface components {
             unit: string;
         };
         /**
+         * PreviousFirmware
+         * @description The firmware that was on the board before the last upload of another one.
+         */
+        PreviousFirmware: {
+            /**
+             * Path
+             * @description on the robot's computer
+             */
+            path: string;
+            /**
+             * Since
+             * Format: date-time
+             */
+            since: string;
+        };
+        /**
          * Problem
          * @description An error: what happened, why, and what to do.
          *
@@ -6316,6 +6356,45 @@ export interface components {
         Undo: {
             /** Change */
             change: number;
+        };
+        /**
+         * UploadOrder
+         * @description The firmware to upload: the one that was built with this software, or the previous one.
+         */
+        UploadOrder: {
+            /**
+             * Firmware
+             * @enum {string}
+             */
+            firmware: "built" | "previous";
+        };
+        /**
+         * UploadState
+         * @description The present or last upload of firmware.
+         */
+        UploadState: {
+            /**
+             * Phase
+             * @description reading: the firmware that is on the board is being read
+             * @enum {string}
+             */
+            phase: "idle" | "reading" | "uploading";
+            previous: components["schemas"]["PreviousFirmware"] | null;
+            /**
+             * Problem
+             * @description why it failed, and what to do; empty if it did not
+             */
+            problem: string;
+            /**
+             * Progress
+             * @description 0 to 1, of the phase; an upload is written, then verified
+             */
+            progress: number;
+            /**
+             * Words
+             * @description how the last one ended
+             */
+            words: string;
         };
         /**
          * VisionSettings
@@ -8555,6 +8634,104 @@ export interface operations {
                 };
             };
             /** @description It is not finished */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getFirmwareUpload: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UploadState"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    uploadFirmware: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["UploadOrder"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UploadState"];
+                };
+            };
+            /** @description Not allowed; a browser that has not confirmed for ten minutes gets the kind `confirmation` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
             409: {
                 headers: {
                     [name: string]: unknown;

@@ -98,6 +98,18 @@ export const system = {
     running: 'Checking the fins. STOP ends the check.',
     hold: 'check the fins',
   },
+  upload: {
+    title: 'Upload of firmware',
+    about: 'Uploads the firmware that belongs to this software to the robot’s board, and verifies it. Calibration and sessions stay. The firmware that is on the board is stored before, so that it can be put back.',
+    upload: 'Upload the firmware',
+    putBack: 'Put the previous firmware back',
+    ask: 'The robot cannot be used for half a minute.',
+    askPrevious: (time: string) => `The board gets the firmware that it had on ${time}. The robot cannot be used for half a minute.`,
+    confirm: 'Yes, upload',
+    phases: { reading: 'Reading the firmware that is on the board', uploading: 'Writing and verifying the firmware' },
+    previous: (time: string) => `The previous firmware, stored on ${time}:`,
+    armed: 'The robot is armed. Disarm it first.',
+  },
   firmware: {
     title: 'Firmware',
     none: 'No data from the board yet',

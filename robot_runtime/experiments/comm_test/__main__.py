@@ -1,6 +1,7 @@
 """The lab as a process: runs the tests of a document from its standard input, and tells how it goes.
 
-On the robot's own board the last sketch stays; `--restore` uploads the robot's firmware again.
+On the robot's own board the last sketch stays; `--restore` uploads the robot's firmware again, and
+`--read-out` reads what is on the board.
 
 On its standard output are JSON objects, one to a line; docs/reference/comm-test.md lists them.
 """
@@ -18,6 +19,7 @@ from robot_runtime.experiments.comm_test.lab import (
     EmulatedLab,
     EventWriter,
     RobotLab,
+    read_from,
     run_tests,
     upload_to,
 )
@@ -34,14 +36,15 @@ def main() -> int:
     """Run the document. Exit status: 0 if every test is complete, 1 if one is not, 2 if it is refused."""
     parser = _parser()
     arguments = parser.parse_args()
-    if not arguments.restore and not (arguments.where and arguments.build):
-        parser.error("--where and --build, or --restore, are needed")
-    if (arguments.restore or arguments.where == "robot") and not (arguments.port and arguments.reset):
+    alone = arguments.restore or arguments.read_out
+    if not alone and not (arguments.where and arguments.build):
+        parser.error("--where and --build, or --restore or --read-out, are needed")
+    if (alone or arguments.where == "robot") and not (arguments.port and arguments.reset):
         parser.error("the robot's board needs --port and --reset")
     if arguments.with_parent:
         end_with_parent()
-    if arguments.restore:
-        return _restore(arguments)
+    if alone:
+        return _transfer(arguments)
     stop = Cancellation()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
@@ -63,9 +66,14 @@ def main() -> int:
     return 0 if run_tests(tests, lab, writer, stop) else 1
 
 
-def _restore(arguments: argparse.Namespace) -> int:
+def _transfer(arguments: argparse.Namespace) -> int:
+    stop, progress = Cancellation(), arguments.progress
     try:
-        upload_to(arguments.port, find_reset(arguments.reset), arguments.restore, Cancellation())
+        pull = find_reset(arguments.reset)
+        if arguments.restore:
+            upload_to(arguments.port, pull, arguments.restore, stop, progress)
+        else:
+            read_from(arguments.port, pull, arguments.read_out, stop, progress)
     except TEST_ERRORS as problem:
         sys.exit(f"comm_test: {problem}")
     return 0
@@ -87,6 +95,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--build", type=Path, help="the folder of everything that is built")
     parser.add_argument("--where", choices=["emulated", "robot"], help="where the cells run")
     parser.add_argument("--restore", type=Path, metavar="HEX", help="only upload the robot's firmware")
+    parser.add_argument("--read-out", type=Path, metavar="HEX", help="only read the board's firmware")
+    parser.add_argument("--progress", type=Path, metavar="FILE", help="avrdude's output with its progress")
     parser.add_argument("--port", help="the robot's serial port")
     parser.add_argument("--reset", metavar="SPEC", help="gpio:CHIP:LINE, board:SOCKET or dtr")
     parser.add_argument("--with-parent", action="store_true", help="end, in order, when the parent ends")

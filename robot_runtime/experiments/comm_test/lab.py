@@ -19,7 +19,13 @@ from robot_runtime.experiments.comm_test.port_line import PortLine
 from robot_runtime.experiments.comm_test.reset_pin import Pull, ResetError
 from robot_runtime.experiments.comm_test.results import CellResult
 from robot_runtime.experiments.comm_test.runner import BOOTLOADER, Phase, Runner, run_cell
-from robot_runtime.experiments.comm_test.upload import BOOT_BAUD, UploadError, avrdude_version, upload
+from robot_runtime.experiments.comm_test.upload import (
+    BOOT_BAUD,
+    UploadError,
+    avrdude_version,
+    read_out,
+    upload,
+)
 from robot_runtime.link.link_driver import PortError
 from robot_runtime.places import EMULATOR_REMEDY, FIRMWARE_REMEDY
 from robot_runtime.simulation.boards.emulator_process import BoardError
@@ -126,14 +132,23 @@ class RobotLab:
             yield result
 
 
-def upload_to(port: str, pull: Pull, program: Path, stop: Cancellation) -> None:
+def upload_to(port: str, pull: Pull, program: Path, stop: Cancellation, progress: Path | None = None) -> None:
     """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TEST_ERRORS."""
+    _try_with(port, pull, lambda: upload(program, port, BOOT_BAUD, stop, progress=progress))
+
+
+def read_from(port: str, pull: Pull, program: Path, stop: Cancellation, progress: Path | None) -> None:
+    """Read the firmware of the board at a port into a file. Raises the errors in TEST_ERRORS."""
+    _try_with(port, pull, lambda: read_out(program, port, BOOT_BAUD, stop, progress))
+
+
+def _try_with(port: str, pull: Pull, work: Callable[[], None]) -> None:
     # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
     for left in reversed(range(ATTEMPTS)):
         refuse_endless_resets(port, pull)
         pull()
         try:
-            upload(program, port, BOOT_BAUD, stop)
+            work()
             return
         except UploadError as problem:
             if not left:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import IO
 
 from robot_runtime.experiments.comm_test.line import Cancellation, check
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient
@@ -39,16 +40,46 @@ def avrdude_version() -> str:
 
 
 def upload(
-    program: Path, port: str, baud: int, stop: Cancellation, attend: Callable[[], None] = lambda: None
+    program: Path,
+    port: str,
+    baud: int,
+    stop: Cancellation,
+    attend: Callable[[], None] = lambda: None,
+    progress: Path | None = None,
 ) -> None:
     """Write an Intel HEX file into the flash memory of a chip whose boot loader listens, and verify it.
 
-    `attend` is called again and again meanwhile. Raises UploadError, and StoppedError.
+    `attend` is called again and again meanwhile; avrdude's own output grows in the file `progress`. Raises
+    UploadError, and StoppedError.
     """
+    failure = f"could not upload {program.name}"
+    _run_avrdude(f"flash:w:{program}:i", failure, port, baud, stop, attend, progress)
+
+
+def read_out(program: Path, port: str, baud: int, stop: Cancellation, progress: Path | None) -> None:
+    """Write the flash memory of a chip whose boot loader listens to an Intel HEX file, the boot loader too.
+
+    Raises UploadError, and StoppedError.
+    """
+    _run_avrdude(
+        f"flash:r:{program}:i", "could not read the firmware", port, baud, stop, lambda: None, progress
+    )
+
+
+def _run_avrdude(
+    operation: str,
+    failure: str,
+    port: str,
+    baud: int,
+    stop: Cancellation,
+    attend: Callable[[], None],
+    progress: Path | None,
+) -> None:
     # avrdude ends with this process in any case: it must not go on writing unsupervised.
-    command = ["setpriv", "--pdeathsig", "KILL", "avrdude", "-q", "-q", "-c", "arduino", "-p", "m328p"]
-    command += ["-b", str(baud), "-P", port, "-D", "-U", f"flash:w:{program}:i"]
-    with tempfile.TemporaryFile() as said:
+    command = ["setpriv", "--pdeathsig", "KILL", "avrdude", "-c", "arduino", "-p", "m328p"]
+    command += ["-b", str(baud), "-P", port, "-D", "-U", operation]
+    command += [] if progress else ["-q", "-q"]
+    with _open_output(progress) as said:
         try:
             avrdude = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True
@@ -68,7 +99,11 @@ def upload(
     if status is None:
         raise UploadError(f"avrdude did not end within {LIMIT:g} s: {words}")
     if status:
-        raise UploadError(f"avrdude could not upload {program.name} through {port}: {words}")
+        raise UploadError(f"avrdude {failure} through {port}: {words}")
+
+
+def _open_output(progress: Path | None) -> IO[bytes]:
+    return progress.open("w+b") if progress else tempfile.TemporaryFile()
 
 
 def upload_paused(program: Path, tty: Path, board: EmulatorClient, stop: Cancellation) -> None:
@@ -121,7 +156,7 @@ def _wait(avrdude: subprocess.Popen[bytes], stop: Cancellation, attend: Callable
 
 def _shorten(said: str) -> str:
     lines = dict.fromkeys(line.removeprefix("avrdude: ").strip() for line in said.splitlines())
-    words = " / ".join(line for line in lines if line)
+    words = " / ".join(line for line in lines if line and "| ##" not in line)
     return words if len(words) <= WORDS_MAX else "... " + words[-WORDS_MAX:]
 
 

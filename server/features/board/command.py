@@ -11,14 +11,16 @@ from server.platform.terminal import echo
 
 
 @click.command()
+@click.option("--previous", is_flag=True, help="Put the firmware back that was there before the last upload.")
 @with_settings
-def upload(settings: Settings) -> None:
+def upload(settings: Settings, previous: bool) -> None:
     """Upload the robot's firmware to its board, and verify it.
 
-    The board's calibration stays. Beside a running server, press the button on the System page.
+    What was on the board is stored as firmware-previous.hex in the data folder. The board's calibration
+    stays. Beside a running server, press the button on the System page.
     """
     from robot_runtime.places import FIRMWARE_REMEDY
-    from robot_runtime.simulation.boards.firmware import firmware_path
+    from server.features.board.firmware_upload import store_previous
     from server.features.board.reservation import RobotBoard
     from server.platform.pidfile import end_parts
 
@@ -26,14 +28,19 @@ def upload(settings: Settings) -> None:
         raise SetupError(
             "The emulated board gets its firmware at each start. robot.mode in robot.toml is emulated."
         )
-    firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
-    if not firmware.exists():
-        raise SetupError(f"There is no {firmware}; {FIRMWARE_REMEDY}.")
     board = RobotBoard(settings, lambda *_: None)
+    if not board.built.exists():
+        raise SetupError(f"There is no {board.built}; {FIRMWARE_REMEDY}.")
+    older = settings.data.firmware_previous
+    if previous and not older.exists():
+        raise SetupError(f"There is no {older}: nothing was replaced yet.")
+    firmware = older if previous else board.built
     with claim(settings.data):
         end_parts(settings.data.run)
+        if not previous:
+            echo(asyncio.run(store_previous(board, settings.data.path, older)))
         echo(f"{firmware} is uploaded to {settings.link.port}.")
-        asyncio.run(board.restore())
+        asyncio.run(board.restore(firmware))
     if board.problem:
         raise SetupError(board.problem)
     echo("It is on the board, read back and compared.")

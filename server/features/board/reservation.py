@@ -54,10 +54,11 @@ class RobotBoard:
         return self._settings.data.firmware_away.exists()
 
     @asynccontextmanager
-    async def reserve(self, work: str) -> AsyncIterator[list[str]]:
+    async def reserve(self, work: str, program: Path | None = None) -> AsyncIterator[list[str]]:
         """Reserve the board for this work, in words; the value are the lab's arguments for the board.
 
-        Raises RefusedError if the note that the firmware is away cannot be written.
+        Afterwards it gets this program (Intel HEX), by default the firmware that was built. Raises
+        RefusedError if the note that the firmware is away cannot be written.
         """
         note = self._settings.data.firmware_away
         try:
@@ -70,13 +71,17 @@ class RobotBoard:
         try:
             yield list(self._arguments)
         finally:
-            await self.restore()
+            await self.restore(program)
 
-    async def restore(self) -> None:
-        """Upload the robot's firmware, and report the result."""
+    @property
+    def built(self) -> Path:
+        """The robot's firmware as it was built (Intel HEX); it need not exist."""
         settings = self._settings
-        program = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
-        problem = await self.upload(program)
+        return firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
+
+    async def restore(self, program: Path | None = None) -> None:
+        """Upload the robot's firmware, by default that which was built, and report the result."""
+        problem = await self.upload(program or self.built)
         if problem:
             self.problem = (
                 f"The robot's firmware is not on its board: {problem}. Check that the board is powered and "
@@ -91,10 +96,17 @@ class RobotBoard:
 
     async def upload(self, program: Path) -> str:
         """Upload a program (Intel HEX); the problem in words, empty on success."""
+        return await self._transfer("--restore", program)
+
+    async def read_out(self, program: Path) -> str:
+        """Read all flash memory into a file (Intel HEX); the problem in words, empty on success."""
+        return await self._transfer("--read-out", program)
+
+    async def _transfer(self, way: str, program: Path) -> str:
         output = ProcessLog(self._settings.data.logs / "restore.log")
         before = output.size()
-        command = [sys.executable, "-m", "robot_runtime.experiments.comm_test", "--restore", str(program)]
-        command += ["--with-parent", *self._arguments]
+        command = [sys.executable, "-m", "robot_runtime.experiments.comm_test", way, str(program)]
+        command += ["--with-parent", "--progress", str(self._settings.data.upload_progress), *self._arguments]
         try:
             async with asyncio.timeout(PORT_SECONDS):
                 while not Path(self._port).exists():
@@ -140,7 +152,7 @@ class BoardReservation:
         self._occupied = occupied
 
     @asynccontextmanager
-    async def reserve(self, work: str) -> AsyncIterator[list[str]]:
+    async def reserve(self, work: str, program: Path | None = None) -> AsyncIterator[list[str]]:
         """As `RobotBoard.reserve`; disarms the robot and ends its runtime before, restarts it afterwards.
 
         Raises RefusedError if that is not possible.
@@ -154,7 +166,7 @@ class BoardReservation:
             # A session may have been about to start when the board was asked for.
             if reason := self._occupied():
                 raise RefusedError(reason)
-            async with self._without_runtime(why), self._board.reserve(work) as arguments:
+            async with self._without_runtime(why), self._board.reserve(work, program) as arguments:
                 yield arguments
 
     async def start_processes(self) -> None:
