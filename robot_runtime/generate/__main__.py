@@ -7,6 +7,7 @@ from pathlib import Path
 from robot_runtime.generate import cpp, hardware, json_schema, reference, typescript
 from robot_runtime.generate.configuration import configuration_page
 from robot_runtime.generate.craft import craft_page
+from robot_runtime.generate.missions import missions_page
 from robot_runtime.generate.wiring_picture import wiring_picture
 
 SOURCES = Path(__file__).resolve().parents[2]
@@ -34,6 +35,7 @@ def main() -> int:
         ),
         "docs/reference/craft.md": craft_page(),
         "docs/reference/faults.md": reference.faults_page(),
+        "docs/reference/missions.md": missions_page(),
         "docs/reference/packets.md": reference.packets_page(),
         "docs/reference/parameters.md": reference.parameters_page(),
         "docs/reference/topics.md": reference.topics_page(),

@@ -96,25 +96,25 @@ def _command_fields(cls: type[RobotCommand]) -> Iterator[tuple[str, ...]]:
     hints = typing.get_type_hints(cls, include_extras=True)
     for one in fields(cls):
         need = "" if is_required(one) else "optional"
-        yield f"`{one.name}`", _describe_type(hints[one.name]), need, one.metadata.get("description", "")
+        yield f"`{one.name}`", describe_type(hints[one.name]), need, one.metadata.get("description", "")
 
 
-def _describe_type(hint: typing.Any) -> str:
+def describe_type(hint: typing.Any) -> str:
     """A field's type in words, with its limits."""
     origin, inner = typing.get_origin(hint), typing.get_args(hint)
     if origin is typing.Annotated:
         span = next((one for one in inner[1:] if isinstance(one, Range)), None)
         limits = f", {span.minimum:.4g} to {span.maximum:.4g}" if span else ""
-        return _describe_type(inner[0]) + limits
+        return describe_type(inner[0]) + limits
     if origin is typing.Literal:
         return " or ".join(f"`{one}`" for one in inner)
     if origin in (types.UnionType, typing.Union):
-        return " or ".join(dict.fromkeys(_describe_type(one) for one in inner if one is not types.NoneType))
+        return " or ".join(dict.fromkeys(describe_type(one) for one in inner if one is not types.NoneType))
     if origin in (list, tuple):
-        kinds = dict.fromkeys(_describe_type(one) for one in inner if one is not Ellipsis)
+        kinds = dict.fromkeys(describe_type(one) for one in inner if one is not Ellipsis)
         return f"list of {' and '.join(kinds)}"
     if origin is dict:
-        return f"{_describe_type(inner[1])}, by name"
+        return f"{describe_type(inner[1])}, by name"
     return _WORDS.get(hint) or f"`{hint.__name__}`"
 
 
@@ -151,7 +151,7 @@ def _topic_fields(record: type[Record] | type[Document]) -> Iterator[tuple[str, 
         return
     hints = typing.get_type_hints(record, include_extras=True)
     for one in fields(record):
-        yield f"`{one.name}`", _describe_type(hints[one.name]), one.metadata.get("meaning", "")
+        yield f"`{one.name}`", describe_type(hints[one.name]), one.metadata.get("meaning", "")
 
 
 def packets_page() -> str:

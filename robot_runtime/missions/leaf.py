@@ -113,10 +113,11 @@ class Leaf(MissionNode, ABC):
     """
 
     claims: ClassVar[frozenset[Claim]] = frozenset()
+    """The parts of the steering that such a step may take."""
 
     @property
     def steers(self) -> frozenset[Claim]:
-        """The parts of the steering that this step takes."""
+        """Those that this one takes."""
         return self.claims
 
     @property

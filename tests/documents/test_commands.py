@@ -19,6 +19,7 @@ AFTER_IT = (
     "use/start.md",
     "use/sessions.md",
     "use/scenarios.md",
+    "use/missions.md",
     "use/compare.md",
     "use/export.md",
     "use/comm-tests.md",

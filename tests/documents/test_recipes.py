@@ -70,6 +70,13 @@ def test_a_controller_is_added(tree: Path) -> None:
     assert len(changed_modules("develop/add-a-controller.md")) == 2
 
 
+def test_a_leaf_is_added(tree: Path) -> None:
+    follow("develop/add-a-leaf.md", tree)
+    reference = (tree / "docs/reference/missions.md").read_text()
+    assert "| `yaw` | number, 0.1 to 1 |  | 0.5 | share of the full command |" in reference
+    assert len(changed_modules("develop/add-a-leaf.md")) == 2
+
+
 def test_a_route_is_added(tree: Path) -> None:
     follow("develop/add-a-route.md", tree)
     reference = (tree / "docs/reference/http.md").read_text()

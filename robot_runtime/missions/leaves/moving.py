@@ -158,6 +158,7 @@ class TurnLeaf(Leaf):
 class SwimLeaf(Leaf):
     """Swims for a time. Without a turn it keeps the heading that a step before it turned to."""
 
+    claims: ClassVar[frozenset[Claim]] = frozenset({"course", "heading"})
     x: Annotated[float, Range(-1, 1)] = field(
         default=0.0, metadata={"description": "share of the full command, forwards"}
     )
@@ -174,7 +175,7 @@ class SwimLeaf(Leaf):
     @property
     def steers(self) -> frozenset[Claim]:
         """The course, and with a turn the heading."""
-        return frozenset({"course", "heading"} if self.yaw else {"course"})
+        return self.claims if self.yaw else frozenset({"course"})
 
     @property
     def words(self) -> str:

@@ -7,6 +7,7 @@ from robot_runtime.contract.missions import LEVELS_MAX, NODES_MAX, MissionLimits
 from robot_runtime.missions.document import called_by, read_mission
 from robot_runtime.missions.leaf import NODES, Leaf
 from robot_runtime.missions.library import SHIPPED, shipped_missions
+from tests.documents.blocks import read_blocks
 from tests.runtime.missions.water import DIVE, HEAD, HOLD, mission
 
 
@@ -23,6 +24,11 @@ def test_the_shipped_missions_are_valid_under_their_name(name: str) -> None:
     assert read.name == name
     assert read.title
     assert read.longest <= read.limits.time
+
+
+def test_the_missions_of_the_help_are_valid() -> None:
+    texts = [block.text for block in read_blocks("use/missions.md") if block.language == "toml"]
+    assert [read_mission(text).name for text in texts] == ["look_east"]
 
 
 def test_every_problem_is_told_with_its_place() -> None:
