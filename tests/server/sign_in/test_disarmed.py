@@ -50,6 +50,18 @@ def test_an_armed_robot_refuses_uploads_and_builds(settings: Settings) -> None:
     asyncio.run(run())
 
 
+def test_an_armed_robot_keeps_its_firmware(settings: Settings) -> None:
+    async def run() -> None:
+        async with serve(settings) as served:
+            for number, armed in enumerate((True, False)):
+                served.runtime.publish(state_block(number, armed=armed))
+                await until(partial(says, served, armed), "the state")
+                answer = await served.api.post("/firmware", json={"firmware": "previous"})
+                assert (answer.status_code, "press STOP first" in answer.json()["detail"]) == (409, armed)
+
+    asyncio.run(run())
+
+
 def test_a_test_of_more_than_a_day_is_refused(settings: Settings) -> None:
     async def run() -> None:
         async with serve(settings) as served:

@@ -62,15 +62,3 @@ def test_firmware_is_uploaded_verified_and_the_older_one_put_back(shared_stack: 
     # The boot loader has left the end of the longer firmware behind it.
     assert read_program(previous).startswith(read_program(ROOT / "build/firmware/bring_up.hex"))
     stack.wait_ready()
-
-
-def test_an_armed_robot_keeps_its_firmware(shared_stack: Stack) -> None:
-    shared_stack.calm()
-    shared_stack.arm()
-    wait(lambda: shared_stack.api.get("/robot").json()["armed"], "the armed state", SECONDS)
-    try:
-        answer = shared_stack.api.post("/firmware", json={"firmware": "built"})
-        assert (answer.status_code, shared_stack.api.get("/firmware").json()["phase"]) == (409, "idle")
-        assert "press STOP first" in answer.json()["detail"]
-    finally:
-        shared_stack.calm()
