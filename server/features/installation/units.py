@@ -112,7 +112,7 @@ PrivateTmp=yes
 Description=Way back from an update of the robot turtle that was cut off
 ConditionPathExists={places.journal}
 After=local-fs.target
-Before=mucat-runtime.service mucat.service mucat-update.path
+Before=mucat-runtime.service mucat.service mucat-update.service
 
 [Service]
 Type=oneshot

@@ -27,11 +27,15 @@ RELEASE_BYTES = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """A change from one version to another; `firmware` is True where the board gets other firmware."""
+    """A change from one version to another; `firmware` is True where the board gets other firmware.
+
+    `older` is the version to which one could go back until then, empty without one.
+    """
 
     before: str
     after: str
     firmware: bool
+    older: str = ""
 
 
 class Updater:
@@ -148,11 +152,11 @@ class Updater:
     def _switch(self, before: str, environment: Path) -> None:
         places, effects = self._places, self._effects
         firmware = look_at(effects, places, environment).firmware
-        switch = Switch(before, environment.name, firmware not in ("", self._firmware_in_use()))
-        # Where the journal is, the way back is.
-        effects.link(places.previous, places.version(before))
+        changed = firmware not in ("", self._firmware_in_use())
+        switch = Switch(before, environment.name, changed, places.version_of(places.previous))
         effects.write(places.journal, json.dumps(asdict(switch)) + "\n")
         try:
+            effects.link(places.previous, places.version(before))
             with self._stopped():
                 effects.link(places.current, environment)
                 write_services_of(effects, environment)
@@ -190,8 +194,12 @@ class Updater:
             effects.say(order(effects, places, old, "restore", found.copy).strip())
         if switch.firmware:
             order(effects, places, old, "upload")
-        effects.remove(places.last_switch)
-        effects.remove(places.journal)
+        if places.journal.exists():
+            if switch.older:
+                effects.link(places.previous, places.version(switch.older))
+            effects.remove(places.journal)
+        else:
+            effects.remove(places.last_switch)
 
     @contextmanager
     def _stopped(self) -> Iterator[None]:

@@ -214,6 +214,14 @@ def test_the_default_configuration_is_adapted_and_stays_valid(tmp_path: Path) ->
     assert (config.robot.mode, config.server.host, config.vision.camera) == ("emulated", "0.0.0.0", "scene")
 
 
+def test_no_service_comes_before_a_path_unit() -> None:
+    # Path units start before any service does: systemd would break the circle by leaving the service out.
+    units = write_units(InstallPlaces(Path("/")))
+    before = [line for text in units.values() for line in text.splitlines() if line.startswith("Before=")]
+    assert before
+    assert not [line for line in before if ".path" in line]
+
+
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="there is no systemd")
 def test_systemd_accepts_the_units(tmp_path: Path) -> None:
     places = InstallPlaces(tmp_path)

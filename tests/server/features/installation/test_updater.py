@@ -266,6 +266,20 @@ def test_the_way_back_takes_the_copy_where_the_older_version_cannot_read_the_dat
     assert (computer.running, computer.database.read_text()) == ("1.0.0", f"1 {DIVES}")
 
 
+def test_a_failed_update_leaves_the_way_back_to_the_version_before(
+    tmp_path: Path, keys: Path, release: Path
+) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    update(computer, release)
+    computer.schemas["3.0.0"] = 2
+    computer.sick.add("3.0.0")
+    with pytest.raises(SetupError, match="not healthy"):
+        update(computer, signed(tmp_path / "third", keys, "3.0.0"))
+    assert computer.running == "2.0.0"
+    assert roll_back(computer) == "1.0.0"
+    assert (computer.running, computer.board) == ("1.0.0", "old")
+
+
 def test_without_a_fitting_copy_there_is_no_way_back(tmp_path: Path, keys: Path, release: Path) -> None:
     computer = installed(tmp_path / "pi", keys)
     update(computer, release)
