@@ -88,9 +88,9 @@ class MissionStep:
         below = [one.longest for one in self.steps]
         match self.node:
             case UntilBranch(timeout=timeout):
-                return timeout
+                return timeout + INSTANT
             case TimeoutBranch(seconds=seconds):
-                return min(seconds, sum(below))
+                return min(seconds + INSTANT, sum(below))
             case RepeatBranch(times=times):
                 return times * (sum(below) + INSTANT)
             case AllBranch() | RaceBranch():

@@ -122,10 +122,10 @@ class Leaf(MissionNode, ABC):
 
     @property
     def longest(self) -> float:
-        """s that the step takes at most; its `timeout` or `seconds` where it has one."""
+        """s that the step takes at most; its `timeout` or `seconds` where it has one, and a tick."""
         for one in fields(self):
             if one.name in ("timeout", "seconds"):
-                return float(getattr(self, one.name))
+                return float(getattr(self, one.name)) + INSTANT
         return INSTANT
 
     @property

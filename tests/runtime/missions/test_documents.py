@@ -78,7 +78,7 @@ def test_the_depth_and_the_longest_time_must_fit_the_limits() -> None:
     told = problems(mission(DIVE, steps, limits="depth = 0.5\ntime = 60"))
     assert told == [
         "step 1 goes to 0.6 m, and the depth is limited to 0.5 m",
-        "mission may take 70 s, and limits.time is 60 s; shorten its timeouts and repetitions",
+        "mission may take 71 s, and limits.time is 60 s; shorten its timeouts and repetitions",
     ]
 
 
