@@ -31,7 +31,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test bring-ups test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release \
+.PHONY: help run test services bring-ups test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -132,6 +132,9 @@ fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on
 
 soak: setup-test ## prove the link at length: corrupted frames by the million, a thousand resets
 	@nice $(PYTHON) -m tests.proofs
+
+services: setup-test build/.packages-packages ## install, update and roll back on a computer with systemd, and cut its power (needs root)
+	@nice $(PYTHON) -m tests.proofs.services
 
 bring-ups: setup-test host-firmware ## bring up a robot with each mistake of wiring and parts, on the page and from a shell
 	@nice $(PYTHON) -W ignore -m tests.proofs.bring_ups

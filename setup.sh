@@ -52,6 +52,7 @@ fi
 # What builds the emulated board for other computers, and runs the packages in systems of their own.
 if [ "${1:-run}" = packages ]; then
     need mmdebstrap mmdebstrap
+    need systemd-container systemd-nspawn
     need gcc-aarch64-linux-gnu aarch64-linux-gnu-gcc
     need g++-aarch64-linux-gnu aarch64-linux-gnu-g++
     need gcc-i686-linux-gnu i686-linux-gnu-gcc

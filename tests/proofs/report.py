@@ -84,6 +84,9 @@ STAGES: tuple[Stage, ...] = (
         Lane(
             (
                 Proof("attacks", "No attack of the security review holds up STOP or the control loop."),
+                Proof(
+                    "services", "Installation, updates and the way back, with systemd and a cut of the power."
+                ),
                 Proof("bring-ups", "Each mistake of a new robot is found and named, on page and shell."),
             )
         ),
