@@ -32,6 +32,7 @@ from server.features.scenarios import routes as scenarios
 from server.features.sessions import routes as sessions
 from server.features.simulator import routes as simulator
 from server.features.tuning import routes as tuning
+from server.features.updates import routes as updates
 from server.features.vision import routes as vision
 from server.http.audit import AuditMiddleware
 from server.http.error_handlers import add_error_handlers
@@ -48,7 +49,7 @@ from server.processes.managed_process import ProcessCommand
 ROUTES = (
     *(access, audit, backup, board, bring_up, comm_tests, compare, control, doctor, doors, exports),
     *(identification, layouts, live, missions, panels, parameters, robot, scenarios, sessions),
-    *(simulator, tuning, vision),
+    *(simulator, tuning, updates, vision),
 )
 
 

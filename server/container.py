@@ -26,6 +26,7 @@ from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
 from server.features.identification.adoption import CraftAdoption
 from server.features.identification.runner import IdentificationRunner
+from server.features.installation.places import InstallPlaces
 from server.features.layouts.library import Layouts
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.sync import LeaseSync
@@ -46,6 +47,7 @@ from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.session import new_row
 from server.features.tuning.runner import TuningRunner
 from server.features.tuning.runs import TuningStore
+from server.features.updates.page_updates import PageUpdates
 from server.health.faults import FAULTS
 from server.health.monitor import HealthMonitor
 from server.health.watchdog import DOWN, Watchdog
@@ -99,6 +101,7 @@ class Container:
         self.heavy_requests = HeavyRequests()
         self.downloads = DatabaseDownloads(settings.data)
         self.layouts = Layouts(self.store)
+        self.updates = PageUpdates(self.settings.data, InstallPlaces())
 
     def _add_lease(self) -> None:
         self.lease_sync = LeaseSync(self.bridge.send_lease)
@@ -191,6 +194,7 @@ class Container:
             interrupted = await self.recorder.recover()
             await self.imports.recover()
             self.downloads.recover()
+            self.updates.recover()
             self.jobs.open()
             await self.comm_tests.runs.mark_interrupted()
             await self.tuning.runs.mark_interrupted()

@@ -70,6 +70,7 @@ export type Restored = Schemas['Restored'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
+export type UpdateState = Schemas['UpdateState'];
 export type FirmwareUploadState = Schemas['UploadState'];
 export type BringUpState = Schemas['BringUpState'];
 export type BringUpStep = Schemas['BringUpStep'];
@@ -241,6 +242,9 @@ export const api = {
   firmwareUpload: () => request<FirmwareUploadState>('GET', '/firmware'),
   uploadFirmware: (firmware: Schemas['UploadOrder']['firmware']) =>
     request<FirmwareUploadState>('POST', '/firmware', { firmware }, TIMEOUT_COMM_TEST),
+  update: () => request<UpdateState>('GET', '/update'),
+  sendRelease: (file: File, progress: (share: number) => void) => upload<UpdateState>('/update/release', file, progress),
+  beginUpdate: () => request<UpdateState>('POST', '/update'),
   bringUp: () => request<BringUpState>('GET', '/bring-up'),
   beginBringUp: () => orderFor<BringUpState>('POST', '/bring-up', undefined, TIMEOUT_COMM_TEST),
   endBringUp: () => request<BringUpState>('DELETE', '/bring-up'),

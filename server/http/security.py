@@ -23,7 +23,7 @@ FRAMED = "/api/panels/frame"
 HELP = "/help/"
 """The help pages, whose policies name their scripts (http/help_pages.py)."""
 OWN_POLICY = frozenset({"content-security-policy", "x-frame-options"})
-STREAMED = frozenset({"/api/imports"})
+STREAMED = frozenset({"/api/imports", "/api/update/release"})
 """Paths that read bodies of any size piece by piece, and check their limits themselves."""
 HEADERS = {
     "content-security-policy": "default-src 'self'; img-src 'self' blob:; object-src 'none'; "

@@ -5,10 +5,17 @@ import shutil
 from pathlib import Path
 
 from robot_runtime.errors import RefusedError
+from server.platform.errors import InsufficientStorageError
 from server.platform.settings import DataFolder
 
 DIVE_BYTES = 20_000_000
 """An hour of recording without pictures; with less free space a dive cannot be recorded."""
+SPARE_BYTES = 50_000_000
+"""Disk space that is left free for recordings."""
+
+
+class FileWriteError(InsufficientStorageError):
+    """The disk is full"""
 
 
 def free_bytes(path: Path) -> int:
@@ -23,6 +30,16 @@ def check_room(folder: DataFolder) -> None:
         raise RefusedError(
             f"The disk is full: {free / 1e6:.0f} MB are free, and a dive that is recorded needs "
             f"{DIVE_BYTES / 1e6:.0f} MB. Remove sessions or exports."
+        )
+
+
+def require_free(folder: Path, size: int) -> None:
+    """Raises FileWriteError where these bytes would leave too little room for recordings."""
+    free = free_bytes(folder)
+    if free < size + SPARE_BYTES:
+        raise FileWriteError(
+            f"The disk that holds {folder} has {free / 1e6:.0f} MB free; this needs "
+            f"{(size + SPARE_BYTES) / 1e6:.0f} MB. Free some space, and try again."
         )
 
 

@@ -20,8 +20,13 @@ MEASURED_MS = 15_000
 
 @pytest.fixture(autouse=True)
 def _emulated(stack: Stack) -> Iterator[None]:
-    """Puts the emulated board's own calibration back."""
+    """The emulated board's own calibration, before and after: a bring-up measures anew."""
+    _calibrate(stack)
     yield
+    _calibrate(stack)
+
+
+def _calibrate(stack: Stack) -> None:
     stack.api.post("/robot/stop").raise_for_status()
     values = {name: getattr(EMULATED, name) for name in EMULATED.__dataclass_fields__}
     end = time.monotonic() + 10

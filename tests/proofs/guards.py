@@ -81,8 +81,9 @@ class Tree:
     def run(self, tests: Iterable[str]) -> Outcome:
         """Run these tests in the copy, up to the first that fails."""
         report, started = self.root / "report.xml", time.monotonic()
-        # Nobody reads why a test fails here, so its assertions need not be rewritten.
-        options = ["-q", "-x", "-p", "no:cacheprovider", "--assert=plain"]
+        # Nobody reads why a test fails here, so its assertions need not be rewritten. The native traceback
+        # parses no sources: CPython's parser of them can fail where a failed test leaves a process behind.
+        options = ["-q", "-x", "-p", "no:cacheprovider", "--assert=plain", "--tb=native"]
         limits = [f"--timeout={TEST_SECONDS}", f"--junitxml={report}"]
         report.unlink(missing_ok=True)
         done = subprocess.run(

@@ -21,6 +21,14 @@ from tests.proofs.container import Container
 LATER, BROKEN = "98.0.0", "99.0.0"
 BREAK = 'raise SystemExit("This release does not work.")\n'
 PATIENCE = 90.0
+SEND = """
+send_file(data, "/update/release", Path("/releases/{name}"), 60.0)
+print(ask(data, "POST", "/update")["phase"])
+"""
+"""What the System page does: it sends a release, and begins the update."""
+WATCH = """
+print(ask(data, "GET", "/update")["text"])
+"""
 
 
 class Steps:
@@ -66,6 +74,8 @@ def main() -> int:
     """Run all steps; returns 1 where one failed."""
     with tempfile.TemporaryDirectory() as name:
         releases = Path(name)
+        # The user of the data sends one.
+        releases.chmod(0o755)
         make_releases(releases)
         with Container(releases) as container:
             return 1 if try_all(container) else 0
@@ -90,7 +100,12 @@ def try_all(container: Container) -> int:
     steps.take("the recording is there", "mucat sessions list", "pool")
     steps.take("roll back", "mucat rollback", f"µ-CAT {VERSION} is in use")
     steps.runs(VERSION)
-    steps.take("update again", f"mucat update /releases/{LATER}", f"µ-CAT {LATER} is in use")
+    steps.take("send a cut release as the page does", ask_server(SEND.format(name="cut.zip")), "asked")
+    steps.wait("it is refused", lambda: tells(container, "no whole ZIP file"))
+    steps.runs(VERSION)
+    steps.take("update as the page does", ask_server(SEND.format(name=f"{LATER}.zip")), "asked")
+    steps.wait("the page tells its end", lambda: tells(container, f"µ-CAT {LATER} is in use."))
+    steps.runs(LATER)
     again = f"{LATER} is in use again"
     steps.take("an update that does not work", f"mucat update /releases/{BROKEN}", again, status=1)
     steps.runs(LATER)
@@ -105,6 +120,20 @@ def try_all(container: Container) -> int:
     steps.take("uninstall", "mucat uninstall", "stay")
     steps.take("the data stay", "ls /var/lib/mucat/mucat.db; ls /opt/mucat 2>&1 || true", "No such file")
     return steps.failed
+
+
+def tells(container: Container, words: str) -> bool:
+    """True once the page would show these words of the update."""
+    return words in container.order(ask_server(WATCH))[1]
+
+
+def ask_server(program: str) -> str:
+    """The line of shell by which the user of the data runs these requests to the server."""
+    head = (
+        "from pathlib import Path; from server.platform.running_server import ask, send_file;"
+        ' from server.platform.settings import DataFolder; data = DataFolder(Path("/var/lib/mucat"))'
+    )
+    return f"runuser -u mucat -- /opt/mucat/current/bin/python -I -c '{head}{program}'"
 
 
 def make_releases(folder: Path) -> None:

@@ -164,6 +164,9 @@ PROBES: dict[tuple[str, str], Probe] = {
     ("DELETE", "/api/exports/{export}"): Probe(404, words="There is no export 0000", because=STARTS),
     ("GET", "/api/exports/{export}/file"): Probe(404, words="There is no export 0000", because=STARTS),
     ("POST", "/api/imports"): Probe(507, words="Free some space", because=STARTS),
+    ("GET", "/api/update"): Probe(),
+    ("POST", "/api/update"): Probe(409, words="not installed as a service", because=STARTS),
+    ("POST", "/api/update/release"): Probe(409, words="not installed as a service", because=STARTS),
     ("POST", "/api/comm-tests/check"): Probe(body={"text": "[]"}),
     ("POST", "/api/comm-tests/runs"): Probe(
         422, {"text": "?", "place": "emulated"}, words="JSON", because=STARTS

@@ -2259,6 +2259,53 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/update": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Return the versions on the robot's computer, and the present or last update
+         * @description Return the versions on the robot's computer, and the present or last update.
+         */
+        get: operations["getUpdate"];
+        put?: never;
+        /**
+         * Update to the release that was sent
+         * @description Update to the release that was sent.
+         *
+         *     It is refused if it is not signed with the key that the installation knows. A version that is not healthy
+         *     within a minute is taken back. The server is away for half a minute.
+         */
+        post: operations["beginUpdate"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/update/release": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send the ZIP file of a release, the request's body. It changes nothing until the update is begun
+         * @description Send the ZIP file of a release, the request's body. It changes nothing until the update is begun.
+         */
+        post: operations["sendRelease"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/vision": {
         parameters: {
             query?: never;
@@ -6358,6 +6405,48 @@ export interface components {
             change: number;
         };
         /**
+         * UpdateState
+         * @description The versions on the robot's computer, and the present or last update or way back.
+         */
+        UpdateState: {
+            /**
+             * Installed
+             * @description as services, which can be updated from a page
+             */
+            installed: boolean;
+            /**
+             * Phase
+             * @description since the computer's start; asked: it is about to begin
+             * @enum {string}
+             */
+            phase: "none" | "asked" | "running" | "done" | "failed";
+            /**
+             * Previous
+             * @description the one that `mucat rollback` goes back to; empty without one
+             */
+            previous: string;
+            /**
+             * Refusal
+             * @description why none can be begun from a page now; empty if one can
+             */
+            refusal: string;
+            /**
+             * Text
+             * @description what is being done, or how it ended
+             */
+            text: string;
+            /**
+             * Time
+             * @description of the text
+             */
+            time: string | null;
+            /**
+             * Version
+             * @description in use
+             */
+            version: string;
+        };
+        /**
          * UploadOrder
          * @description The firmware to upload: the one that was built with this software, or the previous one.
          */
@@ -9057,7 +9146,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The file is no archive that can be imported */
+            /** @description The upload came too slowly, was cut off, or is too large */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -13225,6 +13314,178 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getUpdate: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UpdateState"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    beginUpdate: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UpdateState"];
+                };
+            };
+            /** @description Not allowed; a browser that has not confirmed for ten minutes gets the kind `confirmation` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    sendRelease: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/zip": string;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UpdateState"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The upload came too slowly, was cut off, or is too large */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple, cast
 
 from robot_runtime import durable_files
-from server.platform.disk_space import explain_write_error
-from server.platform.errors import InsufficientStorageError
+from server.platform.disk_space import FileWriteError, explain_write_error
 
 BUFFER_BYTES = 1 << 18
 
@@ -18,10 +17,6 @@ class WrittenFile(NamedTuple):
 
     bytes: int
     sha256: str
-
-
-class FileWriteError(InsufficientStorageError):
-    """The disk is full"""
 
 
 def write_part(path: Path, write: Callable[[BinaryIO], object]) -> WrittenFile:

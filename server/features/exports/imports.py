@@ -6,8 +6,7 @@ stored. The retention worker removes what does not become whole.
 
 import asyncio
 import json
-import shutil
-from collections.abc import AsyncIterable, AsyncIterator, Iterator, Mapping
+from collections.abc import AsyncIterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
 from secrets import token_hex
@@ -15,28 +14,21 @@ from typing import Any
 
 from sqlalchemy import insert, update
 from sqlmodel import SQLModel, col, select
-from starlette.requests import ClientDisconnect
 
 from robot_runtime.durable_files import PART, make_folder
 from robot_runtime.errors import RefusedError
 from server.features.exports.archive_reader import ROWS_AT_ONCE, ArchiveChunks, ArchiveError, open_archive
 from server.features.exports.export_process import ExportProcess, ExportProcessError
-from server.features.exports.files import FileWriteError
 from server.features.sessions.session import IMPORTING, REMOVING
-from server.platform.disk_space import explain_write_error
+from server.http.uploads import save_upload
+from server.platform.disk_space import FileWriteError, explain_write_error, require_free
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.settings import DataFolder
 from server.platform.store import Store, insert_row
 
 BATCH_BYTES = 500_000
 """Stored in one transaction."""
-PIECE_BYTES = 1 << 20
 UPLOADS_MAX = 4
-UPLOAD_SECONDS = 30.0
-UPLOAD_RATE = 10_000
-"""bytes/s after the first `UPLOAD_SECONDS`; a slower upload, or one that hangs, is ended."""
-SPARE_BYTES = 50_000_000
-"""Disk space that is left free for recordings."""
 TABLES: Mapping[str, type[SQLModel]] = {"tags": SessionTag, "markers": BookmarkRow, "gaps": Gap}
 COPIES = 2
 """During an import a session is on the disk twice: as the archive and in the database."""
@@ -63,19 +55,16 @@ class Imports:
     async def receive(self, pieces: AsyncIterable[bytes], size: int | None) -> int:
         """Import the archive that arrives in pieces, of `size` bytes if known, and return its new number.
 
-        Raises RefusedError if it cannot be imported now, ArchiveError, FileWriteError if the disk fails,
-        StoreError.
+        Raises RefusedError if it cannot be imported now, InvalidUploadError, ArchiveError, StoreError, and
+        FileWriteError if the disk fails.
         """
         if self._uploads >= UPLOADS_MAX:
             raise RefusedError(f"{UPLOADS_MAX} archives are being uploaded. Wait for the end of one.")
-        self._check_room(COPIES * (size or 0))
+        require_free(self._data, COPIES * (size or 0))
         path = self._folder / (token_hex(8) + PART)
         self._uploads += 1
         try:
-            await self._save(_at_rate(pieces), path)
-        except BaseException:
-            await asyncio.to_thread(path.unlink, missing_ok=True)
-            raise
+            await save_upload(pieces, path)
         finally:
             self._uploads -= 1
         try:
@@ -89,31 +78,8 @@ class Imports:
     async def take(self, path: Path) -> int:
         """Import the archive in a file. Raises as `receive`."""
         async with self._busy:
-            self._check_room(path.stat().st_size)
+            require_free(self._data, path.stat().st_size)
             return await self._take(path)
-
-    def _check_room(self, size: int) -> None:
-        free = shutil.disk_usage(self._data).free
-        if free < size + SPARE_BYTES:
-            raise FileWriteError(
-                f"The disk that holds {self._data} has {free / 1e6:.0f} MB free; this needs "
-                f"{(size + SPARE_BYTES) / 1e6:.0f} MB. Free some space, and try again."
-            )
-
-    async def _save(self, pieces: AsyncIterable[bytes], path: Path) -> None:
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with path.open("wb") as file:
-                waiting = bytearray()
-                async for piece in pieces:
-                    waiting += piece
-                    if len(waiting) >= PIECE_BYTES:
-                        await asyncio.to_thread(file.write, bytes(waiting))
-                        waiting.clear()
-                        self._check_room(file.tell())
-                await asyncio.to_thread(file.write, bytes(waiting))
-        except OSError as problem:
-            raise FileWriteError(explain_write_error(problem, path)) from problem
 
     async def _take(self, path: Path) -> int:
         rows = self._folder / (token_hex(8) + PART)
@@ -174,27 +140,6 @@ class Imports:
 
     async def _change(self, number: int, values: dict[str, Any]) -> None:
         await self._store.execute(update(SessionRow).where(col(SessionRow.id) == number).values(values))
-
-
-async def _at_rate(pieces: AsyncIterable[bytes]) -> AsyncIterator[bytes]:
-    """The pieces of an upload. Raises ArchiveError where they come too slowly, or end early."""
-    clock = asyncio.get_running_loop()
-    started, received = clock.time(), 0
-    arriving = aiter(pieces)
-    while True:
-        try:
-            async with asyncio.timeout_at(started + UPLOAD_SECONDS + received / UPLOAD_RATE):
-                piece = await anext(arriving)
-        except StopAsyncIteration:
-            return
-        except TimeoutError as problem:
-            raise ArchiveError(
-                f"The upload was ended: {received} bytes had come. Send it again."
-            ) from problem
-        except ClientDisconnect as problem:
-            raise ArchiveError(f"The upload was cut off after {received} bytes. Send it again.") from problem
-        received += len(piece)
-        yield piece
 
 
 def _read_lines(rows: Path) -> Iterator[dict[str, Any]]:

@@ -18,11 +18,11 @@ from robot_runtime.durable_files import PART, make_folder, write_whole
 from robot_runtime.errors import RefusedError
 from server.features.exports.description import file_name
 from server.features.exports.export_process import ExportProcess, ExportProcessError
-from server.features.exports.files import FileWriteError, put_in_place
+from server.features.exports.files import put_in_place
 from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions, Job, NewExport
 from server.features.exports.selection import ExportSelection
-from server.platform.disk_space import explain_write_error
+from server.platform.disk_space import FileWriteError, explain_write_error
 from server.platform.errors import NotFoundError
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder

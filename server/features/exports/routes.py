@@ -1,6 +1,5 @@
 """Exports of sessions: start, progress, download; imports of archives."""
 
-from collections.abc import AsyncIterator
 from typing import Annotated
 
 from fastapi import Path, Request
@@ -8,19 +7,20 @@ from fastapi.concurrency import run_in_threadpool
 from starlette.responses import FileResponse
 
 from server.features.exports.archive_reader import ArchiveError
-from server.features.exports.files import FileWriteError
 from server.features.exports.formats import KINDS
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs, UnknownExportError
 from server.features.exports.schemas import Job, NewExport
 from server.features.exports.selection import ExportRequestError
-from server.features.lease.admission import admit
+from server.features.lease.admission import read_admitted
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import UnknownSessionError, find_row, from_row
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.sign_in.policy import Need
+from server.http.uploads import InvalidUploadError
+from server.platform.disk_space import FileWriteError
 from server.platform.errors import ConflictError
 from server.platform.store import Store
 
@@ -85,6 +85,7 @@ async def download_export(jobs: Provided[Jobs], export: Identifier) -> FileRespo
     "POST /imports",
     Need.OPERATOR,
     ArchiveError,
+    InvalidUploadError,
     FileWriteError,
     {409: "The session exists, another import is running, or the robot is armed"},
     status_code=201,
@@ -98,12 +99,5 @@ async def import_session(
     """Import a session from an archive, the request's body; it is stored whole or not at all."""
     monitor.require_disarmed("An upload slows the recording.")
     length = request.headers.get("content-length")
-    number = await imports.receive(_pieces(request), int(length) if length else None)
+    number = await imports.receive(read_admitted(request), int(length) if length else None)
     return from_row(await run_in_threadpool(find_row, store, number))
-
-
-async def _pieces(request: Request) -> AsyncIterator[bytes]:
-    """The body; an upload lasts, and ends where the access of its sender does."""
-    async for piece in request.stream():
-        await admit(request)
-        yield piece

@@ -2,7 +2,7 @@
 
 import os
 import socket
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 
 import click
@@ -11,7 +11,8 @@ from server.features.installation.effects import CommandFailedError, Effects
 from server.features.installation.installer import Installer
 from server.features.installation.places import InstallPlaces
 from server.features.installation.release import SIGNATURE, check_signature, read_release
-from server.features.installation.updater import Updater, write_result
+from server.features.installation.report import hold
+from server.features.installation.updater import Updater
 from server.platform.command_line import FILE, CommandError
 from server.platform.settings import SetupError
 from server.platform.terminal import echo
@@ -39,7 +40,8 @@ def install(release: Path, *, yes: bool, dry_run: bool) -> None:
         if (found.folder / SIGNATURE).exists():
             own = found.folder / "release.pem"
             check_signature(found, places.key if places.key.exists() or not own.exists() else own)
-        installer.install(found)
+        with nullcontext() if dry_run else hold(places.lock):
+            installer.install(found)
     except SetupError as problem:
         raise CommandError(str(problem)) from problem
     if not dry_run:
@@ -66,14 +68,10 @@ def update(release: Path | None, *, asked_by_page: bool) -> None:
     try:
         version = Updater(places, effects).update(release.absolute())
     except SetupError as problem:
-        if asked_by_page:
-            write_result(effects, places, updated=False, text=str(problem))
         raise CommandError(str(problem)) from problem
     finally:
         if asked_by_page:
             effects.remove(places.requested)
-    if asked_by_page:
-        write_result(effects, places, updated=True, text=f"µ-CAT {version} is in use.")
     echo(f"µ-CAT {version} is in use. sudo mucat rollback goes back.")
 
 
@@ -87,17 +85,10 @@ def rollback(*, cut_off: bool) -> None:
     """
     _require_root("rollback", dry=False)
     os.umask(OPEN_UMASK)
-    places = InstallPlaces()
-    updater = Updater(places, Effects(echo))
+    updater = Updater(InstallPlaces(), Effects(echo))
     try:
         if cut_off:
             updater.recover(starting=True)
-            write_result(
-                Effects(echo),
-                places,
-                updated=False,
-                text="The update was cut off: the old version is back.",
-            )
         else:
             echo(f"µ-CAT {updater.roll_back()} is in use.")
     except SetupError as problem:
@@ -110,8 +101,10 @@ def uninstall(*, dry_run: bool) -> None:
     """Remove the services and the software; the data stay."""
     places = InstallPlaces()
     _require_root("uninstall", dry=dry_run)
+    installer = Installer(places, Effects(echo, dry=dry_run), lambda _: False)
     try:
-        Installer(places, Effects(echo, dry=dry_run), lambda _: False).uninstall()
+        with nullcontext() if dry_run else hold(places.lock):
+            installer.uninstall()
     except SetupError as problem:
         raise CommandError(str(problem)) from problem
     echo(f"{places.data} and {places.settings} stay. The boot settings before are in *.before-mucat beside.")

@@ -5,7 +5,6 @@ version was healthy. Where it is found at a start, the update was cut off, and t
 """
 
 import json
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -16,6 +15,7 @@ from server.features.installation.environments import build_environment
 from server.features.installation.installer import INSTALL_BYTES, wait_until_healthy
 from server.features.installation.places import SERVICES, InstallPlaces
 from server.features.installation.release import RELEASE_FILE, Release, check_signature, read_release
+from server.features.installation.report import UpdateReport, hold
 from server.features.installation.versions import list_wrong, look_at, order, write_services_of
 from server.platform.disk_space import free_bytes
 from server.platform.settings import SetupError
@@ -44,20 +44,47 @@ class Updater:
     def __init__(self, places: InstallPlaces, effects: Effects) -> None:
         self._places = places
         self._effects = effects
+        self._report = UpdateReport(places.report)
 
     def update(self, path: Path) -> str:
         """Update to the release in this folder or ZIP file; returns its version. Raises SetupError: then the
         version before runs, with its database."""
-        self.recover()
+        with self._alone():
+            version = self._update(path)
+            self._report.write("done", f"µ-CAT {version} is in use.")
+        return version
+
+    def roll_back(self) -> str:
+        """Go back to the version before the last update; returns it. Raises SetupError."""
+        with self._alone():
+            version = self._roll_back()
+            self._report.write("done", f"µ-CAT {version} is in use again.")
+        return version
+
+    def recover(self, *, starting: bool = False) -> None:
+        """Go back from an update that was cut off, if one was. Raises SetupError.
+
+        `starting`: the computer starts, and nothing of µ-CAT runs yet.
+        """
+        with self._alone():
+            if (switch := self._recover(starting=starting)) is not None:
+                words = f"The update to {switch.after} was cut off: {switch.before} is in use again."
+                self._report.write("failed", words)
+
+    def _update(self, path: Path) -> str:
+        self._recover()
         places, effects = self._places, self._effects
         before = self._installed()
+        self._tell("The release is checked.")
         try:
             release = self._take_in(path)
             if release.version == before:
                 raise SetupError(f"µ-CAT {before} is in use already. Nothing was changed.")
             self._refuse_in_use()
             self._check_room(release)
+            self._tell(f"µ-CAT {release.version} is built beside {before}. The robot can be used meanwhile.")
             environment = build_environment(effects, places, release)
+            self._tell(f"The doctor of {release.version} looks at this computer.")
             self._refuse_new_faults(environment)
         finally:
             effects.remove(places.incoming)
@@ -67,34 +94,50 @@ class Updater:
         self._remove_others()
         return release.version
 
-    def roll_back(self) -> str:
-        """Go back to the version before the last update; returns it. Raises SetupError."""
-        self.recover()
+    def _roll_back(self) -> str:
+        self._recover()
         places = self._places
         now, before = self._installed(), places.version_of(places.previous)
         if not before or before == now:
             raise SetupError("There is no version to go back to: none was before, or one went back already.")
         self._refuse_in_use()
+        last = self._read(places.last_switch)
+        switch = Switch(before, now, firmware=last is not None and last.firmware)
+        self._find_copy(switch)
+        # As a cut-off update: a power cut on the way back does not end it.
+        self._effects.write(places.journal, json.dumps(asdict(switch)) + "\n")
+        self._effects.remove(places.last_switch)
+        self._tell(f"{before} is put back.")
         with self._stopped():
-            self._go_back(self._read(places.last_switch) or Switch(before, now, firmware=False))
+            self._go_back(switch)
         wait_until_healthy(self._effects, places, HEALTHY_SECONDS)
         return before
 
-    def recover(self, *, starting: bool = False) -> bool:
-        """Go back from an update that was cut off; returns True if there was one.
-
-        `starting`: the computer starts, and nothing of µ-CAT runs yet.
-        """
+    def _recover(self, *, starting: bool = False) -> Switch | None:
+        """Go back from an update that was cut off; returns what it was, None without one."""
         switch = self._read(self._places.journal)
         if switch is None:
-            return False
-        self._effects.say(f"The update to {switch.after} was cut off: {switch.before} is put back.")
+            return None
+        self._tell(f"The update to {switch.after} was cut off: {switch.before} is put back.")
         if starting:
             self._go_back(switch)
         else:
             with self._stopped():
                 self._go_back(switch)
-        return True
+        return switch
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        with hold(self._places.lock):
+            try:
+                yield
+            except SetupError as problem:
+                self._report.write("failed", str(problem))
+                raise
+
+    def _tell(self, words: str) -> None:
+        self._effects.say(words)
+        self._report.write("running", words)
 
     def _installed(self) -> str:
         version = self._places.version_of(self._places.current)
@@ -155,6 +198,7 @@ class Updater:
         changed = firmware not in ("", self._firmware_in_use())
         switch = Switch(before, environment.name, changed, places.version_of(places.previous))
         effects.write(places.journal, json.dumps(asdict(switch)) + "\n")
+        self._tell(f"{before} is stopped, and {switch.after} started. It must be healthy within a minute.")
         try:
             effects.link(places.previous, places.version(before))
             with self._stopped():
@@ -164,6 +208,7 @@ class Updater:
                     order(effects, places, environment, "upload")
             wait_until_healthy(effects, places, HEALTHY_SECONDS)
         except SetupError as problem:
+            self._tell(f"{problem} {before} is put back.")
             with self._stopped():
                 self._go_back(switch)
             raise SetupError(f"{problem} {before} is in use again, with its database.") from problem
@@ -179,27 +224,31 @@ class Updater:
     def _go_back(self, switch: Switch) -> None:
         """Put the version before in force, and its database where it cannot read the present one."""
         places, effects = self._places, self._effects
-        old = places.version(switch.before)
-        if not places.is_complete(old):
+        old, copy = places.version(switch.before), self._find_copy(switch)
+        effects.link(places.current, old)
+        write_services_of(effects, old)
+        if copy:
+            effects.say(order(effects, places, old, "restore", copy).strip())
+        if switch.firmware:
+            order(effects, places, old, "upload")
+        if switch.older:
+            effects.link(places.previous, places.version(switch.older))
+        effects.remove(places.journal)
+
+    def _find_copy(self, switch: Switch) -> str:
+        """The database for the version before, which the migration has copied; empty where it reads this one.
+
+        Raises SetupError where there is no way back.
+        """
+        old = self._places.version(switch.before)
+        if not self._places.is_complete(old):
             raise SetupError(f"{old} is not there any more: install a release with mucat install.")
-        # The migration has made the copy before it changed anything.
-        found = look_at(effects, places, old)
+        found = look_at(self._effects, self._places, old)
         if not found.reads and not found.copy:
             raise SetupError(
                 f"{switch.before} cannot read the database, and no copy of it fits. Nothing was changed."
             )
-        effects.link(places.current, old)
-        write_services_of(effects, old)
-        if not found.reads:
-            effects.say(order(effects, places, old, "restore", found.copy).strip())
-        if switch.firmware:
-            order(effects, places, old, "upload")
-        if places.journal.exists():
-            if switch.older:
-                effects.link(places.previous, places.version(switch.older))
-            effects.remove(places.journal)
-        else:
-            effects.remove(places.last_switch)
+        return "" if found.reads else found.copy
 
     @contextmanager
     def _stopped(self) -> Iterator[None]:
@@ -225,10 +274,3 @@ class Updater:
         for one in sorted(places.versions.iterdir()):
             if one.name not in in_use:
                 self._effects.remove(one)
-
-
-def write_result(effects: Effects, places: InstallPlaces, *, updated: bool, text: str) -> None:
-    """Write for the page how an update ended. Raises SetupError."""
-    effects.write(
-        places.result, json.dumps({"time": time.time(), "updated": updated, "text": text}, ensure_ascii=False)
-    )

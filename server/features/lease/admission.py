@@ -1,9 +1,10 @@
 """Admission of requests: checks the caller's role, and its control if the operation needs it."""
 
+from collections.abc import AsyncIterator
 from typing import Annotated
 
 from fastapi import Depends
-from starlette.requests import HTTPConnection
+from starlette.requests import HTTPConnection, Request
 
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
@@ -38,6 +39,13 @@ async def admit(connection: HTTPConnection) -> None:
         _require_confirmation(connection)
     if need == Need.CONTROL:
         require_control(connection)
+
+
+async def read_admitted(request: Request) -> AsyncIterator[bytes]:
+    """The body of a request, in pieces: an upload lasts, and ends where the access of its sender does."""
+    async for piece in request.stream():
+        await admit(request)
+        yield piece
 
 
 def _require_confirmation(connection: HTTPConnection) -> None:

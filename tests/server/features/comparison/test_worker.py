@@ -5,7 +5,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -22,7 +22,7 @@ from server.platform.settings import Settings
 from server.platform.store import Reader, Store
 from tests.server.features.comparison.dives import dive, record
 from tests.server.serving import Served, play
-from tests.server.waiting import SECONDS, until
+from tests.server.waiting import SECONDS, alive, until
 
 Python = Callable[[str], SimpleNamespace]
 
@@ -214,8 +214,13 @@ def test_a_report_ends_with_the_connection_of_its_receiver(
         monkeypatch.setattr(worker, "sys", python(work))
         asking = asyncio.create_task(ask(served, session))
         await until(lambda: begun.exists() and begun.read_text(), "the report to be begun")
+        pid = int(begun.read_text())
         asking.cancel()
-        await until(lambda: not Path(f"/proc/{begun.read_text()}").exists(), "its process to end")
+        try:
+            await until(lambda: not alive(pid), "its process to end", seconds=20)
+        finally:
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
 
     play(settings, scenario)
 

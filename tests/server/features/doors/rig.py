@@ -34,6 +34,12 @@ async def make_token(served: Served, scope: str = "operate", name: str = "Progra
     return str(answer.json()["token"])
 
 
+async def acts_of(served: Served) -> set[tuple[str, str, str]]:
+    """The audit log's entries: who, what, with which outcome."""
+    entries = (await served.api.get("/audit")).json()["entries"]
+    return {(one["who"], one["action"], one["outcome"]) for one in entries}
+
+
 def address(served: Served, door: str, token: str | None) -> str:
     """The address of a door, with a token."""
     query = f"?token={token}" if token else ""

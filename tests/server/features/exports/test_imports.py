@@ -21,12 +21,12 @@ from sqlmodel import col, select
 
 from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
 from server.features.exports.archive_reader import ArchiveError, examine
-from server.features.exports.files import FileWriteError
-from server.features.exports.imports import SPARE_BYTES, Imports
+from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.session import IMPORTING, REMOVING, UnknownSessionError, find_row
+from server.platform.disk_space import SPARE_BYTES, FileWriteError
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders

@@ -8,9 +8,9 @@ import pytest
 from starlette.requests import ClientDisconnect
 
 from robot_runtime.errors import RefusedError
-from server.features.exports import imports
-from server.features.exports.archive_reader import ArchiveError
 from server.features.exports.imports import UPLOADS_MAX, Imports
+from server.http import uploads
+from server.http.uploads import InvalidUploadError
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.released import ARCHIVE, RELEASED
@@ -61,13 +61,13 @@ def test_an_upload_that_hangs_does_not_hold_up_others(settings: Settings, store:
 def test_an_upload_that_hangs_is_ended(
     settings: Settings, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(imports, "UPLOAD_SECONDS", 0.0)
-    with pytest.raises(ArchiveError, match="was ended: 2 bytes had come"):
+    monkeypatch.setattr(uploads, "UPLOAD_SECONDS", 0.0)
+    with pytest.raises(InvalidUploadError, match="was ended: 2 bytes had come"):
         asyncio.run(Imports(settings.data, store).receive(linger(), None))
     assert left_over(settings) == []
 
 
 def test_an_upload_that_breaks_off_is_an_error_in_words(settings: Settings, store: Store) -> None:
-    with pytest.raises(ArchiveError, match="was cut off after 2 bytes"):
+    with pytest.raises(InvalidUploadError, match="was cut off after 2 bytes"):
         asyncio.run(Imports(settings.data, store).receive(break_off(), None))
     assert left_over(settings) == []

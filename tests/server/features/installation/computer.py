@@ -30,7 +30,8 @@ class Computer:
         self.lines: list[str] = []
         self.broken: dict[str, str] = {}
         self.answers: dict[str, str] = {}
-        (root / "etc").mkdir(parents=True)
+        (root / "run").mkdir(parents=True)
+        (root / "etc").mkdir()
         (root / "etc/passwd").write_text("root:x:0:0::/root:/bin/sh\n")
         (root / "etc/group").write_text("dialout:x:20:\nvideo:x:44:somebody\nlp:x:7:\n")
         if pi:
@@ -89,11 +90,13 @@ class Computer:
         return Installer(self.places, effects, lambda _: yes)
 
     def tree(self) -> dict[str, str]:
-        """Every file with its text, every link with its target, and every folder."""
+        """Every file with its text, every link with its target, and every folder, but of /run."""
         root = self.places.root
         found = {}
         for path in sorted(root.rglob("*")):
             name = str(path.relative_to(root))
+            if name.partition("/")[0] == "run":
+                continue
             if path.is_symlink():
                 found[name] = f"link to {path.readlink()}"
             else:

@@ -3,12 +3,15 @@
 import shutil
 import zipfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from server.features.installation import installer, updater
+from server.features.installation.effects import Effects
 from server.features.installation.release import SUMS, read_release
+from server.features.installation.report import UpdateReport, hold
 from server.features.installation.updater import Updater
 from server.platform.settings import SetupError
 from tests.server.features.installation.computer import PowerCutError, place_release, place_version
@@ -266,6 +269,30 @@ def test_the_way_back_takes_the_copy_where_the_older_version_cannot_read_the_dat
     assert (computer.running, computer.database.read_text()) == ("1.0.0", f"1 {DIVES}")
 
 
+def test_cut_off_at_any_effect_the_way_back_is_gone_to_its_end(
+    tmp_path: Path, keys: Path, release: Path
+) -> None:
+    cuts = 0
+    while True:
+        computer = installed(tmp_path / str(cuts), keys)
+        update(computer, release)
+        try:
+            Updater(computer.places, computer.effects(cuts)).roll_back()
+        except PowerCutError:
+            words = f"cut {cuts}: {computer.lines[-1]}"
+            computer.boot()
+            # Before the journal is written, nothing has happened.
+            assert computer.running == ("1.0.0" if cuts else "2.0.0"), words
+            assert computer.database.read_text() == f"{computer.schemas[computer.running]} {DIVES}", words
+            assert computer.board == computer.firmware[computer.running], words
+            assert not computer.places.journal.exists(), words
+            cuts += 1
+        else:
+            break
+    assert cuts > 6
+    assert computer.running == "1.0.0"
+
+
 def test_a_failed_update_leaves_the_way_back_to_the_version_before(
     tmp_path: Path, keys: Path, release: Path
 ) -> None:
@@ -303,3 +330,62 @@ def test_two_versions_are_kept(tmp_path: Path, keys: Path, release: Path) -> Non
     computer.schemas["3.0.0"] = 2
     update(computer, signed(tmp_path / "third", keys, "3.0.0"))
     assert sorted(one.name for one in computer.places.versions.iterdir()) == ["2.0.0", "3.0.0"]
+
+
+def test_the_installation_is_changed_by_one_at_a_time(tmp_path: Path, keys: Path, release: Path) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    UpdateReport(computer.places.report).write("running", "Another update.")
+    before = computer.tree()
+    with hold(computer.places.lock):
+        for change in (partial(update, computer, release), partial(roll_back, computer)):
+            with pytest.raises(SetupError, match="is being changed already"):
+                change()
+    assert computer.tree() == before
+    assert report_of(computer) == ("running", "Another update.")
+    assert update(computer, release) == "2.0.0"
+
+
+def report_of(computer: UpdatableComputer) -> tuple[str, str]:
+    report = UpdateReport(computer.places.report).read()
+    assert report is not None
+    return report.phase, report.text
+
+
+def test_the_report_tells_how_it_goes_and_how_it_ended(tmp_path: Path, keys: Path, release: Path) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    told: list[str] = []
+
+    def look(_: str) -> None:
+        if computer.places.report.exists() and (words := report_of(computer)[1]) not in told[-1:]:
+            told.append(words)
+
+    Updater(computer.places, Effects(look, run=computer.run, before=look)).update(release)
+    assert told == [
+        "The release is checked.",
+        "µ-CAT 2.0.0 is built beside 1.0.0. The robot can be used meanwhile.",
+        "The doctor of 2.0.0 looks at this computer.",
+        "1.0.0 is stopped, and 2.0.0 started. It must be healthy within a minute.",
+    ]
+    assert report_of(computer) == ("done", "µ-CAT 2.0.0 is in use.")
+    assert roll_back(computer) == "1.0.0"
+    assert report_of(computer) == ("done", "µ-CAT 1.0.0 is in use again.")
+    computer.sick.add("2.0.0")
+    with pytest.raises(SetupError) as caught:
+        update(computer, release)
+    assert report_of(computer) == ("failed", str(caught.value))
+
+
+def test_the_start_after_a_power_cut_reports_the_way_back(tmp_path: Path, keys: Path, release: Path) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    for cut in range(30):
+        with pytest.raises(PowerCutError):
+            update(computer, release, cut)
+        if computer.places.journal.exists():
+            break
+    computer.places.report.unlink()
+    computer.boot()
+    words = "The update to 2.0.0 was cut off: 1.0.0 is in use again."
+    assert report_of(computer) == ("failed", words)
+    computer.places.report.unlink()
+    computer.boot()
+    assert not computer.places.report.exists()

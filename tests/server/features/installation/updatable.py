@@ -43,8 +43,7 @@ class UpdatableComputer(Computer):
     def boot(self) -> None:
         """Its power comes back: the way back first, if an update was cut off, then the services."""
         self.running = ""
-        if self.places.journal.exists():
-            Updater(self.places, self.effects()).recover(starting=True)
+        Updater(self.places, self.effects()).recover(starting=True)
         self.start()
 
     def start(self) -> None:
