@@ -20,6 +20,7 @@ def make_token(stack: Stack, scope: str) -> str:
 def test_a_program_reads_drives_and_loads_what_it_recorded(shared_stack: Stack) -> None:
     token = make_token(shared_stack, "operate")
     robot = Robot(shared_stack.url, token)
+    other = Robot(shared_stack.url, make_token(shared_stack, "operate"))
     before = {one["id"] for one in Sessions(shared_stack.url, token).list()}
     samples = robot.live("depth", "imu")
     found = {}
@@ -35,7 +36,7 @@ def test_a_program_reads_drives_and_loads_what_it_recorded(shared_stack: Stack) 
         control.drive(1.0, x=0.5, yaw=0.25)
         assert robot.state()["armed"]
         with pytest.raises(RobotError, match="Control is with"):
-            Robot(shared_stack.url, make_token(shared_stack, "operate")).control().__enter__()
+            other.control().__enter__()
     assert next(one for one in robot.live("state") if not one["armed"])["mode"] == "disarmed"
     sessions = Sessions(shared_stack.url, token)
     (session,) = (one["id"] for one in sessions.list() if one["id"] not in before)

@@ -66,15 +66,16 @@ class RuntimeEnd:
         self._messages.close()
 
     def publish(self, *blocks: Block) -> None:
-        """Publish blocks, each on its own.
-
-        The robot's are last: the server leaves a message of the simulator until the next message.
-        """
-        for block in sorted(blocks, key=lambda one: one.topic.sender != "simulator"):
+        """Publish blocks, each on its own."""
+        for block in blocks:
             name = block.topic.name if block.topic.kind is Kind.PICTURE else stream_of(block)
             if block.topic.kind is not Kind.PICTURE:
                 self._cache.add(block.data, {block.topic.name: block.following})
             self._messages.publish(name, block.data)
+            if name == SIMULATOR_STREAM:
+                # The server leaves a message of the simulator until the next one. One of the robot would not
+                # do: it may overtake, since each stream has a thread of its own.
+                self._messages.publish(name, b"")
 
     def publish_bytes(self, data: bytes) -> None:
         """Publish any bytes."""
