@@ -19,10 +19,12 @@ INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-byt
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
-# Tests in real time without a whole robot: uploads, a slow network.
-NO_ROBOT := $(addprefix tests/,board/test_bootloader.py server/http/test_poor_network.py \
-	server/features/comm_tests/test_thesis_example.py)
-REAL_TIME = $(filter-out $(NO_ROBOT),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
+# Tests in real time that mostly wait, for uploads or a slow network, and bear a delay.
+WAITING := $(addprefix tests/,board/test_bootloader.py server/http/test_poor_network.py \
+	server/features/board/test_firmware_upload.py server/features/bring_up/test_on_the_robot.py \
+	server/features/comm_tests/test_reserved_board.py server/features/comm_tests/test_thesis_example.py \
+	browser/test_bring_up.py browser/test_firmware_upload.py)
+REAL_TIME = $(filter-out $(WAITING),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
 # All other tests, each part by a process of its own, the longest first. A part lacks what is a part by itself.
 PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/test_memory.py documents \
 	proofs/test_guards.py server pages runtime) tests
@@ -31,7 +33,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test services bring-ups test-real-time test-no-robot test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release \
+.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -43,17 +45,17 @@ run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 
 test: ## every check and every test, in lanes; the output of a lane comes when a command of it has ended
 	@$(MAKE) --no-print-directory --jobs 2 setup-test
 	@$(MAKE) --no-print-directory --jobs 2 host-firmware
-	@$(IN_LANES) --jobs 4 test-real-time test-no-robot test-checks test-rest
+	@$(IN_LANES) --jobs 4 test-real-time test-waiting test-checks test-rest
 
 # Robots in real time have the processors first, one at a time: with two of them, both are late.
 test-real-time:
 	@status=0; \
 	$(PYTHON) -m pytest -m stack --durations 20 $(REAL_TIME) || status=1; \
-	$(PYTHON) -m pytest --durations 20 tests/browser || status=1; \
+	$(PYTHON) -m pytest --durations 20 tests/browser $(addprefix --ignore=,$(filter tests/browser/%,$(WAITING))) || status=1; \
 	exit $$status
 
-test-no-robot:
-	@$(PYTHON) -m pytest -m stack --durations 10 $(NO_ROBOT)
+test-waiting:
+	@nice -n 5 $(PYTHON) -m pytest -m stack --durations 10 $(WAITING)
 
 test-checks:
 	@status=0; \
