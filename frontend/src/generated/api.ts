@@ -2591,7 +2591,7 @@ export interface components {
             number: number;
             /**
              * Step
-             * @description path of the mission's step, as “3.1.2”
+             * @description of the mission, as “3.1.2”
              * @default
              */
             step: string;
@@ -3326,7 +3326,7 @@ export interface components {
              * Mission Steps
              * @description the steps of its missions that began, each once, in the order of the document
              */
-            mission_steps: components["schemas"]["StepStart-Output"][];
+            mission_steps: components["schemas"]["MissionStepStart"][];
             /** Name */
             name: string;
             /**
@@ -4554,6 +4554,24 @@ export interface components {
          */
         MissionSkipCommand: Record<string, never>;
         /**
+         * MissionStepStart
+         * @description The first start of a mission's step.
+         */
+        MissionStepStart: {
+            /**
+             * Path
+             * @description from 1 along the branches, as "3.1.2"; empty for the first step
+             */
+            path: string;
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number;
+            /** Words */
+            words: string;
+        };
+        /**
          * MissionStepState
          * @description A step of a running mission.
          */
@@ -5268,7 +5286,7 @@ export interface components {
         RecordedMission: {
             /**
              * Document
-             * @description TOML; empty where the recording lacks both its first and its last state
+             * @description TOML; empty where the recording lacks its first and last state
              */
             document: string;
             /** End */
@@ -5278,7 +5296,7 @@ export interface components {
              * @description it had begun before the recording
              */
             late: boolean;
-            /** @description its last state; it is still running where the recording lacks its end */
+            /** @description its last state; still running where the recording lacks its end */
             mission: components["schemas"]["Mission"];
             /** Start */
             start: number;
@@ -5286,7 +5304,7 @@ export interface components {
              * Started
              * @description the steps that began, in the order of the document
              */
-            started: components["schemas"]["StepStart-Output"][];
+            started: components["schemas"]["MissionStepStart"][];
         };
         /**
          * RecordedTopic
@@ -6039,7 +6057,7 @@ export interface components {
          * StepStart
          * @description A step of a loop's set point.
          */
-        "StepStart-Input": {
+        StepStart: {
             /**
              * Duration
              * @description s from the step on
@@ -6086,24 +6104,6 @@ export interface components {
              * @description largest distance from the start that counts as settled
              */
             tolerance: number;
-        };
-        /**
-         * StepStart
-         * @description The first start of a mission's step.
-         */
-        "StepStart-Output": {
-            /**
-             * Path
-             * @description from 1 along the branches, as "3.1.2"; empty for the first step
-             */
-            path: string;
-            /**
-             * Time
-             * @description s since the session's start
-             */
-            time: number;
-            /** Words */
-            words: string;
         };
         /**
          * Storage
@@ -13132,7 +13132,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["StepStart-Input"] | components["schemas"]["RelayStart"];
+                "application/json": components["schemas"]["StepStart"] | components["schemas"]["RelayStart"];
             };
         };
         responses: {

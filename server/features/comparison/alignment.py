@@ -18,7 +18,7 @@ class Align(RequestBody):
     marker: Annotated[str, Field(max_length=500, description="its text; the first match counts")] = ""
     step: Annotated[
         str,
-        Field(pattern=r"^(\d{1,3}(\.\d{1,3}){0,7})?$", description="path of the mission's step, as “3.1.2”"),
+        Field(pattern=r"^(\d{1,3}(\.\d{1,3}){0,7})?$", description="of the mission, as “3.1.2”"),
     ] = ""
 
 

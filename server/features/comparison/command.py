@@ -20,9 +20,7 @@ from server.platform.terminal import echo
 )
 @click.option("--step", type=int, default=1, help="Which step of the set point, for --align set_point.")
 @click.option("--marker", help="Align at the bookmark of this text instead.")
-@click.option(
-    "--mission-step", metavar="PATH", help="Align where this step of a mission began instead: 3.1.2."
-)
+@click.option("--mission-step", metavar="PATH", help="Align at the start of a mission's step instead: 3.1.2.")
 @click.option(
     "--signals",
     multiple=True,

@@ -39,7 +39,7 @@ from server.features.comparison.schemas import (
 from server.features.comparison.signals import Signal, list_signals, split
 from server.features.metrics.figure import Figure
 from server.features.metrics.series import Floats
-from server.features.sessions.missions import RecordedMission, StepStart, read_missions
+from server.features.sessions.missions import MissionStepStart, RecordedMission, read_missions
 from server.features.sessions.recording import Recording, reading_content
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Moment, read_events
@@ -203,8 +203,8 @@ def _range(one: _AlignedSession, query: ComparisonQuery) -> EvaluationRange:
     return EvaluationRange(one.history.armed, anchor)
 
 
-def _first_starts(missions: list[RecordedMission]) -> list[StepStart]:
-    found: dict[str, StepStart] = {}
+def _first_starts(missions: list[RecordedMission]) -> list[MissionStepStart]:
+    found: dict[str, MissionStepStart] = {}
     for one in missions:
         for step in one.started:
             found.setdefault(step.path, step)

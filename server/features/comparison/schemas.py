@@ -8,7 +8,7 @@ from server.features.comparison.alignment import Align
 from server.features.comparison.differences import Difference
 from server.features.comparison.signals import Signal
 from server.features.metrics.figure import Figure, FigureMeaning
-from server.features.sessions.missions import StepStart
+from server.features.sessions.missions import MissionStepStart
 from server.features.sessions.timeline import Moment
 from server.http.request_body import RequestBody
 from server.platform.models import IDENTIFIER_MAX
@@ -116,7 +116,7 @@ class Compared(SessionLines):
     state: str
     armed: list[tuple[float, float]] = Field(description="from and to, s since its start")
     set_point_steps: int = Field(description="number of changes of the set point while armed")
-    mission_steps: list[StepStart] = Field(
+    mission_steps: list[MissionStepStart] = Field(
         description="the steps of its missions that began, each once, in the order of the document"
     )
     events: list[Moment]

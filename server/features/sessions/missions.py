@@ -13,7 +13,7 @@ TOPIC = BY_NAME["mission"]
 _MISSION = TypeAdapter(Mission)
 
 
-class StepStart(BaseModel):
+class MissionStepStart(BaseModel):
     """The first start of a mission's step."""
 
     path: str = Field(description='from 1 along the branches, as "3.1.2"; empty for the first step')
@@ -27,13 +27,9 @@ class RecordedMission(BaseModel):
     start: float
     end: float
     late: bool = Field(description="it had begun before the recording")
-    mission: Mission = Field(
-        description="its last state; it is still running where the recording lacks its end"
-    )
-    document: str = Field(
-        description="TOML; empty where the recording lacks both its first and its last state"
-    )
-    started: list[StepStart] = Field(description="the steps that began, in the order of the document")
+    mission: Mission = Field(description="its last state; still running where the recording lacks its end")
+    document: str = Field(description="TOML; empty where the recording lacks its first and last state")
+    started: list[MissionStepStart] = Field(description="the steps that began, in the order of the document")
 
 
 def read_missions(recording: Recording) -> list[RecordedMission]:
@@ -48,7 +44,7 @@ def read_missions(recording: Recording) -> list[RecordedMission]:
 
 
 class _Reading:
-    """The documents of one mission, one after the other. Of hours there are thousands: only one is checked."""
+    """The documents of one mission, one after the other. An hour has thousands: only the last is checked."""
 
     def __init__(self, first: dict[str, Any]) -> None:
         self._first = self._last = first
@@ -69,7 +65,7 @@ class _Reading:
                 self._started.setdefault(step["path"], document["time"])
 
     def describe(self, origin: float) -> RecordedMission | None:
-        """The mission with times since `origin` (s, steady clock); None where this version cannot express it."""
+        """The mission with times since `origin` (s, steady clock); None if this version cannot express it."""
         try:
             last = _MISSION.validate_python(rewrite_document(self._last, TOPIC))
         except NoCounterpartError:
@@ -81,7 +77,7 @@ class _Reading:
             mission=last,
             document=self._document,
             started=[
-                StepStart(path=one.path, words=one.words, time=self._started[one.path] - origin)
+                MissionStepStart(path=one.path, words=one.words, time=self._started[one.path] - origin)
                 for one in last.steps
                 if one.path in self._started
             ],
