@@ -3,11 +3,14 @@
 import re
 from typing import Any
 
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, StorageState, expect
 
+from tests.browser.axe import AXE, faults
+from tests.browser.opening import PHONE, opened_page
 from tests.stack import Stack
 
 RUN_MS = 60_000
+PANEL = "'section[aria-label=Mission]'"
 TEXT = """
 format = 1
 name = "look"
@@ -35,10 +38,12 @@ def step(mission: Locator, path: str) -> Locator:
 
 def begin(page: Page, stack: Stack) -> int:
     """Records, and begins the mission. Returns the session."""
+    control = page.get_by_role("button", name=re.compile("^Control:"))
+    # A page that has just come takes control that is free, and would do so again.
+    expect(control).to_have_accessible_name("Control: this page")
     stack.calm()
     session: int = stack.api.post("/sessions", json={"name": "a mission"}).json()["id"]
     stack.api.post("/missions/start", json={"text": TEXT}, timeout=30.0).raise_for_status()
-    control = page.get_by_role("button", name=re.compile("^Control:"))
     control.click()
     page.get_by_role("button", name="Take control").click()
     expect(control).to_have_accessible_name("Control: this page")
@@ -55,6 +60,7 @@ def test_it_is_watched_taken_over_handed_back_and_replayed(page: Page, stack: St
     expect(step(mission, "2.1")).to_contain_text("It saw no blue for 1 s.")
     expect(step(mission, "4")).to_have_attribute("data-status", "waiting")
     expect(step(mission, "3")).to_contain_text(re.compile(r"\d+ / 60 s"))
+    assert faults_in_both_themes(page) == []
     # Commands that a mission refuses are not offered meanwhile.
     expect(page.get_by_role("region", name="Set points")).to_have_count(0)
 
@@ -101,10 +107,27 @@ def check_replay(page: Page, stack: Stack, session: int, started: dict[str, Any]
     expect(step(mission, "3")).to_have_attribute("data-status", "waiting")
 
 
-def test_end_stops_the_robot(page: Page, stack: Stack) -> None:
-    begin(page, stack)
-    mission = page.get_by_role("region", name="Mission")
-    mission.get_by_role("button", name="End").click()
-    expect(mission.get_by_role("status")).to_have_text("Ended")
-    expect(mission).to_contain_text("stopped")
-    expect(page.get_by_role("button", name="Hold to arm")).to_be_visible()
+def test_a_phone_shows_the_steps_and_ends_the_mission(
+    browser: Browser, stack: Stack, cookies: StorageState, _at_rest: None
+) -> None:
+    with opened_page(browser, stack, cookies, PHONE) as page:
+        begin(page, stack)
+        mission = page.get_by_role("region", name="Mission")
+        expect(step(mission, "1")).to_have_attribute("data-status", re.compile("running|done"))
+        assert faults_in_both_themes(page) == []
+        end = mission.get_by_role("button", name="End")
+        box = end.bounding_box()
+        assert box is not None
+        assert box["height"] >= 44
+        end.click()
+        expect(mission.get_by_role("status")).to_have_text("Ended")
+        expect(mission).to_contain_text("An operator ended it.")
+        expect(page.get_by_role("button", name="Hold to arm")).to_be_visible()
+
+
+def faults_in_both_themes(page: Page) -> list[str]:
+    """Violations of accessibility in the mission's panel, as axe-core finds them."""
+    page.evaluate(AXE.read_text())
+    dark = faults(page, f"{PANEL}, {{ resultTypes: ['violations'] }}")
+    page.evaluate("document.documentElement.dataset.theme = 'sunlight'")
+    return dark + faults(page, f"{PANEL}, {{ runOnly: ['color-contrast-enhanced'] }}")
