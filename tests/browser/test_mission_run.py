@@ -3,6 +3,7 @@
 import re
 from typing import Any
 
+import pytest
 from playwright.sync_api import Browser, Locator, Page, StorageState, expect
 
 from tests.browser.axe import AXE, faults
@@ -107,8 +108,9 @@ def check_replay(page: Page, stack: Stack, session: int, started: dict[str, Any]
     expect(step(mission, "3")).to_have_attribute("data-status", "waiting")
 
 
+@pytest.mark.usefixtures("_at_rest")
 def test_a_phone_shows_the_steps_and_ends_the_mission(
-    browser: Browser, stack: Stack, cookies: StorageState, _at_rest: None
+    browser: Browser, stack: Stack, cookies: StorageState
 ) -> None:
     with opened_page(browser, stack, cookies, PHONE) as page:
         begin(page, stack)

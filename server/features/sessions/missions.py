@@ -53,8 +53,8 @@ class _Reading:
 
     def continues_with(self, document: dict[str, Any]) -> bool:
         """True if this document is of the same mission; a restarted runtime counts from 1 again."""
-        same = document["number"] == self._first["number"]
-        return same and document["sequence"] > self._last["sequence"]
+        same: bool = document["number"] == self._first["number"]
+        return same and bool(document["sequence"] > self._last["sequence"])
 
     def add(self, document: dict[str, Any]) -> None:
         """Takes the next document."""
