@@ -5,6 +5,7 @@ COMPARE ?=
 LONG ?=
 FUZZ_SECONDS ?= 600
 KILLS ?= 100
+MISSIONS ?= 1000
 FAULTS ?= 100
 CHAOS_SECONDS ?= 3600
 CUTS ?= 10000
@@ -33,7 +34,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release \
+.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -155,6 +156,9 @@ robot-faults: setup-test host-firmware ## of these, the faults of robot and chip
 
 outages: setup-test ## of these, the processes that are killed or hang, in real time, two robots at once
 	@$(PYTHON) -m tests.proofs.injections $(FAULTS) processes
+
+missions: setup-test host-firmware ## end each leaf of a mission in each way, and swim a thousand random missions (MISSIONS=1000)
+	@nice $(PYTHON) -W ignore -m tests.proofs.missions $(MISSIONS)
 
 chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
 	@nice $(PYTHON) -m tests.proofs.chaos $(CHAOS_SECONDS)

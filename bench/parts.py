@@ -38,6 +38,7 @@ PARTS = {
         Part("emulator"),
         Part("physics"),
         Part("scenario"),
+        Part("mission"),
         Part("camera"),
         Part("vision"),
         Part("codec"),

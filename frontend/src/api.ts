@@ -93,6 +93,7 @@ export type FigureMark = Schemas['FigureMark'];
 export type WantedLines = Schemas['LinesQuery'];
 export type WantedComparison = Schemas['ComparisonQuery'];
 export type Timeline = Schemas['Timeline'];
+export type RecordedMission = Schemas['RecordedMission'];
 
 /** Blocks as on the live socket, and how many samples could not be given. */
 export interface Stretch {
@@ -194,6 +195,7 @@ export const api = {
   compare: (wanted: WantedComparison) => request<Comparison>('POST', '/compare', wanted, TIMEOUT_COMPARE),
   compareLines: (wanted: WantedLines) => request<ComparedLines>('POST', '/compare/lines', wanted, TIMEOUT_COMPARE),
   compareReport: (query: URLSearchParams) => `/api/compare/report?${query.toString()}`,
+  sessionMissions: (id: Session['id']) => request<RecordedMission[]>('GET', `/sessions/${id}/missions`),
   timeline: (id: Session['id']) => request<Timeline>('GET', `/sessions/${id}/timeline`),
   blocks: (id: Session['id'], start: number, end: number, history?: number) =>
     send(

@@ -24,6 +24,7 @@ function session(id: number, offset: number | null, names: readonly string[]): C
     duration: 10,
     state: 'complete',
     armed: [[2, 8]],
+    mission_steps: [],
     set_point_steps: 0,
     events: [],
     markers: [{ time: 3, kind: 'marker', severity: 'info', text: 'here' }],
@@ -34,7 +35,7 @@ function session(id: number, offset: number | null, names: readonly string[]): C
 }
 
 function comparison(names: readonly string[], sessions: Compared[]): Comparison {
-  const align = { by: 'armed', number: 1, marker: '' } as const;
+  const align = { by: 'armed', number: 1, marker: '', step: '' } as const;
   return { align, signals: names.map(signal), sessions, figures: [], differences: [] };
 }
 

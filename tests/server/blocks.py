@@ -82,3 +82,8 @@ def truth_block(first: int) -> Block:
     topic = BY_NAME["truth"]
     assert topic.kind is Kind.ROWS
     return Block.of(topic, 1, first, bytes(topic.row_bytes))
+
+
+def mission_block(first: int, *missions: documents.Mission) -> Block:
+    """Documents of missions."""
+    return Block.of(BY_NAME["mission"], len(missions), first, pack_documents(list(missions)))

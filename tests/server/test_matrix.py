@@ -122,6 +122,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/sessions/{session}/purge"): "operator",
     ("GET", "/api/sessions/{session}/thumbnail"): "viewer",
     ("GET", "/api/sessions/{session}/timeline"): "viewer",
+    ("GET", "/api/sessions/{session}/missions"): "viewer",
     ("GET", "/api/sessions/{session}/blocks"): "viewer",
     ("GET", "/api/sessions/{session}/signals"): "viewer",
     ("POST", "/api/sessions/{session}/markers"): "operator",

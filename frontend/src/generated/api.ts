@@ -2005,6 +2005,26 @@ export interface paths {
         patch: operations["changeMark"];
         trace?: never;
     };
+    "/api/sessions/{session}/missions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the missions of a session: document, last state, and when each step began
+         * @description List the missions of a session: document, last state, and when each step began.
+         */
+        get: operations["listSessionMissions"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/sessions/{session}/purge": {
         parameters: {
             query?: never;
@@ -2556,7 +2576,7 @@ export interface components {
              * @default start
              * @enum {string}
              */
-            by: "start" | "armed" | "set_point" | "marker";
+            by: "start" | "armed" | "set_point" | "marker" | "mission";
             /**
              * Marker
              * @description its text; the first match counts
@@ -2569,6 +2589,12 @@ export interface components {
              * @default 1
              */
             number: number;
+            /**
+             * Step
+             * @description of the mission, as “3.1.2”
+             * @default
+             */
+            step: string;
         };
         /**
          * ArmCommand
@@ -3296,6 +3322,11 @@ export interface components {
             id: number;
             /** Markers */
             markers: components["schemas"]["Moment"][];
+            /**
+             * Mission Steps
+             * @description the steps of its missions that began, each once, in the order of the document
+             */
+            mission_steps: components["schemas"]["MissionStepStart"][];
             /** Name */
             name: string;
             /**
@@ -3363,7 +3394,8 @@ export interface components {
              * @default {
              *       "by": "start",
              *       "marker": "",
-             *       "number": 1
+             *       "number": 1,
+             *       "step": ""
              *     }
              */
             align: components["schemas"]["Align"];
@@ -4231,7 +4263,8 @@ export interface components {
              * @default {
              *       "by": "start",
              *       "marker": "",
-             *       "number": 1
+             *       "number": 1,
+             *       "step": ""
              *     }
              */
             align: components["schemas"]["Align"];
@@ -4520,6 +4553,24 @@ export interface components {
          * @description Ends the steps of the mission that run now, as a success.
          */
         MissionSkipCommand: Record<string, never>;
+        /**
+         * MissionStepStart
+         * @description The first start of a mission's step.
+         */
+        MissionStepStart: {
+            /**
+             * Path
+             * @description from 1 along the branches, as "3.1.2"; empty for the first step
+             */
+            path: string;
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number;
+            /** Words */
+            words: string;
+        };
         /**
          * MissionStepState
          * @description A step of a running mission.
@@ -5227,6 +5278,33 @@ export interface components {
             name: string;
             /** Unit */
             unit: string;
+        };
+        /**
+         * RecordedMission
+         * @description A mission of a session. Times are s since the session's start.
+         */
+        RecordedMission: {
+            /**
+             * Document
+             * @description TOML; empty where the recording lacks its first and last state
+             */
+            document: string;
+            /** End */
+            end: number;
+            /**
+             * Late
+             * @description it had begun before the recording
+             */
+            late: boolean;
+            /** @description its last state; still running where the recording lacks its end */
+            mission: components["schemas"]["Mission"];
+            /** Start */
+            start: number;
+            /**
+             * Started
+             * @description the steps that began, in the order of the document
+             */
+            started: components["schemas"]["MissionStepStart"][];
         };
         /**
          * RecordedTopic
@@ -8164,6 +8242,7 @@ export interface operations {
                 by?: string;
                 number?: number;
                 marker?: string;
+                step?: string;
                 /** @description start of the range for the figures */
                 start?: number | null;
                 end?: number | null;
@@ -12501,6 +12580,64 @@ export interface operations {
             };
             /** @description Refused now */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listSessionMissions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecordedMission"][];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description This device has several such requests under way already */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -6,6 +6,7 @@ import {
   type CalibrationKept,
   type DebugLine,
   type Detection,
+  type Mission,
   type TunableParameter,
   type Parameters,
   type RobotEvent,
@@ -71,6 +72,8 @@ export class Live {
   /** the mask of the wanted colour, and the picture after the white balance; while somebody asked for them */
   mask = $state.raw<Picture | null>(null);
   balanced = $state.raw<Picture | null>(null);
+  /** the running mission, or the last one; null where none is known */
+  mission = $state.raw<Mission | null>(null);
   /** how the vision node looks */
   vision = $state.raw<VisionInForce | null>(null);
   serverError = $state('');
@@ -231,6 +234,7 @@ export class Live {
     this.picture = null;
     for (const name of WATCHED) this[name] = null;
     this.vision = null;
+    this.mission = null;
   }
 
   /** Take in what of a block is later than `after`. Returns the time up to which its topic is known (s), if any. */
@@ -270,6 +274,7 @@ export class Live {
     else if (topic === OTHER_TOPICS.calibration) this.calibration = last as CalibrationKept;
     else if (topic === OTHER_TOPICS.detection) this.#detect(documents, last as Detection);
     else if (topic === OTHER_TOPICS.vision) this.vision = last as VisionInForce;
+    else if (topic === OTHER_TOPICS.mission) this.mission = last as Mission;
     else if (topic === OTHER_TOPICS.debug) this.debug.append(documents as DebugLine[]);
     else if (topic === OTHER_TOPICS.event || topic === OTHER_TOPICS.notice) {
       this.events.append(documents as RobotEvent[]);

@@ -6,10 +6,13 @@ import Fins from './fins/Fins.svelte';
 import Horizon from './attitude/Horizon.svelte';
 import Navigation from './navigation/Navigation.svelte';
 import { ownTitle, type PanelKind, type Plain, type Size } from '../parts/panelKind';
+import { missionRun } from '../texts/mission_run';
 import { panels as texts } from '../texts/panels';
 
 /** What an operator looks at first comes with the page, the others when they are first shown. */
 const here = (component: Plain) => () => Promise.resolve({ default: component });
+
+export const loadMission = () => import('./mission/Mission.svelte');
 
 /** Every panel that comes with the program, but for charts, of which there may be several (docs/use/panels.md). */
 export const PANELS: readonly PanelKind[] = [
@@ -118,6 +121,14 @@ export const PANELS: readonly PanelKind[] = [
     size: { width: 7, height: 7 },
     least: { width: 5, height: 4 },
     tab: 'events',
+  },
+  {
+    name: 'mission',
+    title: missionRun.title,
+    about: missionRun.about,
+    load: loadMission,
+    size: { width: 8, height: 10 },
+    least: { width: 6, height: 6 },
   },
 ];
 

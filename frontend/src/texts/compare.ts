@@ -19,10 +19,13 @@ export const compare = {
   },
   align: {
     label: 'Align at',
-    by: { start: 'Start', armed: 'Arming', set_point: 'Set-point step', marker: 'Bookmark' },
+    by: { start: 'Start', armed: 'Arming', set_point: 'Set-point step', marker: 'Bookmark', mission: 'Mission step' },
     step: 'Set-point step',
     stepNumber: (number: number) => `no. ${number}`,
     bookmark: 'Bookmark',
+    missionStep: 'Mission step',
+    missionStart: 'Start of the mission',
+    missionPlace: (place: string, words: string) => `${place} ${words}`,
     shared: (bookmark: string, having: number, all: number) => `${bookmark} (in ${having} of ${all})`,
   },
   chips: {
@@ -56,6 +59,7 @@ export const compare = {
       armed: 's since arming',
       step: (number: number) => `s since step ${number} of the set point`,
       bookmark: (bookmark: string) => `s since “${bookmark}”`,
+      mission: (place: string) => (place === '' ? 's since the start of the mission' : `s since the start of the mission’s step ${place}`),
     },
     depth: 'Depth',
     fin: (fin: string) => `Fin, ${fin}`,

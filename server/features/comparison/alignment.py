@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from server.features.comparison.moments import ControlHistory
+from server.features.sessions.missions import RecordedMission
 from server.features.sessions.timeline import Moment
 from server.http.request_body import RequestBody
 
@@ -12,9 +13,13 @@ from server.http.request_body import RequestBody
 class Align(RequestBody):
     """The moment that becomes 0 s in every session."""
 
-    by: Literal["start", "armed", "set_point", "marker"] = "start"
+    by: Literal["start", "armed", "set_point", "marker", "mission"] = "start"
     number: Annotated[int, Field(ge=1, le=1000, description="number of the set-point step")] = 1
     marker: Annotated[str, Field(max_length=500, description="its text; the first match counts")] = ""
+    step: Annotated[
+        str,
+        Field(pattern=r"^(\d{1,3}(\.\d{1,3}){0,7})?$", description="of the mission, as “3.1.2”"),
+    ] = ""
 
 
 class NoMomentError(Exception):
@@ -22,7 +27,11 @@ class NoMomentError(Exception):
 
 
 def find_moment(
-    align: Align, history: ControlHistory, steps: list[tuple[float, float]], bookmarks: list[Moment]
+    align: Align,
+    history: ControlHistory,
+    steps: list[tuple[float, float]],
+    bookmarks: list[Moment],
+    missions: list[RecordedMission],
 ) -> float:
     """The moment, s since the session's start. Raises NoMomentError if the session lacks it."""
     if align.by == "armed":
@@ -41,7 +50,25 @@ def find_moment(
             if bookmark.text.strip().casefold() == sought:
                 return bookmark.time
         raise NoMomentError(f"This session has no bookmark “{align.marker}”.")
+    if align.by == "mission":
+        return _find_step(align.step, missions)
     return 0.0
+
+
+def _find_step(path: str, missions: list[RecordedMission]) -> float:
+    """The first start of the step of this path, of the first mission where it began."""
+    if not missions:
+        raise NoMomentError("No mission ran in this session.")
+    for one in missions:
+        for step in one.started:
+            if step.path == path:
+                if one.late and step.time <= one.start:
+                    raise NoMomentError(f"The mission “{one.mission.title}” began before this recording.")
+                return step.time
+    names = " and ".join(f"“{title}”" for title in dict.fromkeys(one.mission.title for one in missions))
+    if any(step.path == path for one in missions for step in one.mission.steps):
+        raise NoMomentError(f"Step {path} of the mission {names} never began.")
+    raise NoMomentError(f"The mission {names} has no step {path}.")
 
 
 def _too_few(sought: int, there: int) -> str:

@@ -20,6 +20,7 @@ from server.platform.terminal import echo
 )
 @click.option("--step", type=int, default=1, help="Which step of the set point, for --align set_point.")
 @click.option("--marker", help="Align at the bookmark of this text instead.")
+@click.option("--mission-step", metavar="PATH", help="Align at the start of a mission's step instead: 3.1.2.")
 @click.option(
     "--signals",
     multiple=True,
@@ -34,6 +35,7 @@ def report(
     align: str,
     step: int,
     marker: str | None,
+    mission_step: str | None,
     signals: tuple[str, ...],
 ) -> None:
     """Compare sessions in an HTML file."""
@@ -50,7 +52,8 @@ def report(
 
     if len(sessions) > SESSIONS_MAX:
         raise SetupError(f"A report holds {SESSIONS_MAX} sessions at most.")
-    moment = {"by": "marker" if marker else align, "number": step, "marker": marker or ""}
+    by = "marker" if marker else "mission" if mission_step is not None else align
+    moment = {"by": by, "number": step, "marker": marker or "", "step": mission_step or ""}
     try:
         query = ComparisonQuery(
             sessions=list(sessions),

@@ -39,6 +39,7 @@ from server.features.comparison.schemas import (
 from server.features.comparison.signals import Signal, list_signals, split
 from server.features.metrics.figure import Figure
 from server.features.metrics.series import Floats
+from server.features.sessions.missions import MissionStepStart, RecordedMission, read_missions
 from server.features.sessions.recording import Recording, reading_content
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Moment, read_events
@@ -60,6 +61,7 @@ class _AlignedSession:
     history: ControlHistory
     steps: list[tuple[float, float]]
     markers: list[Moment]
+    missions: list[RecordedMission]
     offset: float | None
     problem: str
 
@@ -79,6 +81,7 @@ class Comparer:
         self._samples = Samples()
         self._threads = ThreadPoolExecutor(THREADS, "compare")
         self._histories: ResultCache[ControlHistory] = ResultCache(RESULTS_MAX)
+        self._missions: ResultCache[list[RecordedMission]] = ResultCache(RESULTS_MAX)
         self._measured: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
         self._counted: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
 
@@ -133,11 +136,12 @@ class Comparer:
         set_point = found.get(SET_POINT)
         steps = set_point_steps(set_point, history.armed) if set_point is not None else []
         bookmarks = read_bookmarks(self._store, recording)
+        missions = self._missions.compute(recording.row, None, lambda: read_missions(recording))
         try:
-            offset, problem = find_moment(query.align, history, steps, bookmarks), ""
+            offset, problem = find_moment(query.align, history, steps, bookmarks, missions), ""
         except NoMomentError as missing:
             offset, problem = None, str(missing)
-        return _AlignedSession(recording, history, steps, bookmarks, offset, problem)
+        return _AlignedSession(recording, history, steps, bookmarks, missions, offset, problem)
 
     def _compare_one(self, one: _AlignedSession, query: ComparisonQuery) -> Compared:
         row = one.row
@@ -152,6 +156,7 @@ class Comparer:
             problem=one.problem,
             armed=[(span.start, span.end) for span in one.history.armed],
             set_point_steps=len(one.steps),
+            mission_steps=_first_starts(one.missions),
             events=read_events(one.recording, EVENTS_MAX),
             markers=one.markers,
             series=self._draw(one, query),
@@ -196,6 +201,14 @@ def _range(one: _AlignedSession, query: ComparisonQuery) -> EvaluationRange:
         return EvaluationRange(() if one.offset is None else (_shift(query.range, one.offset),))
     anchor = one.offset if query.align.by in ("armed", "set_point") else None
     return EvaluationRange(one.history.armed, anchor)
+
+
+def _first_starts(missions: list[RecordedMission]) -> list[MissionStepStart]:
+    found: dict[str, MissionStepStart] = {}
+    for one in missions:
+        for step in one.started:
+            found.setdefault(step.path, step)
+    return list(found.values())
 
 
 def _shift(part: TimeRange, offset: float) -> Span:

@@ -59,6 +59,8 @@ def _moment(comparison: Comparison) -> str:
     align = comparison.align
     if align.by == "set_point":
         return f"step {align.number} of the set point"
+    if align.by == "mission":
+        return f"the start of the mission’s step {align.step}" if align.step else "the start of the mission"
     return ALIGNED.get(align.by) or f"the bookmark “{align.marker}”"
 
 

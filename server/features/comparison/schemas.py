@@ -8,6 +8,7 @@ from server.features.comparison.alignment import Align
 from server.features.comparison.differences import Difference
 from server.features.comparison.signals import Signal
 from server.features.metrics.figure import Figure, FigureMeaning
+from server.features.sessions.missions import MissionStepStart
 from server.features.sessions.timeline import Moment
 from server.http.request_body import RequestBody
 from server.platform.models import IDENTIFIER_MAX
@@ -57,6 +58,7 @@ class ReportQuery(BaseModel):
     by: str = "start"
     number: int = 1
     marker: str = ""
+    step: str = ""
     start: FiniteFloat | None = Field(default=None, description="start of the range for the figures")
     end: FiniteFloat | None = None
     view_start: FiniteFloat | None = Field(
@@ -70,7 +72,7 @@ class ReportQuery(BaseModel):
             {
                 "sessions": [int(one) for one in self.sessions.split(",")],
                 "signals": [name for name in self.signals.split(",") if name],
-                "align": {"by": self.by, "number": self.number, "marker": self.marker},
+                "align": {"by": self.by, "number": self.number, "marker": self.marker, "step": self.step},
                 "points": REPORT_POINTS,
                 "range": _range(self.start, self.end),
             }
@@ -114,6 +116,9 @@ class Compared(SessionLines):
     state: str
     armed: list[tuple[float, float]] = Field(description="from and to, s since its start")
     set_point_steps: int = Field(description="number of changes of the set point while armed")
+    mission_steps: list[MissionStepStart] = Field(
+        description="the steps of its missions that began, each once, in the order of the document"
+    )
     events: list[Moment]
     markers: list[Moment]
     range: list[tuple[float, float]] = Field(description="range of the figures")

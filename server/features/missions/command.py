@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 MISSION = click.argument("file", metavar="MISSION")
 POLL_SECONDS = 0.5
+SILENT_SECONDS = 2.0
+"""A running mission tells its state twice as often."""
 
 
 @click.group()
@@ -121,10 +123,17 @@ def run(settings: Settings, file: str) -> int:
                     if state["phase"] not in ("running", "paused"):
                         echo(f"{state['phase']}: {state['text']}")
                         return 0 if state["phase"] == "succeeded" else 1
+                    _require_swimming(state, ask(folder, "GET", "/robot"))
                 sleep(POLL_SECONDS)
         except KeyboardInterrupt:
             ask(folder, "POST", "/robot/commands/mission_end")
             raise SetupError("The mission was ended.") from None
+
+
+def _require_swimming(state: dict[str, Any], robot: dict[str, Any]) -> None:
+    """Raises SetupError where the robot was disarmed, and the mission told no end: its runtime was killed."""
+    if not robot["armed"] and robot["time"] > state["time"] + SILENT_SECONDS:
+        raise SetupError("The mission broke off: the runtime was restarted. The robot is disarmed.")
 
 
 def _print_changes(state: dict[str, Any], said: set[tuple[str, str, int]]) -> None:

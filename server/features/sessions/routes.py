@@ -10,6 +10,7 @@ from fastapi.responses import Response
 from robot_runtime.clock import Clock
 from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.missions import RecordedMission, read_missions
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.recording import Recording, reading_content
 from server.features.sessions.replay import HISTORY_MAX, read_blocks_between
@@ -192,6 +193,13 @@ def get_timeline(recording: OpenRecording) -> Timeline:
     """Return a session's events, bookmarks and gaps."""
     with reading_content(recording.row):
         return read_timeline(recording)
+
+
+@router.operation("GET /sessions/{session}/missions", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
+def list_session_missions(_: ReadingTurn, recording: OpenRecording) -> list[RecordedMission]:
+    """List the missions of a session: document, last state, and when each step began."""
+    with reading_content(recording.row):
+        return read_missions(recording)
 
 
 @router.operation(

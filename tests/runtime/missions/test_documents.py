@@ -118,6 +118,35 @@ def test_a_document_of_any_size_is_refused_in_bounded_time() -> None:
     assert "is larger than" in problems(mission(*["{ do = 'surface' }"] * 10_000))[0]
     fork = {f"m{i}": mission(*[f"{{ do = 'call', mission = 'm{i + 1}' }}"] * 9) for i in range(8)}
     assert any("has more than 200 steps" in one for one in problems(fork["m0"], fork))
+    # As deep as the bytes allow.
+    steep = "{ do = 'try', steps = [" * 2_200 + DIVE + "] }" * 2_200
+    assert problems(mission(steep)) == ["the mission is not TOML: it is nested too deeply"]
+    ring = {f"m{i}": fork["m0"].replace("'m1'", f"'m{(i + 1) % 3}'") for i in range(3)}
+    assert any("which would call itself" in one for one in problems(ring["m0"], ring))
+
+
+@pytest.mark.parametrize(
+    ("step", "said"),
+    [
+        ("{ do = 'hold', seconds = 3601 }", "seconds is 3601; it must lie between 0.1 and 3600"),
+        ("{ do = 'hold', seconds = -1 }", "seconds is -1; it must lie between 0.1 and 3600"),
+        ("{ do = 'hold', seconds = nan }", "seconds is nan; it must be a number"),
+        ("{ do = 'hold', seconds = true }", "seconds is True; it must be a number"),
+        ("{ do = 'dive', depth = inf }", "depth is inf; it must be a number"),
+        (
+            "{ do = 'wait_for', sees = 'light', timeout = 0 }",
+            "timeout is 0; it must lie between 0.1 and 3600",
+        ),
+        ("{ do = 'timeout', seconds = 1e9, steps = [7] }", "seconds is 1000000000.0; it must lie between"),
+        (
+            "{ do = 'repeat', times = 1001, steps = [{ do = 'surface' }] }",
+            "times is 1001; it must lie between",
+        ),
+        ("{ do = 7 }", "do is 7; it must be one of"),
+    ],
+)
+def test_values_beyond_their_limits_are_refused_at_their_step(step: str, said: str) -> None:
+    assert any(one.startswith("step 2: ") and said in one for one in problems(mission(DIVE, step)))
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from sqlalchemy import insert
 
 from server.features.comparison.comparer import Comparer
 from server.features.comparison.definitions import FIGURES
+from server.features.comparison.report import write_report
 from server.features.comparison.schemas import Comparison, ComparisonQuery
 from server.features.sessions.recording import Recording
 from server.platform.models import BookmarkRow, Gap
@@ -26,6 +27,7 @@ from tests.server.features.comparison.dives import (
     dive,
     record,
 )
+from tests.server.features.sessions.missions import DIVE_AT, MARK_AT, mission_blocks
 from tests.server.serving import Served, play
 
 DEPTH = ["depth.depth", "control.set_point"]
@@ -168,6 +170,31 @@ def test_a_session_without_the_moment_is_listed_with_the_reason(
     )
 
 
+def test_a_step_of_a_mission_is_a_moment_too(store: Store, settings: Settings, session: int) -> None:
+    swum = record(store, settings, [*dive(), *mission_blocks()], name="swum")
+    for path, time in (("2.1", MARK_AT), ("", DIVE_AT)):
+        one, other = compare(store, swum, session, align={"by": "mission", "step": path}).sessions
+        assert (one.offset, one.problem) == (pytest.approx(time - STARTED_STEADY), "")
+        assert other.problem == "No mission ran in this session."
+    assert [(one.path, one.words) for one in one.mission_steps] == [
+        ("", "Sequence"),
+        ("1", "Dive to 0.6 m"),
+        ("2", "Repeat 2 times"),
+        ("2.1", "Mark “here”"),
+    ]
+    late = record(store, settings, [*dive(), *mission_blocks(first=1)])
+    problems = [
+        (swum, "3", "Step 3 of the mission “Look east” never began."),
+        (swum, "7.1", "The mission “Look east” has no step 7.1."),
+        (late, "1", "The mission “Look east” began before this recording."),
+    ]
+    for number, path, words in problems:
+        (found,) = compare(store, number, align={"by": "mission", "step": path}).sessions
+        assert (found.offset, found.problem, found.series) == (None, words, {})
+    align = {"by": "mission", "step": "2.1"}
+    assert "the start of the mission’s step 2.1" in write_report(compare(store, swum, align=align))
+
+
 def test_differences_between_sessions_are_listed(store: Store, settings: Settings, session: int) -> None:
     settings.config.write_text('[robot]\nname = "tested"\n[control]\nrate = 20.0\n', encoding="utf-8")
     other = record(store, settings, dive("pid", {"kp": 6.0}), name="other")
@@ -222,6 +249,7 @@ BAD: list[tuple[dict[str, Any], int, str]] = [
     ({"sessions": [1] * 13, "signals": DEPTH}, 422, "sessions"),
     ({"sessions": [1], "signals": ["depth"]}, 422, "signals"),
     ({"sessions": [1], "signals": DEPTH, "align": {"by": "guess"}}, 422, "align"),
+    ({"sessions": [1], "signals": DEPTH, "align": {"by": "mission", "step": "2.x"}}, 422, "step"),
     ({"sessions": [1], "signals": DEPTH, "points": 1}, 422, "points"),
     ({"sessions": [1], "signals": DEPTH, "colour": "red"}, 422, "colour"),
 ]

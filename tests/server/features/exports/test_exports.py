@@ -35,6 +35,7 @@ from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.exports.recordings import record
+from tests.server.features.sessions.missions import TEXT, mission_blocks
 
 AWKWARD = 'say "hi", then\nbreak; é, nan'
 
@@ -142,6 +143,27 @@ def test_parquet_keeps_numbers_types_and_units(store: Store, session: int) -> No
     utc = pandas.Timestamp(depth.column("utc")[0].as_py())
     row = find_row(store, session)
     assert utc.timestamp() == pytest.approx(row.started + 0.5, abs=1e-5)
+
+
+def test_a_mission_is_exported_with_its_document_and_every_change(store: Store, settings: Settings) -> None:
+    blocks = mission_blocks()
+    told = [document for block in blocks for document in json.loads(block.payload)]
+    session = record(store, settings, blocks)
+    lines = [json.loads(one) for one in write(store, session, format="jsonl").getvalue().splitlines()]
+    assert [one["steps"] for one in lines] == [one["steps"] for one in told]
+    assert [one["document"] for one in lines] == [TEXT, "", "", "", "", TEXT]
+    messages = [
+        json.loads(one.data)
+        for _, _, one in make_reader(write(store, session, format="mcap")).iter_messages(topics=["/mission"])
+    ]
+    assert [one["steps"] for one in messages] == [one["steps"] for one in told]
+    parquet = zipfile.ZipFile(write(store, session, format="parquet")).read("mission.parquet")
+    table = pyarrow.parquet.read_table(io.BytesIO(parquet))
+    assert [json.loads(one) for one in table.column("steps").to_pylist()] == [one["steps"] for one in told]
+    csv = zipfile.ZipFile(write(store, session, format="csv")).read("mission.csv")
+    assert [json.loads(one) for one in pandas.read_csv(io.BytesIO(csv))["steps"]] == [
+        one["steps"] for one in told
+    ]
 
 
 def test_parquet_without_its_package_names_the_installation(monkeypatch: pytest.MonkeyPatch) -> None:

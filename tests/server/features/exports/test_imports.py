@@ -33,6 +33,7 @@ from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Reader, Store, StoreError
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.exports.recordings import record
+from tests.server.features.sessions.missions import mission_blocks
 from tests.server.serving import serve
 
 Members = dict[str, bytes]
@@ -41,7 +42,10 @@ Members = dict[str, bytes]
 @pytest.fixture
 def session(store: Store, settings: Settings) -> int:
     number = record(
-        store, settings, [depth_block(0, 50), state_block(0)], [depth_block(60, 50), debug_block(0, "é")]
+        store,
+        settings,
+        [depth_block(0, 50), state_block(0)],
+        [depth_block(60, 50), debug_block(0, "é"), *mission_blocks()],
     )
 
     def add(connection: Connection) -> None:
@@ -89,7 +93,7 @@ def test_a_session_imported_elsewhere_is_unchanged(
         async with serve(replace(settings, data=folder)) as served:
             answer = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
             assert answer.status_code == 201, answer.text
-            assert (answer.json()["id"], answer.json()["samples"]) == (2, 102)
+            assert (answer.json()["id"], answer.json()["samples"]) == (2, 108)
             again = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
             assert again.status_code == 409
             assert "is here already, as number 2" in again.json()["detail"]

@@ -129,6 +129,7 @@ export function axisTitle({ align }: Comparison): string {
   if (align.by === 'armed') return texts.charts.since.armed;
   if (align.by === 'set_point') return texts.charts.since.step(align.number);
   if (align.by === 'marker') return texts.charts.since.bookmark(align.marker);
+  if (align.by === 'mission') return texts.charts.since.mission(align.step);
   return texts.charts.since.start;
 }
 

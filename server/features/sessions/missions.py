@@ -1,0 +1,84 @@
+"""Missions in a recording: how each ended, its document, and when its steps began."""
+
+from typing import Any
+
+from pydantic import BaseModel, Field, TypeAdapter
+
+from robot_runtime.contract.documents import Mission
+from robot_runtime.contract.topics import BY_NAME
+from server.features.sessions.recording import Recording
+from server.features.sessions.upgrade import NoCounterpartError, rewrite_document
+
+TOPIC = BY_NAME["mission"]
+_MISSION = TypeAdapter(Mission)
+
+
+class MissionStepStart(BaseModel):
+    """The first start of a mission's step."""
+
+    path: str = Field(description='from 1 along the branches, as "3.1.2"; empty for the first step')
+    words: str
+    time: float = Field(description="s since the session's start")
+
+
+class RecordedMission(BaseModel):
+    """A mission of a session. Times are s since the session's start."""
+
+    start: float
+    end: float
+    late: bool = Field(description="it had begun before the recording")
+    mission: Mission = Field(description="its last state; still running where the recording lacks its end")
+    document: str = Field(description="TOML; empty where the recording lacks its first and last state")
+    started: list[MissionStepStart] = Field(description="the steps that began, in the order of the document")
+
+
+def read_missions(recording: Recording) -> list[RecordedMission]:
+    """The missions of a session in order of time. Raises StoreError, RecordingError."""
+    found: list[_Reading] = []
+    for document in recording.documents(TOPIC.name) if TOPIC.name in recording.topics else ():
+        if not found or not found[-1].continues_with(document):
+            found.append(_Reading(document))
+        found[-1].add(document)
+    described = (one.describe(recording.row.started_steady) for one in found)
+    return [one for one in described if one is not None]
+
+
+class _Reading:
+    """The documents of one mission, one after the other. An hour has thousands: only the last is checked."""
+
+    def __init__(self, first: dict[str, Any]) -> None:
+        self._first = self._last = first
+        self._document = ""
+        self._started: dict[str, float] = {}
+
+    def continues_with(self, document: dict[str, Any]) -> bool:
+        """True if this document is of the same mission; a restarted runtime counts from 1 again."""
+        same: bool = document["number"] == self._first["number"]
+        return same and bool(document["sequence"] > self._last["sequence"])
+
+    def add(self, document: dict[str, Any]) -> None:
+        """Takes the next document."""
+        self._last = document
+        self._document = document["document"] or self._document
+        for step in document["steps"]:
+            if step["status"] != "waiting":
+                self._started.setdefault(step["path"], document["time"])
+
+    def describe(self, origin: float) -> RecordedMission | None:
+        """The mission with times since `origin` (s, steady clock); None if this version cannot express it."""
+        try:
+            last = _MISSION.validate_python(rewrite_document(self._last, TOPIC))
+        except NoCounterpartError:
+            return None
+        return RecordedMission(
+            start=self._first["time"] - origin,
+            end=last.time - origin,
+            late=self._first["sequence"] > 0,
+            mission=last,
+            document=self._document,
+            started=[
+                MissionStepStart(path=one.path, words=one.words, time=self._started[one.path] - origin)
+                for one in last.steps
+                if one.path in self._started
+            ],
+        )

@@ -1,0 +1,47 @@
+"""`mucat mission run` beside a running robot: it follows a mission to its end, or says that it broke off."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.missions.water import mission
+from tests.stack import Stack
+
+SHORT = mission("{ do = 'hold', seconds = 1, within = 9 }", "{ do = 'surface' }")
+LONG = mission("{ do = 'hold', seconds = 150, within = 9 }")
+
+
+def start(stack: Stack, folder: Path, text: str) -> "subprocess.Popen[str]":
+    """Starts the command on a mission of this text."""
+    file = folder / "test.toml"
+    file.write_text(text)
+    environment = {**os.environ, "MUCAT_DATA": str(stack.data), "PYTHONUNBUFFERED": "1"}
+    command = [str(stack.program), "mission", "run", str(file)]
+    return subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+
+
+@pytest.mark.stack
+def test_a_mission_is_followed_to_its_end(shared_stack: Stack, tmp_path: Path) -> None:
+    with start(shared_stack, tmp_path, SHORT) as command:
+        said, _ = command.communicate(timeout=60)
+    assert command.returncode == 0, said
+    assert "test begins." in said
+    assert "1 Hold the depth for 1 s: running" in said
+    assert said.splitlines()[-1] == "succeeded: It is done."
+    assert not shared_stack.api.get("/robot").json()["armed"]
+
+
+@pytest.mark.stack
+def test_a_killed_runtime_ends_it_with_words(shared_stack: Stack, tmp_path: Path) -> None:
+    with start(shared_stack, tmp_path, LONG) as command:
+        assert command.stdout is not None
+        assert any("running" in line for line in command.stdout)
+        shared_stack.part("runtime").kill()
+        said, _ = command.communicate(timeout=60)
+    assert command.returncode == 1, said
+    assert "runtime" in said
+    shared_stack.wait_ready()

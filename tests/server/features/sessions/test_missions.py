@@ -1,0 +1,59 @@
+"""The missions of a session: document, last state, and when each step began."""
+
+from contextlib import closing
+
+import pytest
+
+from server.features.sessions.missions import read_missions
+from server.features.sessions.recording import Recording
+from server.features.sessions.session import find_row
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.features.comparison.dives import STARTED_STEADY, dive, record
+from tests.server.features.sessions.missions import (
+    DIVE_AT,
+    MARK_AT,
+    MISSION_END,
+    REPEAT_AT,
+    TEXT,
+    mission_blocks,
+)
+from tests.server.serving import Served, play
+
+
+def test_each_mission_is_told_with_its_document_end_and_starts(store: Store, settings: Settings) -> None:
+    # A runtime that restarts counts from 1 again.
+    session = record(store, settings, [*dive(), *mission_blocks(), *mission_blocks(shift=3.5)])
+    first, second = read_missions(Recording(store, find_row(store, session)))
+    assert (first.start, first.end) == (DIVE_AT - STARTED_STEADY, MISSION_END - STARTED_STEADY)
+    assert (first.mission.phase, first.mission.text) == ("failed", "Step 2.1, mark: It was at 0.20 m.")
+    assert (first.document, first.late) == (TEXT, False)
+    assert {one.path: one.time + STARTED_STEADY for one in first.started} == {
+        "": DIVE_AT,
+        "1": DIVE_AT,
+        "2": REPEAT_AT,
+        "2.1": MARK_AT,
+    }
+    assert second.start == pytest.approx(first.start + 3.5)
+
+
+def test_a_recording_that_begins_in_a_mission_says_so(store: Store, settings: Settings) -> None:
+    session = record(store, settings, [*dive(), *mission_blocks(first=1)[:-1]])
+    (one,) = read_missions(Recording(store, find_row(store, session)))
+    assert (one.late, one.document, one.mission.phase) == (True, "", "paused")
+    assert read_missions(Recording(store, find_row(store, record(store, settings, dive())))) == []
+
+
+def test_the_page_gets_the_missions_of_a_session(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        session = record(store, settings, [*dive(), *mission_blocks()])
+
+    async def scenario(served: Served) -> None:
+        (one,) = (await served.api.get(f"/sessions/{session}/missions")).json()
+        assert one["document"] == TEXT
+        assert one["mission"]["steps"][1]["note"] == "east"
+        assert (await served.api.get("/sessions/999/missions")).status_code == 404
+
+    play(settings, scenario)
