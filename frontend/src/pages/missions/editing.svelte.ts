@@ -59,7 +59,7 @@ export class MissionEditing {
 
   /** in words, of each step by its place, where the text is valid */
   readonly longest = $derived<Readonly<Record<string, string>>>(
-    Object.fromEntries((this.written.current ? (this.written.check?.summary?.steps ?? []) : []).map(({ path, longest }) => [path, time(longest)])),
+    Object.fromEntries((this.written.current ? (this.written.check?.summary?.steps ?? []) : []).filter(({ longest }) => longest >= 1).map(({ path, longest }) => [path, time(Math.round(longest))])),
   );
 
   constructor() {
