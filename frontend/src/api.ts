@@ -42,6 +42,12 @@ export type ScenarioEvent = Schemas['ScenarioEvent'];
 export type ScenarioCheck = Schemas['ScenarioCheck'];
 export type ScenarioState = Schemas['ScenarioState'];
 export type ScenarioStart = Schemas['ScenarioStart'];
+export type MissionText = Schemas['MissionText'];
+export type MissionVersion = Schemas['MissionVersion'];
+export type MissionCheck = Schemas['MissionCheck'];
+export type MissionNodeKind = Schemas['MissionNodeKind'];
+export type MissionTrial = Schemas['MissionTrial'];
+export type MissionTrialResult = Schemas['MissionTrialResult'];
 export type VisionSettings = Commands['vision_settings'];
 export type { ColourRange } from './generated/topics';
 export type PickedColour = Schemas['PickedColour'];
@@ -108,6 +114,8 @@ const TIMEOUT_PAST = 20_000;
 const TIMEOUT_CHECK = 15_000;
 /** ms; a board may have to be handed over first, or to get its firmware back */
 const TIMEOUT_COMM_TEST = 120_000;
+/** ms; the robot is armed first */
+const TIMEOUT_MISSION = 30_000;
 /** ms; hours of recordings are read */
 const TIMEOUT_COMPARE = 60_000;
 
@@ -223,6 +231,16 @@ export const api = {
   checkScenario: (text: string) => request<ScenarioCheck>('POST', '/scenarios/check', { text }),
   startScenario: (start: ScenarioStart) => request<Schemas['ScenarioStarted']>('POST', '/scenarios/runs', start),
   cancelScenario: () => command('POST', '/scenarios/cancel'),
+  missions: () => request<MissionText[]>('GET', '/missions'),
+  missionNodes: () => request<MissionNodeKind[]>('GET', '/missions/nodes'),
+  missionVersions: (name: MissionText['name']) => request<MissionVersion[]>('GET', `/missions/versions/${name}`),
+  checkMission: (text: string) => request<MissionCheck>('POST', '/missions/check', { text }),
+  keepMission: (text: string) => request<Schemas['MissionSummary']>('POST', '/missions', { text }),
+  deleteMission: (name: MissionText['name']) => command('DELETE', `/missions/${name}`),
+  startMission: (text: string) => orderFor<Schemas['MissionSummary']>('POST', '/missions/start', { text }, TIMEOUT_MISSION),
+  missionTrial: () => request<MissionTrial>('GET', '/missions/trial'),
+  startMissionTrial: (text: string, seeds: number) => request<MissionTrial>('POST', '/missions/trial', { text, seeds }),
+  cancelMissionTrial: () => command('POST', '/missions/trial/cancel'),
   layouts: () => request<KeptLayout[]>('GET', '/layouts'),
   layout: (id: KeptLayout['id']) => request<Schemas['LayoutDetails']>('GET', `/layouts/${id}`),
   saveLayout: (name: string, document: object) => request<KeptLayout>('POST', '/layouts', { name, document }),

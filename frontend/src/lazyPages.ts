@@ -6,6 +6,7 @@ type Load = () => Promise<{ default: Component }>;
 
 export const lazyPages = {
   tune: () => import('./pages/tune/Tune.svelte'),
+  missions: () => import('./pages/missions/Missions.svelte'),
   scenarios: () => import('./pages/scenarios/Scenarios.svelte'),
   'comm-tests': () => import('./pages/comm_tests/CommTests.svelte'),
   sessions: () => import('./pages/sessions/Sessions.svelte'),

@@ -2,7 +2,7 @@ import { createContext } from 'svelte';
 import { pages } from './texts/pages';
 
 /** The pages that have a tab. */
-export const PAGES = ['operate', 'tune', 'scenarios', 'comm-tests', 'sessions', 'system'] as const;
+export const PAGES = ['operate', 'tune', 'missions', 'scenarios', 'comm-tests', 'sessions', 'system'] as const;
 const ALL = [...PAGES, 'replay', 'people', 'bring-up'] as const;
 
 export type PageName = (typeof ALL)[number] | 'unknown';

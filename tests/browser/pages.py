@@ -29,6 +29,8 @@ PAGES = (
     View("tune-parameters", "tune/parameters", "Tune"),
     View("tune-craft", "tune/craft", "Tune"),
     View("tune-vision", "tune/vision", "Tune"),
+    View("missions", "missions", "Library"),
+    View("mission", "missions/edit/two_depths", "Two depths"),
     View("scenarios", "scenarios", "New run"),
     View("comm-tests", "comm-tests", "Runs"),
     View("comm-test", "comm-tests/runs/{run}", "All cells"),

@@ -53,6 +53,11 @@ class DiveSite:
         assert self._runtime is not None
         return list(self._runtime.asked)
 
+    def refuse(self, reason: str | None) -> None:
+        """Has every command to the robot but STOP refused with this reason; None: accepted again."""
+        assert self._runtime is not None
+        self._runtime.refusal = reason
+
     def __enter__(self) -> Self:
         self._thread.start()
         assert self._started.wait(SECONDS), "the server does not start"

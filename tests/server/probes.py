@@ -173,6 +173,9 @@ PROBES: dict[tuple[str, str], Probe] = {
     ),
     ("POST", "/api/comm-tests/cancel"): Probe(204),
     ("POST", "/api/missions"): Probe(422, {"text": "?"}, words="TOML", because="There would be more."),
+    ("DELETE", "/api/missions/{name}"): Probe(
+        404, named={"name": "none"}, words="no own mission", because="There is none."
+    ),
     ("GET", "/api/missions/versions/{name}"): Probe(
         404, named={"name": "none"}, words="no own mission", because="There is none."
     ),

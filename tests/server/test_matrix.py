@@ -151,6 +151,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/comm-tests/tables"): "viewer",
     ("GET", "/api/missions"): "viewer",
     ("POST", "/api/missions"): "operator",
+    ("DELETE", "/api/missions/{name}"): "operator",
     ("GET", "/api/missions/versions/{name}"): "viewer",
     ("GET", "/api/missions/nodes"): "viewer",
     ("POST", "/api/missions/check"): "viewer",

@@ -7,6 +7,7 @@ export const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Reco
   'tune/parameters': 'use/tune/#change-parameters',
   'tune/craft': 'use/identify/',
   'tune/vision': 'use/vision/',
+  missions: 'use/missions/',
   scenarios: 'use/scenarios/',
   'comm-tests': 'use/comm-tests/',
   sessions: 'use/sessions/',

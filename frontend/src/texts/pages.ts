@@ -2,6 +2,7 @@
 export const pages = {
   operate: 'Operate',
   tune: 'Tune',
+  missions: 'Missions',
   scenarios: 'Scenarios',
   'comm-tests': 'Comm tests',
   sessions: 'Sessions',

@@ -3,6 +3,7 @@
 import json
 import logging
 from pathlib import Path
+from shutil import rmtree
 
 from pydantic import JsonValue
 
@@ -98,6 +99,16 @@ class MissionLibrary:
         except OSError as problem:
             raise RefusedError(explain_write_error(problem, path)) from problem
         return mission
+
+    def delete(self, name: str) -> None:
+        """Deletes one's own mission with its versions. Raises UnknownMissionError, RefusedError."""
+        if name in SHIPPED:
+            raise RefusedError(f"{name} ships with the program and stays.")
+        self.versions(name)
+        try:
+            rmtree(self._own / name)
+        except OSError as problem:
+            raise RefusedError(f"{self._own / name} cannot be deleted: {problem.strerror}.") from problem
 
     def _describe(self, name: str, text: str) -> MissionText:
         """A mission; the title of an invalid one is its name."""

@@ -52,6 +52,12 @@ async def keep_mission(settings: Provided[Settings], body: MissionBody) -> Missi
     return summarize_mission(await run_in_threadpool(_library(settings).keep, body.text))
 
 
+@router.operation("DELETE /{name}", Need.OPERATOR, UnknownMissionError, {409: "It is shipped"}, status_code=204)
+def delete_mission(settings: Provided[Settings], name: str) -> None:
+    """Delete a mission of the data folder with all its versions."""
+    _library(settings).delete(name)
+
+
 @router.operation("GET /versions/{name}", Need.VIEWER, UnknownMissionError)
 def list_mission_versions(settings: Provided[Settings], name: str) -> list[MissionVersion]:
     """List the versions of a mission of the data folder, the newest first."""

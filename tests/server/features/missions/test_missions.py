@@ -39,6 +39,20 @@ def test_a_mission_is_kept_with_its_versions(tmp_path: Path) -> None:
     assert len(library.versions("test")) == VERSIONS_MAX
 
 
+def test_a_mission_of_ones_own_is_deleted_with_its_versions(tmp_path: Path) -> None:
+    library = MissionLibrary(tmp_path / "missions", MissionLimits())
+    library.keep(OWN)
+    library.keep(mission(HOLD, DIVE))
+    library.delete("test")
+    assert list(library.texts()) == list(SHIPPED)
+    for name in ("test", "../missions", ""):
+        with pytest.raises(UnknownMissionError):
+            library.delete(name)
+    with pytest.raises(RefusedError, match="ships with the program"):
+        library.delete("two_depths")
+    assert (tmp_path / "missions").is_dir()
+
+
 def test_what_is_not_valid_or_ships_is_not_kept(tmp_path: Path) -> None:
     library = MissionLibrary(tmp_path / "missions", MissionLimits(depth=0.5))
     with pytest.raises(ConfigError, match=r"goes to 0.6 m, and the depth is limited to 0.5 m"):
