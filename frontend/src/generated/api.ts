@@ -3937,7 +3937,7 @@ export interface components {
         Health: {
             /**
              * Parts
-             * @description server, database, runtime, link, board, simulator, scene, camera
+             * @description server, database, runtime, link, board, simulator, scene, camera, and events where `[events]` in robot.toml names a broker or an address
              */
             parts: components["schemas"]["PartHealth"][];
             /** Robot */
@@ -5012,7 +5012,7 @@ export interface components {
              * Name
              * @enum {string}
              */
-            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene" | "camera";
+            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene" | "camera" | "events";
             /**
              * State
              * @enum {string}
