@@ -3754,6 +3754,13 @@ export interface components {
              */
             columns?: string[] | null;
             /**
+             * Compression
+             * @description of the chunks of mcap; zstd and lz4 need their packages
+             * @default none
+             * @enum {string}
+             */
+            compression: "none" | "zstd" | "lz4";
+            /**
              * End
              * @description s since the session's start; null for its end
              */
@@ -4782,6 +4789,13 @@ export interface components {
              * @description such as depth.depth or motor.angle_0; null for all. For csv-grid alone
              */
             columns?: string[] | null;
+            /**
+             * Compression
+             * @description of the chunks of mcap; zstd and lz4 need their packages
+             * @default none
+             * @enum {string}
+             */
+            compression: "none" | "zstd" | "lz4";
             /**
              * End
              * @description s since the session's start; null for its end
