@@ -135,7 +135,7 @@ steps = [
 def test_a_mission_runs_to_its_end_and_is_tried_in_simulated_water(shared_stack: Stack) -> None:
     robot = Robot(shared_stack.url, make_token(shared_stack, "operate"))
     with robot.control() as control:
-        with pytest.raises(RobotError, match="title is missing"):
+        with pytest.raises(RobotError, match="mission is missing"):
             control.run_mission("format = 1\nname = 'x'")
         ended = control.run_mission(MISSION)
     assert (ended["title"], ended["phase"]) == ("Down and up", "succeeded")
