@@ -18,7 +18,7 @@ import pandas
 
 FOLDER = Path(__file__).parents[2] / "docs" / "use" / "notebooks"
 NAMES = ("dive", "tune", "crafts")
-SVG = {
+SVG: dict[Any, Any] = {
     "svg.hashsalt": "mucat",
     "svg.fonttype": "path",
     "path.simplify_threshold": 0.5,

@@ -1,4 +1,4 @@
-"""What ways to other programs have in common: their condition in words, and their secrets."""
+"""The common part of all ways to other programs: their condition in words, and their secrets."""
 
 import ssl
 import stat

@@ -1,4 +1,4 @@
-"""Which events are made of what the robot and the server report."""
+"""Events are made of what the robot and the server report."""
 
 import json
 from dataclasses import asdict
