@@ -34,7 +34,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions \
+.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -117,6 +117,9 @@ figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in doc
 	@rm -rf build/figures
 	.venv/bin/mucat scenario run figure_14 --data build/figures
 	$(PYTHON) -m bench.figures 1 --data build/figures
+
+notebooks: setup-test host-firmware ## run the notebooks of docs/use/notebooks, and write their pages and figures
+	$(PYTHON) -W ignore -m tests.notebooks
 
 screenshots: setup-test ## every page at both sizes and in both themes, into build/screenshots
 	$(PYTHON) -m tests.browser.screenshots build/screenshots

@@ -43,6 +43,7 @@ if [ "${1:-run}" = test ]; then
     need chromium-headless-shell chromium-headless-shell
     need firefox-esr firefox-esr
     need nginx-light /usr/sbin/nginx
+    need mosquitto /usr/sbin/mosquitto
     need arduino-builder arduino-builder
     need clang-format clang-format
     need iproute2 ip

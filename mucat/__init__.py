@@ -4,5 +4,6 @@ from mucat.errors import RobotError as RobotError
 from mucat.live import LiveSample as LiveSample
 from mucat.robot import Control as Control
 from mucat.robot import Robot as Robot
+from mucat.sessions import FolderSessions as FolderSessions
 from mucat.sessions import Sessions as Sessions
-from mucat.sessions import SessionTables as SessionTables
+from mucat.tables import SessionTables as SessionTables

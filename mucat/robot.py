@@ -68,11 +68,24 @@ class Robot:
         run = self.address.ask("POST", "/scenarios/runs", asked)["run"]
         while True:
             last = self.address.ask("GET", "/scenarios/state")["last"]
+            if last is not None and last["run"] > run:
+                raise RobotError("Another scenario has ended meanwhile. The newest sessions have the result.")
             if last is not None and last["run"] == run:
                 if last["state"] != "complete":
                     raise RobotError(f"The scenario ended as {last['state']}: {last['problem']}")
                 return int(last["session"])
             time.sleep(POLL_SECONDS)
+
+    def try_mission(self, text: str, seeds: int = 20) -> list[dict[str, Any]]:
+        """Try a mission (TOML) in simulated water, once for each seed; returns the outcome of each."""
+        trial = self.address.ask("POST", "/missions/trial", {"text": text, "seeds": seeds})
+        while trial["running"]:
+            time.sleep(POLL_SECONDS)
+            trial = self.address.ask("GET", "/missions/trial")
+        if trial["problem"]:
+            raise RobotError(trial["problem"])
+        outcomes: list[dict[str, Any]] = trial["results"]
+        return outcomes
 
 
 class Control:
@@ -95,6 +108,24 @@ class Control:
     def arm(self, mode: Literal["automatic", "manual"] = "automatic") -> None:
         """Arm the robot. Raises RobotError with every reason against it."""
         self.command("arm", mode=mode)
+
+    def run_mission(self, text: str) -> dict[str, Any]:
+        """Arm the robot, run a mission (TOML) and wait for its end; returns its last state.
+
+        `phase` is "succeeded", "failed" or "ended". Raises RobotError with every reason against a start.
+        """
+        before = self._mission()
+        self._address.ask("POST", "/missions/start", {"text": text}, self._key)
+        while True:
+            mission = self._mission()
+            begun = mission is not None and (before is None or mission["number"] != before["number"])
+            if mission is not None and begun and mission["phase"] not in ("running", "paused"):
+                return mission
+            time.sleep(POLL_SECONDS)
+
+    def _mission(self) -> dict[str, Any] | None:
+        found: dict[str, Any] | None = self._address.ask("GET", "/missions/state")
+        return found
 
     def drive(
         self,

@@ -22,6 +22,7 @@ from server.features.comm_tests.shipped import import_samples
 from server.features.comparison.worker import ComparisonWorker
 from server.features.doctor.examination import Examination
 from server.features.doors.house import Doors
+from server.features.events.announcer import EventAnnouncer
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
 from server.features.identification.adoption import CraftAdoption
@@ -85,6 +86,7 @@ class Container:
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
+        self.events = EventAnnouncer(settings, self.clock)
         self.audit = AuditLog(settings.data.audit, self.clock, self._note_act)
         self.access = Access(settings, self.store, self.clock, self.notices.notify, self._dismiss, token)
         self.changes = Changes(self.store, self.bridge)
@@ -116,7 +118,9 @@ class Container:
     def _add_health(self, commands: Sequence[ProcessCommand]) -> None:
         self.alarms = Alarms(self.clock, FAULTS, self.notices.add_event, changed=self._notify_alarms)
         self.processes = ProcessSupervisor(commands, self.settings.data, self.clock, self._see_down)
-        self.monitor = HealthMonitor(self.settings, self.clock, self.store, self.processes)
+        self.monitor = HealthMonitor(
+            self.settings, self.clock, self.store, self.processes, self.events.condition
+        )
         self.examination = Examination(self.settings, self.monitor, self.notices)
         self.watchdog = Watchdog(
             self.settings, self.clock, self.monitor, self.processes, self.store, self.alarms
@@ -144,6 +148,7 @@ class Container:
             self.clock,
             self.hub.notify,
             self.board_reservation.reserve,
+            self.events.see_comm_test,
         )
 
         self.firmware_upload = FirmwareUpload(self.settings, board, self.board_reservation.reserve)
@@ -162,7 +167,7 @@ class Container:
             self.notices.notify,
         )
         simulated = SimulatedExecutor(self.settings, self.store, self.notices)
-        self.scenarios = ScenarioRunner(self._live, simulated, self.hub.notify)
+        self.scenarios = ScenarioRunner(self._live, simulated, self._notify_pages)
         self.bridge.on_stop = self._see_stop
         self.mission_trials = MissionTrials(self.settings)
 
@@ -176,7 +181,7 @@ class Container:
             self.bridge,
             self.changes,
             self.clock,
-            self.hub.notify,
+            self._notify_pages,
             self.notices.notify,
             self._scenario_on,
         )
@@ -200,6 +205,7 @@ class Container:
             await self.tuning.runs.mark_interrupted()
             await import_samples(self.comm_tests.runs)
             self.access.open()
+            self.events.open()
             await self.bridge.open()
             tasks.append(asyncio.create_task(self._beat()))
             await self.processes.end_others()
@@ -246,6 +252,7 @@ class Container:
             await self.processes.stop()
             await self.arming.close()
             await self._end_session()
+            await self.events.close()
             await self.bridge.close()
             await self.access.devices.close()
             await asyncio.to_thread(self.audit.close)
@@ -270,6 +277,7 @@ class Container:
             self.monitor.see(block)
             self.tuning.see(block)
             self.doors.see(block)
+            self.events.see(block)
             if block.topic.name == "event":
                 self.mission_marks.see(block)
             if block.topic.name == "state":
@@ -307,7 +315,7 @@ class Container:
 
     def _notify_session(self) -> None:
         session = self.recorder.session
-        self.hub.notify({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+        self._notify_pages({"op": "session", "recording": session and json.loads(session.model_dump_json())})
 
     def _dismiss(self, device: int, reason: str) -> None:
         self.arbiter.dismiss(device)
@@ -319,7 +327,12 @@ class Container:
         self.hub.notify(message)
 
     def _notify_alarms(self) -> None:
-        self.hub.notify({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.listed()]})
+        self._notify_pages({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.listed()]})
+
+    def _notify_pages(self, message: dict[str, Any]) -> None:
+        """Send the pages a message that may be an event for other programs too."""
+        self.hub.notify(message)
+        self.events.see_message(message)
 
     def _see_down(self, part: str, text: str) -> None:
         self.alarms.begin(DOWN[part], text)

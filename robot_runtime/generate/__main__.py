@@ -27,6 +27,7 @@ def main() -> int:
         "firmware/emulator/calibration.gen.h": cpp.calibration(),
         "firmware/src/parameters.gen.h": cpp.parameters(),
         "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
+        "robot_runtime/contract/published_events.schema.json": json_schema.event_schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
         "frontend/src/generated/commands.ts": typescript.commands_module(),
         "docs/reference/commands.md": reference.commands_page(),
@@ -34,6 +35,7 @@ def main() -> int:
             (SOURCES / "robot.toml").read_text(encoding="utf-8")
         ),
         "docs/reference/craft.md": craft_page(),
+        "docs/reference/events.md": reference.events_page(),
         "docs/reference/faults.md": reference.faults_page(),
         "docs/reference/missions.md": missions_page(),
         "docs/reference/packets.md": reference.packets_page(),

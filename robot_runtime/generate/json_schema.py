@@ -1,11 +1,16 @@
-"""JSON Schema of every packet and topic, for programs that read exports or listen to the topics."""
+"""JSON Schemas: of every packet and topic, and of the events that other programs are sent."""
 
 import json
-from typing import Any
+from dataclasses import fields
+from types import NoneType
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from robot_runtime.contract.packets import DEFINITIONS_HASH, PACKETS
 from robot_runtime.contract.packets.layout import Record, Wire
+from robot_runtime.contract.published_events import PublishedEvent
 from robot_runtime.contract.topics import TOPICS
+
+PLAIN_TYPES = {str: "string", int: "integer", NoneType: "null"}
 
 
 def schema() -> str:
@@ -20,6 +25,32 @@ def schema() -> str:
         "$defs": definitions,
     }
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+
+
+def event_schema() -> str:
+    """The whole text of published_events.schema.json."""
+    hints = get_type_hints(PublishedEvent)
+    document = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "µ-CAT events",
+        "description": PublishedEvent.__doc__,
+        "type": "object",
+        "properties": {
+            one.name: _plain(hints[one.name])
+            | ({"description": one.metadata["meaning"]} if one.metadata else {})
+            for one in fields(PublishedEvent)
+        },
+        "required": [*hints],
+        "additionalProperties": False,
+    }
+    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+
+
+def _plain(hint: Any) -> dict[str, Any]:
+    if get_origin(hint) is Literal:
+        return {"enum": [*get_args(hint)]}
+    types = [PLAIN_TYPES[one] for one in get_args(hint) or (hint,)]
+    return {"type": types if len(types) > 1 else types[0]}
 
 
 def _object(cls: type[Record]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from robot_runtime.contract.documents import Document, TunableParameter
 from robot_runtime.contract.limits import Range
 from robot_runtime.contract.packets import DEFINITIONS_HASH, ENUMERATIONS, FRAME_BYTES_MAX, PACKETS, Packet
 from robot_runtime.contract.packets.layout import C_TYPES, Record, Text, Wire
+from robot_runtime.contract.published_events import PublishedEvent
 from robot_runtime.contract.topics import TOPICS, Kind, Topic
 from robot_runtime.control.faults import FAULTS, FaultRule
 from robot_runtime.control.transitions import TRANSITIONS
@@ -39,6 +40,39 @@ on the [live socket](live-socket.md). *Rows* are fixed binary records, *document
 *picture* is one JPEG file. A page that connects receives the last minutes of a topic, or of *newest only*
 topics the newest document. *Lines* are shown one by one to a person, and are the log of an MCAP export. Every
 sample has a time in s of the steady clock. [The serial link's packets](packets.md) are topics, too.
+"""
+EVENTS_SOURCE = "robot_runtime/contract/published_events.py"
+EVENTS_INTRODUCTION = """\
+Each event is one JSON object: over MQTT at `mucat/ROBOT/event/EVENT`, to a web address one POST.
+[Events](../use/events.md) says how they are switched on. The JSON Schema is
+`robot_runtime/contract/published_events.schema.json`.
+"""
+EVENTS_RULES = """\
+## Delivery
+
+An event is sent at least once: `run` and `number` tell a repetition. Up to 200 wait while the other end is
+away; further ones are lost and counted on **System**. At a start of the server, active alarms and a resumed
+recording are sent again; what ended while the server was down is not sent. The robot never waits for a broker
+or an address.
+
+| | MQTT | webhook |
+|---|---|---|
+| protocol | 3.1.1, quality of service 1 | HTTP/1.1, POST, `application/json` |
+| accepted by | the broker's acknowledgement | any status of 200 to 299 |
+| again after a failure | 1 s to 60 s | 1 s to 60 s; not after another 4xx than 401, 403, 404, 408, 429 |
+| redirections | | not followed |
+| longest wait | 5 s to connect | 5 s to connect, 10 s for an answer |
+| end of the server | waits up to 2 s | waits up to 2 s |
+
+## Retained topics
+
+A program that connects to the broker finds these at once.
+
+| topic | value |
+|---|---|
+| `mucat/ROBOT/status` | `online` or `offline`, plain text; `offline` by the broker 45 s after the last sign |
+| `mucat/ROBOT/alarms` | a list of the active alarms, as in [state](topics.md#state) |
+| `mucat/ROBOT/session` | `id` and `name` of the session that records, else `null` |
 """
 PACKETS_SOURCE = "robot_runtime/contract/packets/definitions.py"
 PACKETS_INTRODUCTION = f"""\
@@ -143,7 +177,7 @@ def _topic_row(topic: Topic) -> tuple[str, ...]:
     )
 
 
-def _topic_fields(record: type[Record] | type[Document]) -> Iterator[tuple[str, ...]]:
+def _topic_fields(record: type[Record] | type[Document] | type[PublishedEvent]) -> Iterator[tuple[str, ...]]:
     if issubclass(record, Record):
         for name, wire in record.wires.items():
             count = f" × {wire.count}" if wire.count > 1 else ""
@@ -152,6 +186,13 @@ def _topic_fields(record: type[Record] | type[Document]) -> Iterator[tuple[str, 
     hints = typing.get_type_hints(record, include_extras=True)
     for one in fields(record):
         yield f"`{one.name}`", describe_type(hints[one.name]), one.metadata.get("meaning", "")
+
+
+def events_page() -> str:
+    """The whole text of events.md."""
+    rows = [*_topic_fields(PublishedEvent)]
+    fields_table = table(("field", "type", "meaning"), rows)
+    return page("Events", EVENTS_SOURCE, EVENTS_INTRODUCTION, "## Fields\n", fields_table, EVENTS_RULES)
 
 
 def packets_page() -> str:

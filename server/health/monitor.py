@@ -1,6 +1,7 @@
 """Health of the parts, from living processes and arriving samples."""
 
 import json
+from collections.abc import Callable
 from typing import Any, Literal
 
 from pydantic import BaseModel, Field
@@ -27,7 +28,7 @@ GRACE_SECONDS = 10.0
 NO_PICTURE = "no picture"
 """The beginning of the runtime's words for a camera that fails."""
 
-PartName = Literal["server", "database", "runtime", "link", "board", "simulator", "scene", "camera"]
+PartName = Literal["server", "database", "runtime", "link", "board", "simulator", "scene", "camera", "events"]
 PartState = Literal["ok", "starting", "failed", "absent"]
 Condition = tuple[PartState, str]
 """The state of a part, and a sentence about it."""
@@ -51,14 +52,23 @@ class Health(BaseModel):
     version: str
     robot: str
     parts: list[PartHealth] = Field(
-        description="server, database, runtime, link, board, simulator, scene, camera"
+        description="server, database, runtime, link, board, simulator, scene, camera, and events where "
+        "`[events]` in robot.toml names a broker or an address"
     )
 
 
 class HealthMonitor:
     """Derives the health of each part from its process and the newest block of each topic."""
 
-    def __init__(self, settings: Settings, clock: Clock, store: Store, parts: ProcessSupervisor) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        clock: Clock,
+        store: Store,
+        parts: ProcessSupervisor,
+        events: Callable[[], Condition | None] = lambda: None,
+    ) -> None:
+        self._events = events
         self._settings = settings
         self._clock = clock
         self._store = store
@@ -122,6 +132,8 @@ class HealthMonitor:
             "scene": self._scene(),
             "camera": self._camera(),
         }
+        if (events := self._events()) is not None:
+            conditions["events"] = events
         parts = [PartHealth(name=name, state=state, text=text) for name, (state, text) in conditions.items()]
         simulator = self._processes.get("simulator")
         if self._settings.in_the_loop and simulator is not None:

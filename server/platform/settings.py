@@ -14,6 +14,7 @@ from typing import Literal
 from robot_runtime.config import (
     ADOPTED_CRAFT,
     DoorsConfig,
+    EventsConfig,
     HilConfig,
     LinkConfig,
     SessionsConfig,
@@ -131,6 +132,7 @@ class Settings:
     missions: MissionLimits = NO_LIMITS
     zenoh: ZenohConfig = field(default_factory=ZenohConfig)
     doors: DoorsConfig = field(default_factory=DoorsConfig)
+    events: EventsConfig = field(default_factory=EventsConfig)
     host: str = "127.0.0.1"
     port: int = 8000
     tls: bool = False
@@ -237,6 +239,7 @@ def read_settings(
         missions=loaded.missions,
         zenoh=loaded.zenoh,
         doors=loaded.doors,
+        events=loaded.events,
         craft=None if craft == folder.craft else craft,
         host=chosen_host,
         port=chosen_port,

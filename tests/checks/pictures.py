@@ -1,8 +1,8 @@
-"""Pictures of the documents: a dozen at most, and each of them is shown on a page."""
+"""Pictures of the documents: fifteen at most, and each of them is shown on a page."""
 
 from pathlib import Path
 
-PICTURES_MAX = 12
+PICTURES_MAX = 15
 SUFFIXES = {".jpg", ".png", ".svg", ".gif", ".webp"}
 
 

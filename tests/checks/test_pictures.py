@@ -24,4 +24,4 @@ def test_too_many_pictures_are_found(tmp_path: Path) -> None:
     for name in names:
         (tmp_path / "docs" / name).touch()
     (problem,) = find_needless_pictures(tmp_path)
-    assert problem.startswith("docs/ has 13 pictures")
+    assert problem.startswith(f"docs/ has {PICTURES_MAX + 1} pictures")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mucat import Control, Robot, RobotError, Sessions, SessionTables
+from mucat import Control, FolderSessions, Robot, RobotError, Sessions, SessionTables
 from tests.server.waiting import until
 from tests.stack import Stack
 
@@ -114,9 +114,40 @@ def test_scenarios_run_and_their_sessions_are_compared_and_read_from_files(
         robot.run_scenario("name = 1")
 
 
+MISSION = """
+format = 1
+name = "client"
+title = "Down and up"
+
+[limits]
+depth = 1.0
+time = 60
+
+[mission]
+do = "sequence"
+steps = [
+  { do = "dive", depth = 0.3, timeout = 30 },
+  { do = "surface" },
+]
+"""
+
+
+@pytest.mark.stack
+def test_a_mission_runs_to_its_end_and_is_tried_in_simulated_water(shared_stack: Stack) -> None:
+    robot = Robot(shared_stack.url, make_token(shared_stack, "operate"))
+    with robot.control() as control:
+        with pytest.raises(RobotError, match="mission is missing"):
+            control.run_mission("format = 1\nname = 'x'")
+        ended = control.run_mission(MISSION)
+    assert (ended["title"], ended["phase"]) == ("Down and up", "succeeded")
+    assert 0.2 < ended["deepest"] < 0.6
+    tried = robot.try_mission(MISSION, seeds=2)
+    assert [(one["seed"], one["phase"]) for one in tried] == [(1, "succeeded"), (2, "succeeded")]
+
+
 def test_what_is_no_export_is_refused(tmp_path: Path) -> None:
     (tmp_path / "dive.zip").write_bytes(b"PK no zip")
-    with pytest.raises(RobotError, match="no export of a session"):
+    with pytest.raises(RobotError, match="is no export of a session"):
         Sessions.read(tmp_path / "dive.zip")
     with pytest.raises(RobotError, match="cannot be read"):
         Sessions.read(tmp_path / "none.zip")
@@ -126,7 +157,7 @@ def test_what_is_no_export_is_refused(tmp_path: Path) -> None:
         Robot("http://127.0.0.1:9", "mucat_token").state()
 
 
-@pytest.mark.parametrize("one", [Robot, Control, Sessions, SessionTables])
+@pytest.mark.parametrize("one", [Robot, Control, Sessions, FolderSessions, SessionTables])
 def test_the_reference_has_every_method(one: type) -> None:
     page = (Path(__file__).parents[2] / "docs/reference/python.md").read_text()
     methods = [name for name in vars(one) if not name.startswith("_") and callable(getattr(one, name))]

@@ -3806,6 +3806,13 @@ export interface components {
              */
             columns?: string[] | null;
             /**
+             * Compression
+             * @description of the chunks of mcap; zstd and lz4 need their packages
+             * @default none
+             * @enum {string}
+             */
+            compression: "none" | "zstd" | "lz4";
+            /**
              * End
              * @description s since the session's start; null for its end
              */
@@ -3989,7 +3996,7 @@ export interface components {
         Health: {
             /**
              * Parts
-             * @description server, database, runtime, link, board, simulator, scene, camera
+             * @description server, database, runtime, link, board, simulator, scene, camera, and events where `[events]` in robot.toml names a broker or an address
              */
             parts: components["schemas"]["PartHealth"][];
             /** Robot */
@@ -4854,6 +4861,13 @@ export interface components {
              */
             columns?: string[] | null;
             /**
+             * Compression
+             * @description of the chunks of mcap; zstd and lz4 need their packages
+             * @default none
+             * @enum {string}
+             */
+            compression: "none" | "zstd" | "lz4";
+            /**
              * End
              * @description s since the session's start; null for its end
              */
@@ -5083,7 +5097,7 @@ export interface components {
              * Name
              * @enum {string}
              */
-            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene" | "camera";
+            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene" | "camera" | "events";
             /**
              * State
              * @enum {string}

@@ -254,6 +254,7 @@ export const system = {
       simulator: 'Simulator',
       scene: 'Scene',
       camera: 'Camera',
+      events: 'Events to other programs',
     },
   },
   doors: {

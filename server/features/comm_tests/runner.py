@@ -81,11 +81,21 @@ class Progress:
 
 
 class CommTestRunner:
-    """Runs one document at a time; `notify` reports progress, `reserve` reserves the board."""
+    """Runs one document at a time; `notify` reports progress, `reserve` reserves the board.
+
+    `ended` is called with number, name, end and problem of each test.
+    """
 
     def __init__(
-        self, settings: Settings, runs: CommTestStore, clock: Clock, notify: Notify, reserve: Reserve
+        self,
+        settings: Settings,
+        runs: CommTestStore,
+        clock: Clock,
+        notify: Notify,
+        reserve: Reserve,
+        ended: Callable[[int, str, End, str], None] = lambda *_: None,
     ) -> None:
+        self._ended = ended
         self.runs = runs
         self._settings = settings
         self._clock = clock
@@ -146,6 +156,7 @@ class CommTestRunner:
                 # If that cannot be stored, the next start marks it as interrupted.
                 with suppress(StoreError):
                     await self.runs.end(progress.run, "failed", str(problem))
+                self._ended(progress.run, tests[progress.test].name, "failed", str(problem))
             if not began.done():
                 error = (
                     problem if isinstance(problem, RefusedError | StoreError) else RefusedError(str(problem))
@@ -245,6 +256,7 @@ class CommTestRunner:
     async def _end(self, progress: Progress, state: End, problem: str) -> None:
         assert progress.run is not None
         await self.runs.end(progress.run, state, problem)
+        self._ended(progress.run, progress.tests[progress.test].name, state, problem)
         progress.run = None
         progress.done_weight = sum(sum(one) for one in progress.weights[: progress.test + 1])
 

@@ -311,6 +311,18 @@ def check_runtime(machine: Machine) -> Finding | None:
     return report.ok("It has the present version and configuration.")
 
 
+def check_events(machine: Machine) -> Finding | None:
+    """The broker and the address that are told of events can be reached."""
+    report = Reporter("events", "Events to other programs")
+    if not machine.events_named:
+        return None
+    if not machine.events_state:
+        return report.look("Not asked: the server does not run.", "mucat run, or sudo systemctl start mucat")
+    if machine.events_state == "ok":
+        return report.ok(machine.events_text)
+    return report.look(machine.events_text, "Correct [events] in robot.toml: docs/use/events.md")
+
+
 CHECKS: tuple[Check, ...] = (
     check_configuration,
     check_versions,
@@ -332,6 +344,7 @@ CHECKS: tuple[Check, ...] = (
     check_address,
     check_service,
     check_runtime,
+    check_events,
 )
 """In the order of the report: what everything else needs comes first."""
 

@@ -42,15 +42,15 @@ def _look(config: Path | None, data: Path | None) -> Machine:
         folder = DataFolder((data or Path(os.environ.get("MUCAT_DATA") or "data")).absolute())
         settings = Settings(data=folder, config=(config or find_config(folder)).absolute())
         return replace(read_machine(settings, time.time()), configuration_problem=str(problem))
-    return read_machine(settings, time.time(), _ask_link(settings))
+    return read_machine(settings, time.time(), _ask_health(settings))
 
 
-def _ask_link(settings: Settings) -> tuple[str, str]:
-    """State and text of the link, by the running server; empty without one."""
+def _ask_health(settings: Settings) -> dict[str, tuple[str, str]]:
+    """State and text of each part, by the running server; empty without one."""
     if runner_of(settings.data) is None:
-        return "", ""
+        return {}
     try:
         health = ask(settings.data, "GET", "/health")
     except SetupError as problem:
-        return "failed", str(problem)
-    return next((part["state"], part["text"]) for part in health["parts"] if part["name"] == "link")
+        return {"link": ("failed", str(problem))}
+    return {part["name"]: (part["state"], part["text"]) for part in health["parts"]}

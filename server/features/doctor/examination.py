@@ -42,10 +42,10 @@ class Examination:
 
     async def _examine(self, *, thorough: bool) -> list[Finding]:
         async with self._busy:
-            health = self._monitor.health()
-            link = next((part.state, part.text) for part in health.parts if part.name == "link")
+            parts = self._monitor.health().parts
+            heard = {str(part.name): (str(part.state), part.text) for part in parts}
             machine = await asyncio.to_thread(
-                read_machine, self._settings, time.time(), link, thorough=thorough
+                read_machine, self._settings, time.time(), heard, thorough=thorough
             )
             self._findings = examine(machine)
             return self._findings

@@ -11,6 +11,7 @@ import socket
 import struct
 import subprocess
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -29,6 +30,7 @@ IMPORT_SECONDS = 120.0
 LIBRARIES = ("zenoh", "numpy", "cv2", "pydantic_core", "sqlalchemy", "serial", "cobs")
 """Modules with compiled parts, and those that speak with the board: importing them shows a wrong wheel."""
 SERVICE = "mucat.service"
+NOTHING_HEARD: Mapping[str, tuple[str, str]] = {}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,6 +64,10 @@ class Machine:
     link_state: str = ""
     """State of the link by the running server's health; empty without a server."""
     link_text: str = ""
+    events_named: bool = False
+    """`[events]` in robot.toml names a broker or an address."""
+    events_state: str = ""
+    events_text: str = ""
     boot_settings: str = ""
     """Text of config.txt."""
     kernel_line: str = ""
@@ -95,18 +101,19 @@ class Machine:
 def read_machine(
     settings: Settings,
     now: float,
-    link: tuple[str, str] = ("", ""),
+    heard: Mapping[str, tuple[str, str]] = NOTHING_HEARD,
     *,
     thorough: bool = True,
     root: Path = Path("/"),
 ) -> Machine:
-    """Read the facts of this computer; nothing is changed. `link`: its state and text, by the server.
+    """Read the facts of this computer; nothing is changed. `heard`: state and text of parts, by the server.
 
     Only a thorough look imports the libraries, in another process, and opens a serial port that nobody uses.
     """
     from server.platform.folder_lock import runner_of
     from server.platform.pidfile import running_parts
 
+    link, events = heard.get("link", ("", "")), heard.get("events", ("", ""))
     boot = next((one for one in ("boot/firmware", "boot") if (root / one / "config.txt").exists()), "")
     units = {one.name: _read(one) for one in (root / "etc/systemd/system").glob("mucat*.*")}
     user = _service_user(units.get(SERVICE, ""))
@@ -135,6 +142,9 @@ def read_machine(
         port_problem="" if runtime or not thorough else _try_port(port, settings.link.baud),
         link_state=link[0],
         link_text=link[1],
+        events_named=bool(settings.events.mqtt or settings.events.webhook),
+        events_state=events[0],
+        events_text=events[1],
         boot_settings=_read(root / boot / "config.txt") if boot else "",
         kernel_line=_read(root / boot / "cmdline.txt") if boot else "",
         login_on_port=_has_login(root, port),

@@ -25,6 +25,7 @@ IMPORT_SECONDS = 3600.0
 @click.option("--start", type=float, metavar="S", help="Begin so many seconds after the session's start.")
 @click.option("--end", type=float, metavar="S", help="End so many seconds after the session's start.")
 @click.option("--period", type=float, metavar="S", help="Seconds between lines of csv-grid. Default: 0.1.")
+@click.option("--compression", type=click.Choice(("none", "zstd", "lz4")), help="For mcap. Default: none.")
 @click.option("-o", "--output", type=FILE, help="Default: a file here, named after the session.")
 @with_settings
 def export_session(settings: Settings, session: int, output: Path | None, **choice: Any) -> None:

@@ -7,7 +7,7 @@ from server.features.comparison.schemas import DEFAULT_SIGNALS, REPORT_POINTS, C
 from server.features.exports.archive import write_archive
 from server.features.exports.grid import write_grid
 from server.features.exports.json_lines import write_lines
-from server.features.exports.mcap_file import check_mcap, write_mcap
+from server.features.exports.mcap_file import check_compression, check_mcap, write_mcap
 from server.features.exports.parquet import check_parquet, write_parquet
 from server.features.exports.schemas import ExportOptions, Format
 from server.features.exports.selection import ExportRequestError, ExportSelection
@@ -61,6 +61,10 @@ def check(options: ExportOptions) -> ExportFormat:
         raise ExportRequestError(f"For {options.format} choose {choose}, not topics.")
     if options.format in WHOLE_ONLY and (options.start is not None or options.end is not None):
         raise ExportRequestError(f"The {options.format} holds the whole session; leave start and end out.")
+    if options.compression != "none":
+        if options.format != "mcap":
+            raise ExportRequestError("Compression is chosen for mcap alone.")
+        check_compression(options.compression)
     kind = KINDS[options.format]
     kind.check()
     return kind

@@ -1,12 +1,13 @@
 """MCAP for Foxglove and Lichtblick: our topics as JSON, and the well-known topics of their panels.
 
-Not compressed, since a Raspberry Pi Zero lacks the packages for it. Message times are UTC.
+Not compressed unless asked for: a Raspberry Pi Zero lacks the packages for it. Message times are UTC.
 """
 
 import base64
 import heapq
 import json
 from collections.abc import Iterator
+from importlib import import_module
 from itertools import repeat
 from typing import Any, BinaryIO
 
@@ -16,6 +17,7 @@ from robot_runtime.contract.topics import LINES
 from server.features.exports.description import describe_session, dump_readable
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
 from server.features.exports.pose import Pose, dump, level, stamp
+from server.features.exports.schemas import Compression
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
 from server.features.sessions.recording import depth_loop
@@ -27,6 +29,7 @@ LOG, TRANSFORMS, FRAMES, POSE, CAMERA = "/log", "/tf", "/tf_static", "/pose", "/
 IMAGE = "foxglove.CompressedImage"
 SEVERITIES = {"info": 2, "caution": 3, "alarm": 4}
 INFO = 2
+PACKAGES = {"zstd": "zstandard", "lz4": "lz4"}
 DEBUG_LEVEL_OFFSET = 1
 """From DebugLevel to foxglove.LogLevel, which begins with UNKNOWN."""
 
@@ -47,15 +50,28 @@ def check_mcap() -> None:
         ) from problem
 
 
+def check_compression(name: Compression) -> None:
+    """Raises ExportRequestError if the package for this compression is missing."""
+    package = PACKAGES[name]
+    try:
+        import_module(package)
+    except ImportError as problem:
+        raise ExportRequestError(
+            f"Compression by {name} needs the package {package}, which is not installed. Install it where "
+            f"µ-CAT is installed, with `pip install {package}`, or export without compression."
+        ) from problem
+
+
 def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """Write a channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`, and metadata.
+    """Write a channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`, metadata, attachments.
 
     Raises ExportRequestError, StoreError, RecordingError.
     """
     check_mcap()
     from mcap.writer import CompressionType, Writer
 
-    writer = Writer(output, compression=CompressionType.NONE)
+    compression = CompressionType[source.options.compression.upper()]
+    writer = Writer(output, compression=compression, enable_data_crcs=True)
     writer.start(profile="", library=LIBRARY)
     _write_about(store, source, writer)
     channels = _Channels(writer)
@@ -118,7 +134,12 @@ def _write_about(store: Reader, source: ExportSelection, writer: Any) -> None:
     writer.add_metadata("configuration", {"robot.toml": row.configuration, "scenario": row.scenario})
     writer.add_metadata("gains", _gains(described["robot_state"]))
     first = source.utc_ns(row.started_steady)
-    writer.add_attachment(first, first, "session.json", "application/json", dump_readable(described).encode())
+    attached = [("session.json", "application/json", dump_readable(described))]
+    attached.append(("robot.toml", "application/toml", row.configuration))
+    if row.scenario:
+        attached.append(("scenario.toml", "application/toml", row.scenario))
+    for name, kind, text in attached:
+        writer.add_attachment(first, first, name, kind, text.encode())
 
 
 def _gains(state: dict[str, Any] | None) -> dict[str, str]:

@@ -24,7 +24,15 @@ def _object(title: str = "", **members: Schema) -> Schema:
     return {**named, "type": "object", "properties": members, "required": list(members)}
 
 
-_TIME = _object("time", sec={"type": "integer", "minimum": 0}, nsec={"type": "integer", "minimum": 0})
+NANOSECONDS_MAX = 999_999_999
+_TIME: Schema = {
+    "title": "time",
+    "type": "object",
+    "properties": {
+        "sec": {"type": "integer", "minimum": 0},
+        "nsec": {"type": "integer", "minimum": 0, "maximum": NANOSECONDS_MAX},
+    },
+}
 _VECTOR = _object("foxglove.Vector3", x=NUMBER, y=NUMBER, z=NUMBER)
 _QUATERNION = _object("foxglove.Quaternion", x=NUMBER, y=NUMBER, z=NUMBER, w=NUMBER)
 _LEVEL: Schema = {
@@ -36,7 +44,13 @@ _LEVEL: Schema = {
 }
 WELL_KNOWN = {
     "foxglove.Log": _object(
-        "foxglove.Log", timestamp=_TIME, level=_LEVEL, message=TEXT, name=TEXT, file=TEXT, line=WHOLE
+        "foxglove.Log",
+        timestamp=_TIME,
+        level=_LEVEL,
+        message=TEXT,
+        name=TEXT,
+        file=TEXT,
+        line={"type": "integer", "minimum": 0},
     ),
     "foxglove.FrameTransform": _object(
         "foxglove.FrameTransform",

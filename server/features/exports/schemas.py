@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from server.http.request_body import RequestBody
 from server.platform.models import IDENTIFIER_MAX
 
+Compression = Literal["none", "zstd", "lz4"]
 Format = Literal["csv", "csv-grid", "jsonl", "parquet", "mcap", "archive", "report"]
 State = Literal["waiting", "running", "done", "failed"]
 
@@ -35,6 +36,9 @@ class ExportOptions(RequestBody):
     end: Seconds | None = Field(default=None, description="s since the session's start; null for its end")
     period: Annotated[float, Field(ge=PERIOD_MIN, le=PERIOD_MAX)] = Field(
         default=0.1, description="s between the lines of csv-grid"
+    )
+    compression: Compression = Field(
+        default="none", description="of the chunks of mcap; zstd and lz4 need their packages"
     )
 
 

@@ -8,6 +8,7 @@ import signal
 import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,10 @@ import psutil
 import pytest
 from websockets.asyncio.client import ClientConnection
 
+from robot_runtime.config import EventsConfig
 from server.platform.settings import Settings
 from tests.board.rig import ROOT, build
+from tests.server.features.events.rig import Receiver
 from tests.server.serving import Served, next_text, serve
 from tests.server.waiting import until
 
@@ -177,11 +180,16 @@ def test_a_killed_lab_process_fails_its_run_only(settings: Settings) -> None:
 
 def test_the_end_of_the_server_cancels_the_run(settings: Settings) -> None:
     async def scenario() -> None:
-        async with serve(settings) as served, watching(served) as socket:
+        receiver = Receiver()
+        telling = replace(settings, events=EventsConfig(webhook=receiver.url))
+        async with serve(telling) as served, watching(served) as socket:
             number = await start(served, ENDLESS)
             await news_until(socket, cell=0)
         async with serve(settings) as served:
             assert (await get(served, f"runs/{number}"))["state"] == "cancelled"
+        await asyncio.to_thread(receiver.close)
+        _, _, event = receiver.requests.get_nowait()
+        assert (event["event"], event["id"], event["state"]) == ("comm_test_ended", number, "cancelled")
 
     asyncio.run(scenario())
 

@@ -20,6 +20,9 @@ GOOD = Machine(
     port_target="ttyAMA0",
     link_state="ok",
     link_text="Connected.",
+    events_named=True,
+    events_state="ok",
+    events_text="Connected.",
     boot_settings=UART,
     kernel_line="console=tty1 root=PARTUUID=1 rootwait",
     groups=frozenset({"dialout", "gpio", "video"}),
@@ -65,6 +68,12 @@ CASES: dict[str, tuple[dict[str, Any], str, str]] = {
         {"link_state": "failed", "link_text": "Definitions differ."},
         "wrong",
         "differ",
+    ),
+    "events: not asked": ({"events_state": ""}, "look", "does not run"),
+    "events: broken": (
+        {"events_state": "failed", "events_text": "Connection refused."},
+        "look",
+        "Connection refused.",
     ),
     "board: not asked": ({"link_state": "", "link_text": ""}, "look", "does not run"),
     "groups: missing": ({"groups": frozenset({"dialout"})}, "wrong", "not in gpio, video"),
@@ -115,6 +124,7 @@ def test_an_emulated_robot_is_asked_nothing_about_pins() -> None:
         "clock",
         "address",
         "swap",
+        "events",
     }
     assert worst(examine(EMULATED)) == "ok"
 

@@ -218,7 +218,7 @@ def test_mcap_holds_every_sample_and_the_topics_that_foxglove_panels_use(store: 
     about = {record.name: record.metadata for record in reader.iter_metadata()}
     assert about["session"]["identifier"] == row.identifier
     assert about["configuration"]["robot.toml"] == row.configuration
-    (attached,) = reader.iter_attachments()
+    attached = next(one for one in reader.iter_attachments() if one.name == "session.json")
     assert json.loads(attached.data)["marks"][0]["text"] == "here it turned"
 
 

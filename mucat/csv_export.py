@@ -1,0 +1,51 @@
+"""Reads what `mucat export --format csv` and the server write: a zip file with a table for each topic."""
+
+import csv
+import io
+import json
+import re
+import zipfile
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from mucat.errors import RobotError
+from mucat.tables import SessionTables, TopicTable, si_column, typed_column
+
+HEADED = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>.*)\])?")
+"""The head of a column: its name, and its unit."""
+
+
+def read_csv_export(source: Path | bytes) -> SessionTables:
+    """The tables of a file, or of its bytes. Raises BadZipFile, KeyError, ValueError, OSError."""
+    with _open(source) as files:
+        about = json.loads(files.read("session.json"))
+        readers: dict[str, Callable[[], TopicTable]] = {
+            name.removesuffix(".csv"): partial(_read_member, source, name)
+            for name in files.namelist()
+            if name.endswith(".csv") and "/" not in name
+        }
+    return SessionTables(about, readers)
+
+
+def _open(source: Path | bytes) -> zipfile.ZipFile:
+    return zipfile.ZipFile(io.BytesIO(source) if isinstance(source, bytes) else source)
+
+
+def _read_member(source: Path | bytes, name: str) -> TopicTable:
+    try:
+        with _open(source) as files, files.open(name) as opened:
+            rows = csv.reader(io.TextIOWrapper(opened, "utf-8-sig", newline=""))
+            heads = next(rows, [])
+            values = [*zip(*rows, strict=True)] or [() for _ in heads]
+    except (zipfile.BadZipFile, ValueError, OSError, csv.Error) as problem:
+        raise RobotError(f"{name} cannot be read: {problem}.") from problem
+    columns, units = {}, {}
+    for head, cells in zip(heads, values, strict=True):
+        found = HEADED.fullmatch(head)
+        assert found is not None
+        name, unit, column = si_column(found["name"], found["unit"] or "", typed_column(cells))
+        columns[name] = column
+        if unit:
+            units[name] = unit
+    return TopicTable(columns, units)

@@ -1,0 +1,1 @@
+"""Events for other programs: alarms, sessions, tests and missions, by MQTT and webhooks."""

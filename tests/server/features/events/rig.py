@@ -1,0 +1,121 @@
+"""A broker and a web address for tests, each on a port of the system's choice."""
+
+import json
+import queue
+import shutil
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+from paho.mqtt.client import Client, MQTTMessage
+from paho.mqtt.enums import CallbackAPIVersion
+
+from tests.server.waiting import SECONDS
+
+BROKER = shutil.which("mosquitto") or "/usr/sbin/mosquitto"
+
+
+def free_port() -> int:
+    """A port that was free just now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def wait_for(condition: Callable[[], object], what: str) -> None:
+    """Wait in this thread until the condition holds."""
+    end = time.monotonic() + SECONDS
+    while not condition():
+        assert time.monotonic() < end, f"waited {SECONDS:g} s in vain for {what}"
+        time.sleep(0.005)
+
+
+@contextmanager
+def broker(folder: Path, port: int, *lines: str) -> Iterator[None]:
+    """A mosquitto at this port, with more lines of its configuration."""
+    config = folder / "mosquitto.conf"
+    general = [f"listener {port} 127.0.0.1", "persistence false", "user root"]
+    config.write_text("\n".join([*general, *(lines or ["allow_anonymous true"])]) + "\n")
+    with (folder / "mosquitto.log").open("ab") as log:
+        process = subprocess.Popen([BROKER, "-c", str(config)], stdout=log, stderr=log)
+    try:
+        wait_for(lambda: answers(port), "the broker to listen")
+        yield
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def answers(port: int) -> bool:
+    """True where something accepts connections at this port."""
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+class Listener:
+    """A program at the broker that keeps every message, in order."""
+
+    def __init__(self, port: int, topic: str = "mucat/#", **login: str) -> None:
+        self.messages: queue.Queue[tuple[str, bytes, bool]] = queue.Queue()
+        self._client = Client(CallbackAPIVersion.VERSION2)
+        if login:
+            self._client.username_pw_set(login["user"], login["password"])
+        self._client.on_message = self._keep
+        subscribed = threading.Event()
+        self._client.on_connect = lambda client, *_: client.subscribe(topic, qos=1)
+        self._client.on_subscribe = lambda *_: subscribed.set()
+        self._client.connect("127.0.0.1", port)
+        self._client.loop_start()
+        assert subscribed.wait(SECONDS)
+
+    def next(self, topic: str) -> Any:
+        """The JSON, or else the text, of the next message at this topic; others are passed over."""
+        while True:
+            found, payload, _ = self.messages.get(timeout=SECONDS)
+            if found == topic:
+                return payload.decode() if topic.endswith("status") else json.loads(payload)
+
+    def close(self) -> None:
+        """Leave."""
+        self._client.disconnect()
+        self._client.loop_stop()
+
+    def _keep(self, _client: Client, _data: Any, message: MQTTMessage) -> None:
+        self.messages.put((message.topic, bytes(message.payload), message.retain))
+
+
+class Receiver:
+    """A web address that answers with `answers` in turn, then 204, and keeps the requests."""
+
+    def __init__(self, *answers: int) -> None:
+        self.requests: queue.Queue[tuple[str, dict[str, str], Any]] = queue.Queue()
+        self.answers = [*answers]
+        receiver = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_POST(self) -> None:
+                body = self.rfile.read(int(self.headers["Content-Length"]))
+                receiver.requests.put((self.path, dict(self.headers), json.loads(body)))
+                self.send_response(receiver.answers.pop(0) if receiver.answers else 204)
+                self.send_header("Location", "/elsewhere")
+                self.end_headers()
+
+            def log_message(self, *_: Any) -> None:
+                pass
+
+        self.server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.url = f"http://127.0.0.1:{self.server.server_port}/robots?lab=1"
+        self._thread = threading.Thread(target=self.server.serve_forever, args=(0.01,))
+        self._thread.start()
+
+    def close(self) -> None:
+        """Stop serving."""
+        self.server.shutdown()
+        self._thread.join()
+        self.server.server_close()

@@ -1,0 +1,318 @@
+"""Events to a real broker and a web address, and what happens where these are away, or wrong."""
+
+import asyncio
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import closing, suppress
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.config import EventsConfig
+from robot_runtime.contract.published_events import PublishedEvent
+from server.features.events import webhook
+from server.features.events.mqtt import MqttOutlet
+from server.features.events.outlet import WAITING_MAX, OutletCondition
+from server.features.events.webhook import WebhookOutlet
+from server.features.scenarios.schemas import EndedRun
+from server.features.tuning.schemas import ControllerInForce, TuningRun
+from server.platform.settings import Settings
+from tests.server.features.events.rig import Listener, Receiver, broker, free_port, wait_for
+from tests.server.serving import Served, play
+from tests.server.waiting import SECONDS, until
+
+EVENT = PublishedEvent(
+    robot="tested",
+    event="session_ended",
+    run="0123456789abcdef",
+    number=1,
+    time="2026-11-25T10:00:00.000+00:00",
+    subject="Tauchgang µ",
+    id=1,
+    session=1,
+    state="ended",
+    severity="info",
+    text="Recording has ended.",
+)
+SCENARIO = EndedRun(
+    run=1,
+    name="swim",
+    title="scenario",
+    place="live",
+    session=None,
+    before=None,
+    state="complete",
+    problem="",
+)
+TUNING = TuningRun(
+    id=1,
+    name="tuning",
+    kind="step",
+    loop="depth",
+    started=datetime(2026, 11, 25, tzinfo=UTC),
+    state="complete",
+    problem="",
+    settings={},
+    force=ControllerInForce(controller="pid", title="PID", gains={}),
+    figures={},
+    cycle=None,
+)
+
+
+@pytest.fixture
+def receiver() -> Iterator[Receiver]:
+    one = Receiver()
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No waiting before another attempt."""
+    monkeypatch.setattr(webhook, "RETRY_SECONDS", (0.01, 0.02))
+
+
+def event(number: int) -> PublishedEvent:
+    return replace(EVENT, number=number)
+
+
+def to_broker(folder: Path, port: int, scheme: str = "mqtt", **entries: str) -> MqttOutlet:
+    address = f"{scheme}://127.0.0.1:{port}"
+    return MqttOutlet("tested", "0" * 16, EventsConfig(mqtt=address, **entries), folder)
+
+
+def test_a_broker_gets_events_and_a_newcomer_finds_what_holds_now(tmp_path: Path) -> None:
+    port = free_port()
+    outlet = to_broker(tmp_path, port)
+    with broker(tmp_path, port), closing(Listener(port)) as listener:
+        outlet.retain("session", '{"id": 1, "name": "Dive"}')
+        outlet.open()
+        assert listener.next("mucat/tested/status") == "online"
+        outlet.publish(EVENT)
+        found = listener.next("mucat/tested/event/session_ended")
+        assert found["subject"] == "Tauchgang µ"
+        wait_for(lambda: outlet.condition().state == "ok", "the condition")
+        assert outlet.condition().text.startswith(f"mqtt://127.0.0.1:{port}: Connected.")
+        for topic, value in (("session", {"id": 1, "name": "Dive"}), ("status", "online")):
+            with closing(Listener(port)) as newcomer:
+                assert newcomer.next(f"mucat/tested/{topic}") == value
+        outlet.close()
+        assert listener.next("mucat/tested/status") == "offline"
+
+
+def test_what_waits_while_the_broker_is_away_comes_with_it(tmp_path: Path) -> None:
+    port = free_port()
+    outlet = to_broker(tmp_path, port)
+    outlet.open()
+    for number in range(WAITING_MAX + 40):
+        outlet.publish(event(number))
+    wait_for(lambda: outlet.condition().state == "failed", "the broker to be missed")
+    said = outlet.condition().text
+    assert "Cannot connect: Connection refused." in said
+    assert "lost: 40" in said
+    with broker(tmp_path, port), closing(Listener(port)) as listener:
+        numbers = [listener.next("mucat/tested/event/session_ended")["number"] for _ in range(WAITING_MAX)]
+        assert numbers == [*range(WAITING_MAX)]
+        outlet.close()
+
+
+def test_a_robot_that_vanishes_is_offline_by_its_last_will(tmp_path: Path) -> None:
+    port = free_port()
+    outlet = to_broker(tmp_path, port)
+    with broker(tmp_path, port), closing(Listener(port)) as listener:
+        outlet.open()
+        assert listener.next("mucat/tested/status") == "online"
+        client = outlet._client
+        assert client is not None
+        client.socket().shutdown(socket.SHUT_RDWR)  # type: ignore[union-attr]
+        assert listener.next("mucat/tested/status") == "offline"
+        assert listener.next("mucat/tested/status") == "online"
+        outlet.close()
+
+
+def make_authority(folder: Path) -> None:
+    """A certificate for 127.0.0.1, which is its own authority."""
+    made = ["req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "2"]
+    names = ["-subj", "/CN=lab", "-addext", "subjectAltName=IP:127.0.0.1"]
+    files = ["-keyout", str(folder / "key.pem"), "-out", str(folder / "ca.pem")]
+    subprocess.run(["openssl", *made, *names, *files], check=True, capture_output=True)
+
+
+def wait_to_start(outlet: MqttOutlet) -> OutletCondition:
+    """The condition after the first attempt."""
+    wait_for(lambda: outlet.condition().state != "starting", "the broker's answer")
+    return outlet.condition()
+
+
+# paho leaves the socket of a certificate that is not trusted to the garbage collector.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_a_broker_with_tls_and_password(tmp_path: Path) -> None:
+    make_authority(tmp_path)
+    secret, other = tmp_path / "password", tmp_path / "other"
+    for file, text in ((secret, "deep water\n"), (other, "shallow\n")):
+        file.write_text(text)
+        file.chmod(0o600)
+    known = tmp_path / "known"
+    subprocess.run(["mosquitto_passwd", "-b", "-c", str(known), "turtle", "deep water"], check=True)
+    port = free_port()
+    tls = (f"certfile {tmp_path}/ca.pem", f"keyfile {tmp_path}/key.pem", f"password_file {known}")
+    with broker(tmp_path, port, *tls, "allow_anonymous false"):
+        trusted = {"mqtt_user": "turtle", "mqtt_password_file": str(secret), "ca_file": "ca.pem"}
+        for entries, state, words in (
+            (trusted, "ok", "Connected."),
+            (trusted | {"mqtt_password_file": str(other)}, "failed", "refuses the robot: Not authorized."),
+            (trusted | {"ca_file": ""}, "failed", "its certificate is not trusted: self-signed certificate"),
+        ):
+            outlet = to_broker(tmp_path, port, "mqtts", **entries)
+            outlet.open()
+            found = wait_to_start(outlet)
+            assert found.state == state
+            assert words in found.text
+            outlet.close()
+
+
+def test_a_secret_that_others_can_read_is_not_used(tmp_path: Path) -> None:
+    secret = tmp_path / "secret"
+    secret.write_text("word\n")
+    secret.chmod(0o644)
+    broken = to_broker(tmp_path, 1, mqtt_user="turtle", mqtt_password_file="secret")
+    hook = WebhookOutlet(EventsConfig(webhook="http://127.0.0.1:1", webhook_token_file="secret"), tmp_path)
+    for outlet in (broken, hook):
+        outlet.open()
+        assert "Other users can read" in outlet.condition().text
+        outlet.publish(EVENT)
+        outlet.close()
+    absent = to_broker(tmp_path, 1, mqtt_user="turtle", mqtt_password_file="none")
+    absent.open()
+    assert "cannot be read" in absent.condition().text
+
+
+def test_a_web_address_gets_each_event_with_its_token(tmp_path: Path, receiver: Receiver) -> None:
+    (tmp_path / "token").write_text("lab-token\n")
+    (tmp_path / "token").chmod(0o600)
+    outlet = WebhookOutlet(EventsConfig(webhook=receiver.url, webhook_token_file="token"), tmp_path)
+    outlet.open()
+    for number in (1, 2):
+        outlet.publish(event(number))
+    for number in (1, 2):
+        path, headers, body = receiver.requests.get(timeout=SECONDS)
+        assert path == "/robots?lab=1"
+        assert headers["Authorization"] == "Bearer lab-token"
+        assert body["number"] == number
+    outlet.close()
+    assert outlet.condition() == ("ok", f"{receiver.url}: Accepts events. Messages sent: 2.")
+
+
+@pytest.mark.usefixtures("quick")
+def test_an_address_that_fails_gets_the_event_again_and_is_not_followed_elsewhere(
+    tmp_path: Path, receiver: Receiver
+) -> None:
+    receiver.answers = [503, 307, 401, 400, 204]
+    outlet = WebhookOutlet(EventsConfig(webhook=receiver.url), tmp_path)
+    outlet.open()
+    outlet.publish(event(1))
+    outlet.publish(event(2))
+    found = [receiver.requests.get(timeout=SECONDS) for _ in range(5)]
+    assert [body["number"] for _, _, body in found] == [1, 1, 1, 1, 2]
+    assert {path for path, _, _ in found} == {"/robots?lab=1"}
+    outlet.close()
+    assert outlet.condition().text.endswith("Accepts events. Messages sent: 1, lost: 1.")
+
+
+def drip(server: socket.socket) -> None:
+    """Answer byte by byte, without an end."""
+    connection, _ = server.accept()
+    with connection, suppress(OSError):
+        connection.sendall(b"HTTP/1.1 200 OK\r\nX-Long: ")
+        while True:
+            connection.sendall(b"a")
+            time.sleep(0.02)
+
+
+def test_an_address_that_never_answers_is_cut_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(webhook, "ANSWER_SECONDS", 0.2)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        threading.Thread(target=drip, args=(server,), daemon=True).start()
+        outlet = WebhookOutlet(EventsConfig(webhook=f"http://127.0.0.1:{server.getsockname()[1]}/"), tmp_path)
+        outlet.open()
+        for number in range(WAITING_MAX + 5):
+            outlet.publish(event(number))
+        wait_for(lambda: outlet.condition().state == "failed", "the address to be given up")
+        assert "Cannot be reached" in outlet.condition().text
+        assert "lost" in outlet.condition().text
+        began = time.monotonic()
+        outlet.close()
+        assert time.monotonic() - began < SECONDS
+
+
+def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(settings: Settings) -> None:
+    connected = threading.Event()
+
+    def accept(server: socket.socket, held: list[socket.socket]) -> None:
+        while True:
+            try:
+                held.append(server.accept()[0])
+            except OSError:
+                return
+            connected.set()
+
+    held: list[socket.socket] = []
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        thread = threading.Thread(target=accept, args=(server, held), daemon=True)
+        thread.start()
+        port = server.getsockname()[1]
+        mute = EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}", webhook=f"http://127.0.0.1:{port}/")
+
+        async def scenario(served: Served) -> None:
+            await until(connected.is_set, "the broker to be asked")
+            announcer = served.container.events
+            longest = 0.0
+            for number in range(2 * WAITING_MAX):
+                began = time.perf_counter()
+                announcer.see_comm_test(number, "Grid", "complete", "")
+                longest = max(longest, time.perf_counter() - began)
+            assert longest < 1.0  # it would be 5 s, the time that a connection may take
+            assert (await served.api.post("/robot/stop")).status_code in (204, 503)
+            part = (await served.api.get("/health")).json()["parts"][-1]
+            assert part["name"] == "events"
+            assert f"mqtt://127.0.0.1:{port}" in part["text"]
+
+        play(replace(settings, events=mute), scenario)
+        server.shutdown(socket.SHUT_RDWR)
+        thread.join()
+        for one in held:
+            one.close()
+
+
+def test_a_server_tells_of_a_recording_from_its_start_to_its_end(
+    settings: Settings, receiver: Receiver
+) -> None:
+    folder, port = settings.config.parent, free_port()
+    both = EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}", webhook=receiver.url)
+    with broker(folder, port), closing(Listener(port)) as listener:
+
+        async def scenario(served: Served) -> None:
+            assert await asyncio.to_thread(listener.next, "mucat/tested/status") == "online"
+            started = await served.api.post("/sessions", json={"name": "Dive"})
+            session = started.raise_for_status().json()["id"]
+            began = await asyncio.to_thread(listener.next, "mucat/tested/event/session_began")
+            assert (began["subject"], began["id"]) == ("Dive", session)
+            scenarios, tuning = served.container.scenarios, served.container.tuning
+            scenarios._last, tuning._last = SCENARIO, TUNING
+            scenarios.announce()
+            tuning.announce()
+            for kind in ("scenario", "tuning"):
+                ended = await asyncio.to_thread(listener.next, f"mucat/tested/event/{kind}_ended")
+                assert (ended["subject"], ended["state"]) == (kind, "complete")
+
+        play(replace(settings, events=both), scenario)
+        # The server has ended, and the recording with it.
+        assert listener.next("mucat/tested/event/session_ended")["subject"] == "Dive"
+        assert listener.next("mucat/tested/status") == "offline"
+    kinds = [receiver.requests.get(timeout=SECONDS)[2]["event"] for _ in range(4)]
+    assert kinds == ["session_began", "scenario_ended", "tuning_ended", "session_ended"]
