@@ -1,12 +1,15 @@
 """The commands of the tutorial and the task pages, run in a reader's order."""
 
 import os
+import re
 import shlex
 import subprocess
 from pathlib import Path
 
+import click
 import pytest
 
+from server.cli import mucat
 from tests.documents.blocks import DOCS, read_commands
 from tests.stack import Stack
 
@@ -75,6 +78,31 @@ def test_the_commands_of_a_page_can_be_run_beside_a_server(shared_stack: Stack, 
     folder = shared_stack.data.parent
     (folder / "robot.toml").write_text((ROOT / "robot.toml").read_text())
     run(read_commands(page), folder)
+
+
+def test_every_command_of_an_installed_robot_exists_with_its_options() -> None:
+    lines = [
+        line.strip().removeprefix("sudo ")
+        for page in (DOCS / "run").rglob("*.md")
+        for text in re.findall(r"```\w*(?: title=.*)?\n(.*?)```", page.read_text(), re.DOTALL)
+        for line in text.splitlines()
+    ]
+    commands = [shlex.split(line)[1:] for line in lines if line.startswith("mucat ")]
+    assert len(commands) > 10
+    for words in commands:
+        check_command(mucat, words)
+
+
+def check_command(command: click.Command, words: list[str], above: click.Context | None = None) -> None:
+    """Fail where click does not accept the words."""
+    context = click.Context(command, above)
+    if isinstance(command, click.Group):
+        name, found, rest = command.resolve_command(context, words)
+        assert name is not None
+        assert found is not None
+        check_command(found, rest, context)
+    else:
+        command.make_context(command.name, words, above)
 
 
 def test_every_page_of_tasks_with_commands_is_run() -> None:
