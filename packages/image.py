@@ -82,6 +82,7 @@ def build_image(secret: Path, dist: Path) -> Path:
         _make_root(root, ARCHITECTURES[machine].debian)
         release = build_release(secret, machine, PYTHON, root.with_name("release"))
         _install(root, release)
+        dist.mkdir(exist_ok=True)
         archive.unlink(missing_ok=True)
         _pack(root, archive)
     return archive
@@ -125,8 +126,7 @@ def _pack(root: Path, archive: Path) -> None:
 
 
 def _buildah(*words: str) -> str:
-    done = subprocess.run(["buildah", *words], check=True, capture_output=True, text=False)
-    return done.stdout.decode().strip()
+    return subprocess.run(["buildah", *words], check=True, capture_output=True).stdout.decode().strip()
 
 
 if __name__ == "__main__":
