@@ -105,7 +105,7 @@ def _correct(connection: Connection, rows: list[SessionRow], ahead: float, now: 
         connection.execute(
             update(BookmarkRow)
             .where(col(BookmarkRow.session_id) == row.id)
-            .values(made=BookmarkRow.made + late)  # type: ignore[operator]
+            .values(made=BookmarkRow.made + late)
         )
 
 

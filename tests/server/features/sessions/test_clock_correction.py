@@ -5,6 +5,7 @@ import json
 from typing import Any
 
 import pytest
+from sqlalchemy import update
 from sqlmodel import col, select
 
 from robot_runtime.clock import SimulatedClock
@@ -151,8 +152,9 @@ def test_a_deleted_session_stays_its_whole_time_in_the_bin(pi: Pi) -> None:
     async def scenario() -> None:
         before, after = await pi.record(OLD), await pi.record(OLD)
         for session, moment in ((before, OLD + 8.0), (after, RIGHT + 9.0)):
-            statement = f"UPDATE session SET deleted = {moment} WHERE id = {session}"
-            await pi.store.write(lambda connection, text=statement: connection.exec_driver_sql(text))
+            await pi.store.execute(
+                update(SessionRow).where(col(SessionRow.id) == session).values(deleted=moment)
+            )
         await pi.look()
         assert [pi.row(one).deleted for one in (before, after)] == [RIGHT + 8.0, RIGHT + 10.0]
 
