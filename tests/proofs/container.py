@@ -48,7 +48,7 @@ class Container:
             file.truncate(CARD_BYTES)
         subprocess.run(["mkfs.ext4", "-q", "-F", "-m", "0", str(image)], check=True)
         self._card.mkdir()
-        subprocess.run(["mount", "-o", "loop", str(image), str(self._card)], check=True)
+        subprocess.run(["mount", "-o", "loop,errors=remount-ro", str(image), str(self._card)], check=True)
         self.start()
         return self
 

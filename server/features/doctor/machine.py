@@ -123,7 +123,7 @@ def read_machine(
         data=str(settings.data.path),
         data_writable=os.access(_existing(settings.data.path), os.W_OK),
         disk_free=free_bytes(_existing(settings.data.path)),
-        disk_read_only=bool(os.statvfs(_existing(settings.data.path)).f_flag & os.ST_RDONLY),
+        disk_read_only=_is_read_only(_existing(settings.data.path), _read(root / "proc/mounts")),
         database_problem=_try_database(settings),
         firmware=str(firmware),
         firmware_there=firmware.exists(),
@@ -171,6 +171,22 @@ def _existing(path: Path) -> Path:
     while not path.exists():
         path = path.parent
     return path
+
+
+def _is_read_only(path: Path, mounts: str) -> bool:
+    """True for a disk that cannot be written, also where the kernel has given it up after a failed write.
+
+    From Linux 6.15 on only the options of such a mount, its fourth word, say so.
+    """
+    if os.statvfs(path).f_flag & os.ST_RDONLY:
+        return True
+    found = [line.split() for line in mounts.splitlines()]
+    above = [words for words in found if len(words) > 3 and path.is_relative_to(words[1])]
+    # Of several at one place the last one covers the others.
+    nearest = max(
+        enumerate(above), key=lambda one: (len(Path(one[1][1]).parts), one[0]), default=(0, [""] * 4)
+    )
+    return "emergency_ro" in nearest[1][3].split(",")
 
 
 def _pretty_name(release: str) -> str:
