@@ -116,11 +116,20 @@ def _install(root: Path, release: Path) -> None:
 
 
 def _pack(root: Path, archive: Path) -> None:
+    # An archive, which keeps the owners.
+    layer = root.with_suffix(".tar")
+    subprocess.run(["tar", "-C", str(root), "-cf", str(layer), "."], check=True, capture_output=True)
     container = _buildah("from", "scratch")
     try:
-        _buildah("add", "--quiet", container, str(root), "/")
+        _buildah("add", "--quiet", container, str(layer), "/")
         _buildah("config", *CONFIG, "--label", f"org.opencontainers.image.version={VERSION}", container)
-        _buildah("commit", "--quiet", container, f"oci-archive:{archive}:mucat:{VERSION}")
+        _buildah(
+            "commit",
+            "--quiet",
+            "--disable-compression=false",
+            container,
+            f"oci-archive:{archive}:mucat:{VERSION}",
+        )
     finally:
         _buildah("rm", container)
 

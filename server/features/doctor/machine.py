@@ -183,10 +183,8 @@ def _is_read_only(path: Path, mounts: str) -> bool:
     found = [line.split() for line in mounts.splitlines()]
     above = [words for words in found if len(words) > 3 and path.is_relative_to(words[1])]
     # Of several at one place the last one covers the others.
-    nearest = max(
-        enumerate(above), key=lambda one: (len(Path(one[1][1]).parts), one[0]), default=(0, [""] * 4)
-    )
-    return "emergency_ro" in nearest[1][3].split(",")
+    nearest = sorted(above, key=lambda words: len(Path(words[1]).parts))[-1:]
+    return any("emergency_ro" in words[3].split(",") for words in nearest)
 
 
 def _pretty_name(release: str) -> str:
