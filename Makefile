@@ -34,7 +34,7 @@ PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/te
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks \
+.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -234,6 +234,13 @@ all-wheels: build/.packages-packages setup ## the same with the emulated board f
 release: setup ## build a signed release for robots into dist/: make release KEY=~/release-key.pem (MACHINE=aarch64 PYTHON_OF=3.13)
 	@test -n "$(KEY)" || { echo "Name the secret key, which is made where there is none: make release KEY=FILE"; exit 1; }
 	@$(PYTHON) -m packages.release $(KEY) $(addprefix --machine ,$(MACHINE)) $(addprefix --python ,$(PYTHON_OF))
+
+image: setup build/.packages-packages ## build the container image of the emulated robot and the lab into dist/ (needs root): make image KEY=FILE
+	@test -n "$(KEY)" || { echo "Name the secret key, which is made where there is none: make image KEY=FILE"; exit 1; }
+	@$(PYTHON) -m packages.image $(KEY)
+
+image-swims: setup build/.packages-packages ## build the image, start it, arm its robot and fetch the page (needs root)
+	@nice $(PYTHON) -m tests.proofs.image
 
 clean: ## remove everything that was built
 	rm -rf build dist .venv frontend/node_modules tests/clients/node_modules server/page server/help

@@ -42,6 +42,7 @@ from server.features.scenarios.simulated_run import SimulatedExecutor
 from server.features.sessions.auto_recording import AutoRecorder
 from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.clock_correction import ClockCorrection
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.resume import InterruptedSession, find_missing
 from server.features.sessions.retention import RetentionWorker
@@ -132,6 +133,7 @@ class Container:
         self.bookmarks = Bookmarks(self.store, self.clock, self.recorder)
         self.mission_marks = MissionMarks(self.recorder, self.bookmarks)
         self.retention = RetentionWorker(self.store, self.settings, self.notices, self.clock)
+        self.clock_correction = ClockCorrection(self.store, self.notices, self.clock)
         self.arming = AutoRecorder(self.recorder, self.clock, self.notices, self._armed_row)
         self.jobs = Jobs(self.settings.data, self.store, self.clock)
         self.imports = Imports(self.settings.data, self.store)
@@ -228,6 +230,7 @@ class Container:
                     self.jobs.run(),
                     self.hub.watch(),
                     self.retention.run(),
+                    self.clock_correction.run(),
                     self.arbiter.run(),
                     self.lease_sync.run(),
                     self.watchdog.run(),

@@ -10,6 +10,7 @@ import click
 from robot_runtime.simulation.boards.mistakes import check_mistake, write_list
 from server.platform.command_line import CommandError, with_settings
 from server.platform.folder_lock import claim
+from server.platform.last_configuration import keep_configuration
 from server.platform.settings import Settings, SetupError, keep_config
 
 if TYPE_CHECKING:
@@ -61,6 +62,8 @@ def run(settings: Settings, mistakes: tuple[str, ...], *, uncalibrated: bool, ex
     with claim(settings.data):
         if uncalibrated:
             settings.data.board_eeprom.unlink(missing_ok=True)
+        if external_runtime:
+            keep_configuration(settings)
         return _serve(keep_config(settings))
 
 

@@ -42,4 +42,16 @@ FAULTS: dict[str, FaultText] = {
         cause="The disk is full, broken or read-only.",
         remedy="Free some space, or check the disk. Up to 8 MB of a recording wait meanwhile.",
     ),
+    "configuration_damaged": FaultText(
+        severity="caution",
+        what="",
+        cause="A power cut while it was written, or a slip in its last change.",
+        remedy="Correct the file; then restart the services mucat-runtime and mucat.",
+    ),
+    "undervoltage": FaultText(
+        severity="caution",
+        what="The Raspberry Pi's supply is too low.",
+        cause="The battery is almost empty, or the regulator or a wire does not carry the current.",
+        remedy="Surface, and charge the battery. Meanwhile the processor is slowed, and the card at risk.",
+    ),
 }

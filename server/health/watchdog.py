@@ -2,12 +2,15 @@
 
 import asyncio
 import shutil
+from collections.abc import Callable
+from math import inf
 
 from robot_runtime.clock import Clock
 from robot_runtime.control.alarms import Alarms
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.platform.supply_voltage import UNDERVOLTAGE_NOW, UNDERVOLTAGE_SINCE, read_throttled
 from server.processes.supervisor import ProcessSupervisor
 
 PERIOD = 0.25
@@ -20,6 +23,8 @@ STARTING_SECONDS = 10.0
 DISK_LOW_BYTES = 500_000_000
 DISK_LOW_SHARE = 0.05
 """The alarm limit is the smaller of both: hours of recording, less on a small disk."""
+SUPPLY_SECONDS = 2.0
+"""Interval of looks at the supply, which ask the Raspberry Pi's firmware."""
 DISK_WELL = 1.2
 """Times the limit that must be free for the alarm to end, so that a file that comes and goes is one alarm."""
 DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scene")}
@@ -37,6 +42,7 @@ class Watchdog:
         processes: ProcessSupervisor,
         store: Store,
         alarms: Alarms,
+        throttled: Callable[[], int | None] = read_throttled,
     ) -> None:
         self._settings = settings
         self._clock = clock
@@ -44,6 +50,9 @@ class Watchdog:
         self._processes = processes
         self._store = store
         self._alarms = alarms
+        self._throttled = throttled
+        self._supply: int | None = None
+        self._supply_seen = -inf
         self._checked = clock.now()
         self._is_disk_low = False
         self._silent = 0.0
@@ -77,7 +86,19 @@ class Watchdog:
         self._is_disk_low = disk.free < (DISK_WELL * limit if self._is_disk_low else limit)
         see("disk_low", self._is_disk_low)
         see("store_failing", self._store.failing is not None)
+        see("configuration_damaged", bool(problem := self._settings.configuration_problem), problem)
+        if self._checked - self._supply_seen >= SUPPLY_SECONDS:
+            see("undervoltage", self._is_supply_low())
         see("server_restarted", False)
+
+    def _is_supply_low(self) -> bool:
+        """True where the supply is too low now, or was for a moment since the last look."""
+        before, self._supply = self._supply, self._throttled()
+        self._supply_seen = self._checked
+        if self._supply is None:
+            return False
+        dipped = before is not None and self._supply & ~before & UNDERVOLTAGE_SINCE
+        return bool(self._supply & UNDERVOLTAGE_NOW or dipped)
 
     def _is_silent(self, name: str) -> bool:
         process, last_heard = self._processes.get(name), self._monitor.last_heard[name]

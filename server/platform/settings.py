@@ -110,6 +110,8 @@ class DataFolder:
         """Your own missions: a folder each, with their versions."""
         self.config = path / "robot.toml"
         """The robot's configuration, unless the present folder has one."""
+        self.last_config = path / "robot.toml.last"
+        """The last configuration that could be used, for services where the present one cannot be."""
         self.craft = path / ADOPTED_CRAFT
         """The adopted craft (docs/use/identify.md)."""
         self.craft_before = path / "craft-before.toml"
@@ -149,6 +151,8 @@ class Settings:
     """The emulated board begins without a calibration."""
     external_runtime: bool = False
     """The runtime is a service of its own, which this server does not start and does not end."""
+    configuration_problem: str = ""
+    """Reason why these are the settings of the last configuration instead; empty if they are not."""
     build: Path = BUILD
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"
@@ -205,7 +209,7 @@ def read_settings(
 
     Without a `config` it is robot.toml in the present folder, else the data folder's, else the default one.
     """
-    folder = DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
+    folder = data_folder(data, environment)
     config = config or find_config(folder)
     try:
         loaded = load(config)
@@ -248,6 +252,11 @@ def read_settings(
         public_url=public_url,
         trusted_proxies=trusted_proxies,
     )
+
+
+def data_folder(data: Path | None, environment: Mapping[str, str]) -> DataFolder:
+    """Returns the data folder that the command line, else the environment names."""
+    return DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
 
 
 def find_config(folder: DataFolder) -> Path:

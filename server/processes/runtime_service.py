@@ -2,6 +2,7 @@
 
 import os
 import time
+from functools import partial
 from pathlib import Path
 
 import click
@@ -19,7 +20,7 @@ START_SECONDS = 60.0
 
 
 @click.command("runtime")
-@with_settings
+@partial(with_settings, is_service=True)
 def run_runtime(settings: Settings) -> None:
     """Run the robot's runtime alone; systemd starts this.
 

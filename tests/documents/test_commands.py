@@ -1,12 +1,17 @@
 """The commands of the tutorial and the task pages, run in a reader's order."""
 
 import os
+import re
 import shlex
 import subprocess
+from contextlib import suppress
 from pathlib import Path
 
+import click
 import pytest
+from click.exceptions import Exit
 
+from server.cli import mucat
 from tests.documents.blocks import DOCS, read_commands
 from tests.stack import Stack
 
@@ -75,6 +80,29 @@ def test_the_commands_of_a_page_can_be_run_beside_a_server(shared_stack: Stack, 
     folder = shared_stack.data.parent
     (folder / "robot.toml").write_text((ROOT / "robot.toml").read_text())
     run(read_commands(page), folder)
+
+
+def test_every_command_of_an_installed_robot_exists_with_its_options() -> None:
+    pages = [page.read_text(encoding="utf-8") for page in (DOCS / "run").rglob("*.md")]
+    found = re.findall(r"(?:^ *|`)(?:sudo )?mucat ([^`\n]+)", "\n".join(pages), re.MULTILINE)
+    commands = [shlex.split(words.split("\\|")[0]) for words in found]
+    assert len(commands) > 30
+    for words in commands:
+        if not words[0].startswith(("-", "COMMAND")):
+            check_command(mucat, words)
+
+
+def check_command(command: click.Command, words: list[str], above: click.Context | None = None) -> None:
+    """Fail for a command or an option that click does not know; FILE and other words may stand for values."""
+    context = click.Context(command, above)
+    if isinstance(command, click.Group):
+        name, found, rest = command.resolve_command(context, words)
+        assert name is not None
+        assert found is not None
+        check_command(found, rest, context)
+    else:
+        with suppress(click.BadParameter, Exit):
+            command.make_context(command.name, words, above)
 
 
 def test_every_page_of_tasks_with_commands_is_run() -> None:

@@ -3,6 +3,8 @@
 import shutil
 import subprocess
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
 
@@ -11,42 +13,69 @@ import psutil
 from tests.proofs.roots import FOLDER, PYTHON, RootSystem
 
 SYSTEM = RootSystem(
-    "amd64-bookworm-systemd",
+    "amd64-bookworm-services",
     "amd64",
     "bookworm",
     "As services",
-    (*PYTHON, "systemd", "systemd-sysv", "dbus", "openssl", "procps"),
+    (*PYTHON, "systemd", "systemd-sysv", "dbus", "openssl", "procps", "avrdude"),
 )
 START_SECONDS = 60.0
+CARD_BYTES = 200_000_000
 ORDER_SECONDS = 300.0
+GROUP = Path("/sys/fs/cgroup/memory/mucat-proof")
+"""The control group (version 1) that limits its memory."""
 _POLL = 0.2
 
 
 class Container:
-    """A copy of the system, with a folder of this computer at /releases; it has a network of its own."""
+    """A copy of the system, with a folder of this computer at /releases and an empty small card at /card.
 
-    def __init__(self, releases: Path) -> None:
+    It has a network of its own; `options` are systemd-nspawn's.
+    """
+
+    def __init__(self, releases: Path, *options: str) -> None:
         SYSTEM.make()
         self.root = FOLDER / "services"
-        self._releases = releases
+        self._options = (f"--bind-ro={releases}:/releases", *options)
         self._nspawn: subprocess.Popen[bytes] | None = None
+        self._kills = 0
 
     def __enter__(self) -> Self:
         subprocess.run(["rm", "-rf", "--one-file-system", str(self.root)], check=True)
         subprocess.run(["cp", "-a", str(SYSTEM.path), str(self.root)], check=True)
+        image = self.root.with_name("card.img")
+        with image.open("wb") as file:
+            file.truncate(CARD_BYTES)
+        subprocess.run(["mkfs.ext4", "-q", "-F", "-m", "0", str(image)], check=True)
+        self._card.mkdir()
+        subprocess.run(["mount", "-o", "loop,errors=remount-ro", str(image), str(self._card)], check=True)
         self.start()
         return self
 
     def __exit__(self, *_: object) -> None:
         self.cut_power()
+        subprocess.run(["umount", str(self._card)], check=True)
         shutil.rmtree(self.root)
+
+    @property
+    def _card(self) -> Path:
+        return self.root / "card"
+
+    def wear_card_out(self) -> None:
+        """Make the card at /card read-only, as the kernel does where a write to it fails."""
+        subprocess.run(["mount", "-o", "remount,abort", str(self._card)], check=True)
 
     def start(self) -> None:
         """Power on, until its services have been started."""
         command = ["systemd-nspawn", "--quiet", "--directory", str(self.root), "--boot", "--register=no"]
-        command += ["--keep-unit", "--private-network", f"--bind-ro={self._releases}:/releases"]
+        command += ["--keep-unit", "--private-network", *self._options]
         log = self.root.with_name("services.log").open("wb")
-        self._nspawn = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+        GROUP.mkdir(exist_ok=True)
+        self._kills = 0
+        self._kills = self.kills()
+        # The group first, the container in it then.
+        enter = ["sh", "-c", f'echo $$ > {GROUP}/cgroup.procs; exec "$@"', "sh"]
+        self._nspawn = subprocess.Popen([*enter, *command], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
         end = time.monotonic() + START_SECONDS
         while self.order("systemctl is-system-running")[1].strip() not in ("running", "degraded"):
             assert time.monotonic() < end, "systemd does not come up"
@@ -60,6 +89,24 @@ class Container:
         self._nspawn.kill()
         self._nspawn.wait()
         self._nspawn = None
+
+    def processes(self) -> list[psutil.Process]:
+        """All processes in it."""
+        return [one for init in self._init() for one in init.children(recursive=True)]
+
+    @contextmanager
+    def limited_memory(self, limit: int) -> Iterator[None]:
+        """All of it together has so many bytes meanwhile, and no swap."""
+        (GROUP / "memory.limit_in_bytes").write_text(str(limit))
+        try:
+            yield
+        finally:
+            (GROUP / "memory.limit_in_bytes").write_text("-1")
+
+    def kills(self) -> int:
+        """Processes that were ended for want of memory since the power came."""
+        words = (GROUP / "memory.oom_control").read_text().split()
+        return int(words[words.index("oom_kill") + 1]) - self._kills
 
     def order(self, words: str, seconds: float = ORDER_SECONDS) -> tuple[int, str]:
         """Run a line of shell in it; its status, and what it printed."""

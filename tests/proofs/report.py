@@ -74,10 +74,8 @@ STAGES: tuple[Stage, ...] = (
                 Proof("soak", "No corrupted frame is believed, and no reset loses a message."),
                 Proof("fuzz", "No bytes bring down the firmware's end of the line."),
                 Proof("control", "The depth controllers, on each craft."),
-                Proof(
-                    "missions",
-                    "Each leaf of a mission, and random missions, end safely.",
-                ),
+                Proof("missions", "Each leaf of a mission, and random missions, end safely."),
+                Proof("image-swims", "The container image starts, and its robot swims."),
                 Proof("packages", "The wheels install and swim on fresh systems of each architecture."),
             ),
             at_once=2,

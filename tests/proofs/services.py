@@ -4,23 +4,26 @@ Three signed releases: of this version, a later one, and one whose server does n
 after the switch to that one. Prints a line for each step; status 1 where one does not end as it must.
 """
 
-import re
 import shutil
 import sys
 import tempfile
-import time
 import zipfile
-from collections.abc import Callable
+from collections.abc import Mapping
 from pathlib import Path
 
 from packages.release import build_release
 from packages.signing import make_key, sign_folder, write_public_key
+from robot_runtime.config import LinkConfig
+from robot_runtime.places import BUILD
+from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
 from tests.proofs.container import Container
+from tests.proofs.real_board import board, mark_firmware, update_with_board
+from tests.proofs.small_computer import live
+from tests.proofs.steps import Steps, ask_server
 
 LATER, BROKEN = "98.0.0", "99.0.0"
 BREAK = 'raise SystemExit("This release does not work.")\n'
-PATIENCE = 90.0
 SEND = """
 send_file(data, "/update/release", Path("/releases/{name}"), 60.0)
 print(ask(data, "POST", "/update")["phase"])
@@ -31,45 +34,6 @@ print(ask(data, "GET", "/update")["text"])
 """
 
 
-class Steps:
-    """The steps, each with what it must print or leave."""
-
-    def __init__(self, container: Container) -> None:
-        self._container = container
-        self.failed = 0
-
-    def take(self, name: str, words: str, wanted: str, *, status: int = 0) -> None:
-        """Run a line of shell, which must end with this status and print what matches."""
-        began = time.monotonic()
-        found, said = self._container.order(words)
-        good = found == status and re.search(wanted, said) is not None
-        self._tell(name, good, time.monotonic() - began, said)
-
-    def wait(self, name: str, condition: Callable[[], bool]) -> None:
-        """Wait until something is so."""
-        began = time.monotonic()
-        while not (good := condition()) and time.monotonic() - began < PATIENCE:
-            time.sleep(0.2)
-        self._tell(name, good, time.monotonic() - began, "it did not come")
-
-    def _tell(self, name: str, good: bool, seconds: float, said: str) -> None:
-        self.failed += not good
-        last = "" if good else "\n" + said[-2000:]
-        print(f"{'good' if good else 'BAD '} {name} ({seconds:.0f} s){last}", flush=True)
-
-    def runs(self, version: str) -> None:
-        """Both services of this version must run, and the server say that it is well."""
-        self.wait(f"{version} runs", lambda: self._is_well(version))
-
-    def _is_well(self, version: str) -> bool:
-        question = (
-            "MUCAT_DATA=/var/lib/mucat MUCAT_CONFIG=/etc/mucat/robot.toml runuser -u mucat --"
-            " /opt/mucat/current/bin/python -I -m server.features.installation.survey"
-        )
-        said = self._container.order(question)[1]
-        return f'"running": "{version}", "problem": ""' in said
-
-
 def main() -> int:
     """Run all steps; returns 1 where one failed."""
     with tempfile.TemporaryDirectory() as name:
@@ -77,7 +41,9 @@ def main() -> int:
         # The user of the data sends one.
         releases.chmod(0o755)
         make_releases(releases)
-        with Container(releases) as container:
+        place = releases / "board"
+        place.mkdir()
+        with board(place) as options, Container(releases, *options) as container:
             return 1 if try_all(container) else 0
 
 
@@ -85,7 +51,10 @@ def try_all(container: Container) -> int:
     """The number of steps that did not end as they must."""
     steps = Steps(container)
     current = container.root / "opt/mucat/current"
-    steps.take("install", "sh /releases/first/install.sh --yes", f"µ-CAT {VERSION} runs")
+    steps.follow("Install", f"µ-CAT {VERSION} runs")
+    steps.runs(VERSION)
+    for title in ("Look", "Every day", "It does not start"):
+        steps.follow(title)
     steps.runs(VERSION)
     steps.take("record", "mucat record start pool", "has begun")
     steps.take("update while it records", f"mucat update /releases/{LATER}", "is being recorded", status=1)
@@ -93,6 +62,7 @@ def try_all(container: Container) -> int:
     for unit in ("mucat.service", "mucat-runtime.service"):
         steps.take(f"kill {unit}", f"systemctl kill -s KILL {unit}", "")
         steps.runs(VERSION)
+    live(container, steps, VERSION)
     steps.take("a cut ZIP file", "mucat update /releases/cut.zip", "no whole ZIP file", status=1)
     steps.take("another's signature", "mucat update /releases/other", "signature .* is wrong", status=1)
     steps.take("update", f"mucat update /releases/{LATER}.zip", f"µ-CAT {LATER} is in use")
@@ -117,6 +87,7 @@ def try_all(container: Container) -> int:
     container.start()
     steps.runs(LATER)
     steps.take("roll back", "mucat rollback", f"µ-CAT {VERSION} is in use")
+    update_with_board(container, steps, VERSION, LATER)
     steps.take("uninstall", "mucat uninstall", "stay")
     steps.take("the data stay", "ls /var/lib/mucat/mucat.db; ls /opt/mucat 2>&1 || true", "No such file")
     return steps.failed
@@ -127,26 +98,23 @@ def tells(container: Container, words: str) -> bool:
     return words in container.order(ask_server(WATCH))[1]
 
 
-def ask_server(program: str) -> str:
-    """The line of shell by which the user of the data runs these requests to the server."""
-    head = (
-        "from pathlib import Path; from server.platform.running_server import ask, send_file;"
-        ' from server.platform.settings import DataFolder; data = DataFolder(Path("/var/lib/mucat"))'
-    )
-    return f"runuser -u mucat -- /opt/mucat/current/bin/python -I -c '{head}{program}'"
-
-
 def make_releases(folder: Path) -> None:
     """Build the releases, all signed with one key but "other"."""
     key = folder / "key.pem"
     built = build_release(key, "x86_64", "3.11", folder / "dist")
     first = folder / "first"
     built.rename(first)
-    for version, break_it in ((LATER, False), (BROKEN, True)):
+    firmware = folder / "robot.hex"
+    shutil.copy(firmware_path(BUILD, LinkConfig().baud, ".hex"), firmware)
+    mark_firmware(firmware)
+    for version, changed in (
+        (LATER, {"mucat_build/firmware/robot.hex": firmware.read_bytes()}),
+        (BROKEN, {"server/startup.py": BREAK.encode()}),
+    ):
         release = folder / version
         shutil.copytree(first, release)
         wheel = next(release.glob("mucat-*.whl"))
-        raise_version(wheel, version, break_it=break_it)
+        raise_version(wheel, version, changed)
         sign_folder(release, key)
     shutil.make_archive(str(folder / LATER), "zip", folder / LATER)
     (folder / "cut.zip").write_bytes((folder / f"{LATER}.zip").read_bytes()[:-1000])
@@ -156,17 +124,15 @@ def make_releases(folder: Path) -> None:
     write_public_key(folder / "other.pem", folder / "other/release.pem")
 
 
-def raise_version(wheel: Path, version: str, *, break_it: bool) -> None:
-    """Make another version of a wheel of mucat."""
+def raise_version(wheel: Path, version: str, changed: Mapping[str, bytes]) -> None:
+    """Make another version of a wheel of mucat, with these files changed."""
     goal = wheel.with_name(f"mucat-{version}-py3-none-any.whl")
     with zipfile.ZipFile(wheel) as source, zipfile.ZipFile(goal, "w", zipfile.ZIP_DEFLATED) as copy:
         for name in source.namelist():
             data = source.read(name)
             if name == "server/__init__.py" or ".dist-info/" in name:
                 data = data.replace(VERSION.encode(), version.encode())
-            if break_it and name == "server/startup.py":
-                data = BREAK.encode()
-            copy.writestr(name.replace(f"mucat-{VERSION}", f"mucat-{version}"), data)
+            copy.writestr(name.replace(f"mucat-{VERSION}", f"mucat-{version}"), changed.get(name, data))
     wheel.unlink()
 
 

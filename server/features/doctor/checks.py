@@ -5,17 +5,15 @@ from collections.abc import Callable
 from server.features.doctor.findings import Finding, Reporter
 from server.features.doctor.machine import SERVICE, Machine
 from server.platform.disk_space import DIVE_BYTES
+from server.platform.supply_voltage import UNDERVOLTAGE_NOW, UNDERVOLTAGE_SINCE
+from server.platform.wall_clock import is_set
 
 PYTHON_LEAST = (3, 11)
 DISK_LOW = 500_000_000
 """Bytes; below them the server's alarm `disk_low` begins."""
-BUILT = 1_760_000_000
-"""s since 1970, October 2025; a clock before that has not been set since the computer started."""
 SMALL_MEMORY = 1_000_000_000
 """Bytes; with less a Raspberry Pi needs compressed swap."""
 GROUPS = ("dialout", "gpio", "video")
-UNDERVOLTAGE_NOW, UNDERVOLTAGE_SINCE = 1, 1 << 16
-"""Bits of `vcgencmd get_throttled`: the supply is too low, and was since the start."""
 RESET_LABELS = ("pinctrl-bcm", "pinctrl-rp1")
 """Beginnings of the labels of a Raspberry Pi's own GPIO chips."""
 
@@ -26,7 +24,8 @@ def check_configuration(machine: Machine) -> Finding | None:
     """The configuration can be used."""
     report = Reporter("configuration", "Configuration")
     if machine.configuration_problem:
-        return report.wrong(machine.configuration_problem, "Correct it: docs/run/configure.md")
+        then = ", then: sudo systemctl restart mucat-runtime mucat" if SERVICE in machine.units else ""
+        return report.wrong(machine.configuration_problem, f"Correct it (docs/run/configure.md){then}")
     return report.ok(f"Mode “{machine.mode}”.")
 
 
@@ -214,7 +213,7 @@ def check_camera(machine: Machine) -> Finding | None:
 def check_clock(machine: Machine) -> Finding | None:
     """The clock is right; a Raspberry Pi has none of its own while it is off."""
     report = Reporter("clock", "Clock")
-    if machine.now < BUILT:
+    if not is_set(machine.now):
         return report.look(
             "The clock has not been set: recordings get a wrong date. Control does not depend on it.",
             "sudo date -u -s '2026-11-24 12:00', or a network with a time server",

@@ -13,8 +13,9 @@ from server.features.doctor.findings import print_findings, worst
 from server.features.doctor.machine import Machine, read_machine
 from server.platform.command_line import config_option, data_option
 from server.platform.folder_lock import runner_of
+from server.platform.last_configuration import read_service_settings
 from server.platform.running_server import ask
-from server.platform.settings import DataFolder, Settings, SetupError, find_config, read_settings
+from server.platform.settings import Settings, SetupError, data_folder, find_config
 from server.platform.terminal import echo
 
 
@@ -37,9 +38,9 @@ def doctor(data: Path | None, config: Path | None, *, as_json: bool) -> int:
 
 def _look(config: Path | None, data: Path | None) -> Machine:
     try:
-        settings = read_settings(config, data, None, None, os.environ)
+        settings = read_service_settings(config, data, None, None, os.environ)
     except SetupError as problem:
-        folder = DataFolder((data or Path(os.environ.get("MUCAT_DATA") or "data")).absolute())
+        folder = data_folder(data, os.environ)
         settings = Settings(data=folder, config=(config or find_config(folder)).absolute())
         return replace(read_machine(settings, time.time()), configuration_problem=str(problem))
     return read_machine(settings, time.time(), _ask_health(settings))

@@ -1,6 +1,5 @@
 """The computer as the doctor sees it: plain facts, read once, which the checks judge."""
 
-import ctypes
 import fcntl
 import grp
 import os
@@ -18,13 +17,11 @@ from pathlib import Path
 
 from server.platform.disk_space import free_bytes
 from server.platform.settings import Settings
+from server.platform.supply_voltage import read_throttled
+from server.platform.wall_clock import is_synchronised
 
 GPIO_GET_CHIPINFO = 0x8044B401
 """ioctl of a GPIO character device (linux/gpio.h): name and label, 32 bytes each, and a number."""
-TIME_ERROR = 5
-"""Answer of adjtimex(2) while the clock is not synchronised."""
-TIMEX_BYTES = 512
-"""At least the size of `struct timex` on every architecture."""
 IMPORT_SECONDS = 120.0
 """The longest import of all libraries, on a Raspberry Pi Zero."""
 LIBRARIES = ("zenoh", "numpy", "cv2", "pydantic_core", "sqlalchemy", "serial", "cobs")
@@ -85,7 +82,7 @@ class Machine:
     now: float = 0.0
     clock_synchronised: bool = True
     throttled: int | None = None
-    """The bits of `vcgencmd get_throttled`; None where there is no such file."""
+    """The bits of platform/supply_voltage.py; None where there is no such file."""
     memory_cgroup: bool = True
     memory: int = 10**9
     swaps: tuple[str, ...] = ()
@@ -129,10 +126,11 @@ def read_machine(
         architecture=platform.machine(),
         model=_read(root / "proc/device-tree/model").strip("\0\n "),
         broken_libraries=_try_libraries() if thorough else None,
+        configuration_problem=settings.configuration_problem,
         data=str(settings.data.path),
         data_writable=os.access(_existing(settings.data.path), os.W_OK),
         disk_free=free_bytes(_existing(settings.data.path)),
-        disk_read_only=bool(os.statvfs(_existing(settings.data.path)).f_flag & os.ST_RDONLY),
+        disk_read_only=_is_read_only(_existing(settings.data.path), _read(root / "proc/mounts")),
         database_problem=_try_database(settings),
         firmware=str(firmware),
         firmware_there=firmware.exists(),
@@ -158,8 +156,8 @@ def read_machine(
         camera_library=_has_picamera(),
         cameras=_list_cameras(root),
         now=now,
-        clock_synchronised=_is_synchronised(),
-        throttled=_read_throttled(root),
+        clock_synchronised=is_synchronised(),
+        throttled=read_throttled(root),
         memory_cgroup=_has_memory_cgroup(root),
         memory=os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"),
         swaps=tuple(line.split()[0] for line in _read(root / "proc/swaps").splitlines()[1:] if line),
@@ -183,6 +181,20 @@ def _existing(path: Path) -> Path:
     while not path.exists():
         path = path.parent
     return path
+
+
+def _is_read_only(path: Path, mounts: str) -> bool:
+    """True for a disk that cannot be written, also where the kernel has given it up after a failed write.
+
+    From Linux 6.15 on only the options of such a mount, its fourth word, say so.
+    """
+    if os.statvfs(path).f_flag & os.ST_RDONLY:
+        return True
+    found = [line.split() for line in mounts.splitlines()]
+    above = [words for words in found if len(words) > 3 and path.is_relative_to(words[1])]
+    # Of several at one place the last one covers the others.
+    nearest = sorted(above, key=lambda words: len(Path(words[1]).parts))[-1:]
+    return any("emergency_ro" in words[3].split(",") for words in nearest)
 
 
 def _pretty_name(release: str) -> str:
@@ -327,20 +339,6 @@ def _has_picamera() -> bool:
 def _list_cameras(root: Path) -> tuple[str, ...]:
     names = (_read(one).strip() for one in (root / "sys/class/video4linux").glob("*/name"))
     return tuple(sorted({one for one in names if one.startswith(("unicam", "rp1-cfe"))}))
-
-
-def _is_synchronised() -> bool:
-    """True where the kernel says so; asking for it needs no right (adjtimex(2) without a mode)."""
-    state = int(ctypes.CDLL(None).adjtimex(ctypes.create_string_buffer(TIMEX_BYTES)))
-    return 0 <= state < TIME_ERROR
-
-
-def _read_throttled(root: Path) -> int | None:
-    text = _read(root / "sys/devices/platform/soc/soc:firmware/get_throttled").strip()
-    try:
-        return int(text, 16)
-    except ValueError:
-        return None
 
 
 def _has_memory_cgroup(root: Path) -> bool:

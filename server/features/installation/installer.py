@@ -10,7 +10,7 @@ from server.features.installation.effects import CommandFailedError, Effects
 from server.features.installation.environments import build_environment
 from server.features.installation.places import SERVICES, USER, InstallPlaces
 from server.features.installation.release import Release
-from server.features.installation.units import write_command, write_units
+from server.features.installation.units import JOURNAL, write_command, write_units
 from server.features.installation.versions import look_at
 from server.platform.disk_space import free_bytes
 from server.platform.settings import SetupError
@@ -103,6 +103,8 @@ class Installer:
         units = write_units(places)
         changed = [effects.write(places.units / name, text) for name, text in units.items()]
         effects.write(places.command, write_command(places), 0o755)
+        if places.boot is not None:
+            effects.write(places.journal_limit, JOURNAL)
         effects.run("systemctl", "daemon-reload")
         enabled = [name for name, text in units.items() if "[Install]" in text]
         effects.run("systemctl", "enable", "--quiet", *enabled)
@@ -150,6 +152,7 @@ class Installer:
         for name in names:
             effects.remove(places.units / name)
         effects.run("systemctl", "daemon-reload")
+        effects.remove(places.journal_limit)
         effects.remove(places.command)
         effects.remove(places.software)
 

@@ -41,6 +41,8 @@ class InstallPlaces:
         self.lock = root / "run/mucat-update.lock"
         """Held by what changes the installation."""
         self.units = root / "etc/systemd/system"
+        self.journal_limit = root / "etc/systemd/journald.conf.d/mucat.conf"
+        """Limit of the system's journal, on a Raspberry Pi."""
         self.command = root / "usr/local/bin/mucat"
 
     def version(self, name: str) -> Path:

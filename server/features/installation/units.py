@@ -23,6 +23,7 @@ SystemCallFilter=@system-service adjtimex clock_adjtime
 SystemCallErrorNumber=EPERM
 CapabilityBoundingSet=
 RestrictAddressFamilies=AF_UNIX AF_INET AF_INET6 AF_NETLINK
+LimitCORE=0
 UMask=0077"""
 """Without MemoryDenyWriteExecute, with which OpenCV cannot be loaded. The clock may be read, not set."""
 
@@ -34,6 +35,12 @@ Environment=MUCAT_DATA={places.data} MUCAT_CONFIG={places.config} PYTHONUNBUFFER
 WorkingDirectory={places.data}
 ReadWritePaths={places.data}
 {HARDENING}"""
+
+
+JOURNAL = """# By mucat install: what all services say stays within 100 MB of the card.
+[Journal]
+SystemMaxUse=100M
+"""
 
 
 def write_units(places: InstallPlaces) -> dict[str, str]:

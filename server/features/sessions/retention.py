@@ -24,7 +24,7 @@ from server.platform.notices import Notices
 from server.platform.schema import INCREMENTAL
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
-from server.platform.wall_clock import DAY, WallClock
+from server.platform.wall_clock import DAY, SOFTWARE_MADE, WallClock, is_set
 
 log = logging.getLogger(__name__)
 
@@ -103,17 +103,18 @@ class RetentionWorker:
     def _find_ahead(self) -> float | None:
         """The difference at the newest session since the computer started; None without one."""
         row = SessionRow
-        query = select(row.started, row.started_steady).where(row.boot == boot())
+        query = select(row.started, row.started_steady).where(row.boot == boot(), row.origin != "simulated")
         with self._store.read() as database:
             found = database.exec(query.order_by(col(row.id).desc()).limit(1)).first()
         return None if found is None else found[0] - found[1]
 
     async def _empty_bin(self, before: float) -> None:
-        expired = col(SessionRow.deleted) <= before
+        expired = col(SessionRow.deleted).between(SOFTWARE_MADE, before)
         await self._store.execute(update(SessionRow).where(expired).values(state=REMOVING))
 
     async def _expire_old(self, now: float, before: float) -> None:
-        rows = [row for row in await self._unprotected() if row.started < before]
+        # A session of an impossible date has no known age.
+        rows = [row for row in await self._unprotected() if is_set(row.started) and row.started < before]
         if rows:
             days = self._settings.sessions.keep_days
             await self._change(rows, deleted=now)

@@ -19,9 +19,15 @@ from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
 from server.platform.errors import NotFoundError, SignedOutError
 from server.platform.models import DeviceRow
 from server.platform.store import Store, StoreError, insert_row
+from server.platform.wall_clock import is_set
 
 log = logging.getLogger(__name__)
 
+CLOCK_NOT_SET = (
+    "The clock of the robot's computer has not been set since its start, so that it is not known whether a "
+    "token has ended. Connect it to a network with a time server, or set it: "
+    "sudo date -u -s '2026-11-24 12:00'."
+)
 DEVICES_MAX = 200
 SEEN_SECONDS = 3600.0
 """Interval of storing the last visit; a shorter one would wear out the SD card."""
@@ -130,12 +136,15 @@ class Devices:
 
     def explain_end(self, device: Device) -> str | None:
         """Reason why a device's time is over; None while it is not."""
+        if device.ends is not None and not is_set(self._utc()):
+            return CLOCK_NOT_SET
         if device.ends is not None and self._utc() >= device.ends:
             day = datetime.fromtimestamp(device.ends, UTC).date()
             return f"This token ended on {day}. Make a new one under People, or with `mucat access token`."
         # The steady clock too: a computer without a clock battery may learn the time in the middle of a dive.
         unused = min(self._utc() - device.seen, self._steady() - device.used)
-        if device.kind == "browser" and unused > IDLE_DAYS * DAY_SECONDS:
+        # A visit of an impossible date, before the clock was set, has no known age.
+        if device.kind == "browser" and is_set(device.seen) and unused > IDLE_DAYS * DAY_SECONDS:
             return f"This browser was not used for {IDLE_DAYS} days, and is signed out. Sign it in again."
         return None
 
@@ -168,8 +177,11 @@ class Devices:
     async def add_program(self, name: str, scope: Scope, days: int | None) -> tuple[Device, str]:
         """A new program, and its token, which is not stored; it ends after `days`, never where that is None.
 
-        Raises RefusedError where there are too many devices, or the name looks like another's, StoreError.
+        Raises RefusedError where there are too many devices, the name looks like another's, or the clock has
+        not been set and the token is to end, StoreError.
         """
+        if days is not None and not is_set(self._utc()):
+            raise RefusedError(f"{CLOCK_NOT_SET} Or make a token that never ends.")
         role: Role = "viewer" if scope == "read" else "operator"
         ends = None if days is None else self._utc() + days * DAY_SECONDS
         async with self._naming:

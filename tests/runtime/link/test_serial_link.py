@@ -1,5 +1,6 @@
 """The serial link over a real pseudo-terminal, whose far end the test plays."""
 
+import errno
 import os
 import threading
 from collections.abc import Callable, Iterator
@@ -162,4 +163,19 @@ def test_other_definitions_are_refused_with_the_reason(host: Host, path: Path) -
 def test_a_port_in_use_is_named(path: Path) -> None:
     BoardEnd(path)
     with Port(str(path), 115_200), pytest.raises(PortError, match="in use by another program"):
+        Port(str(path), 115_200)
+
+
+def test_a_port_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(PortError, match=r"tty does not exist: is the board .* link\.port right"):
+        Port(str(tmp_path / "tty"), 115_200)
+
+
+def test_a_port_without_permission_names_the_group(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> int:
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    # For root, who may run these tests, no file is closed.
+    monkeypatch.setattr(os, "open", refuse)
+    with pytest.raises(PortError, match="may not be opened: add this user to the group dialout"):
         Port(str(path), 115_200)

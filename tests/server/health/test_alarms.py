@@ -1,5 +1,6 @@
 import asyncio
 import shutil
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,7 +10,15 @@ from robot_runtime.contract.documents import Alarm, Event
 from robot_runtime.control.alarms import Alarms
 from server.app import create_app
 from server.health.faults import FAULTS
-from server.health.watchdog import DOWN, HUNG_SECONDS, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Watchdog
+from server.health.watchdog import (
+    DOWN,
+    HUNG_SECONDS,
+    PERIOD,
+    SILENT_SECONDS,
+    STARTING_SECONDS,
+    SUPPLY_SECONDS,
+    Watchdog,
+)
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.managed_process import ManagedProcess
@@ -31,7 +40,9 @@ class AlarmRig(MonitorRig):
             self.parts,  # type: ignore[arg-type]
             store,
             self.alarms,
+            lambda: self.throttled,
         )
+        self.throttled: int | None = 0
 
     def spend(self, seconds: float, **said: Any) -> None:
         """Advance the clock; each callable of `said` gets every step's number."""
@@ -189,6 +200,29 @@ def test_a_failing_database_is_an_alarm(rig: AlarmRig, store: Store) -> None:
     store.failing = None
     rig.spend(PERIOD, all=rig.receive)
     assert rig.active() == set()
+
+
+def test_a_supply_that_is_too_low_is_an_alarm_also_for_a_moment(rig: AlarmRig) -> None:
+    told = []
+    for bits in (0x0, 0x10001, 0x10000, 0x10000, None):
+        rig.throttled = bits
+        rig.spend(SUPPLY_SECONDS, all=rig.receive)
+        told.append("undervoltage" in rig.active())
+    assert told == [False, True, False, False, False]
+    rig.throttled = 0x0
+    rig.spend(SUPPLY_SECONDS, all=rig.receive)
+    rig.throttled = 0x10000
+    rig.spend(SUPPLY_SECONDS, all=rig.receive)
+    assert rig.active() == {"undervoltage"}
+
+
+def test_a_damaged_configuration_is_an_alarm(settings: Settings, store: Store) -> None:
+    rig = AlarmRig(replace(settings, configuration_problem="robot.toml cannot be read."), store)
+    rig.run_all()
+    rig.spend(1.0, all=rig.receive)
+    alarm = rig.find("configuration_damaged")
+    assert alarm is not None
+    assert (alarm.active, alarm.what) == (True, "robot.toml cannot be read.")
 
 
 def test_every_fault_has_a_cause_and_a_remedy() -> None:

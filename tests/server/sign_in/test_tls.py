@@ -2,8 +2,14 @@
 
 import asyncio
 import hashlib
+import os
 import ssl
+import struct
+import subprocess
+import sys
+import time
 from dataclasses import replace
+from pathlib import Path
 
 import httpx
 import pytest
@@ -12,6 +18,8 @@ from server.platform.certificate import prepare_certificate
 from server.platform.running_server import announce, ask
 from server.platform.settings import Settings, SetupError
 from tests.server.serving import Served, next_text, serve
+
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture
@@ -45,6 +53,47 @@ def test_pages_shell_and_sockets_use_tls_only(encrypted: Settings) -> None:
             await scenario(served)
 
     asyncio.run(run())
+
+
+IN_1970 = """
+import ssl, sys, time
+from pathlib import Path
+from server.platform.certificate import trust_only
+from server.platform.settings import DataFolder
+
+folder = DataFolder(Path(sys.argv[1]))
+there = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+there.load_cert_chain(folder.tls / "certificate.pem", folder.tls / "key.pem")
+up, down = ssl.MemoryBIO(), ssl.MemoryBIO()
+ends = there.wrap_bio(up, down, server_side=True), trust_only(folder).wrap_bio(down, up)
+for _ in range(3):
+    for end in ends:
+        try:
+            end.do_handshake()
+        except ssl.SSLWantReadError:
+            pass
+print(time.gmtime().tm_year, ends[1].version())
+"""
+
+
+def test_the_shell_reaches_the_server_also_while_the_clock_is_not_set(
+    encrypted: Settings, tmp_path: Path
+) -> None:
+    # The certificate was made when the date was known, and is not valid in 1970.
+    prepare_certificate(encrypted)
+    library, shift = tmp_path / "wall_clock.so", tmp_path / "shift"
+    command = ["gcc", "-O2", "-shared", "-fPIC", "-o", str(library), str(ROOT / "tests/proofs/wall_clock.c")]
+    subprocess.run([*command, "-ldl"], check=True)
+    shift.write_bytes(struct.pack("<q", int(300 - time.time())))
+    done = subprocess.run(
+        [sys.executable, "-c", IN_1970, str(encrypted.data.path)],
+        env=os.environ | {"LD_PRELOAD": str(library), "MUCAT_WALL_CLOCK": str(shift)},
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout == "1970 TLSv1.3\n", done.stderr
 
 
 def test_the_certificate_is_created_once_and_is_private(encrypted: Settings) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from robot_runtime.errors import RefusedError
 from server.http.sign_in.devices import DAY_SECONDS, Devices
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -19,7 +20,7 @@ from tests.server.sign_in.browsers import browser, closing_of
 class Clocks:
     """The date and the steady clock of a computer, s."""
 
-    utc: float = 1e9
+    utc: float = 2e9
     steady: float = 0.0
 
     def forward(self, days: float) -> None:
@@ -148,6 +149,40 @@ def test_a_browser_in_use_survives_that_the_computer_learns_the_date(store: Stor
         clocks.utc += 1000 * DAY_SECONDS
         assert devices.find_valid(tablet.id) is tablet
         await devices.close()
+
+    asyncio.run(scenario())
+
+
+def test_a_browser_that_was_used_before_the_clock_was_set_stays_signed_in(store: Store) -> None:
+    async def scenario() -> None:
+        clocks = Clocks(utc=300.0)
+        devices = clocks.devices(store)
+        tablet, _ = await devices.add_browser("tablet", "operator")
+        # The next start of the computer has a network, and with it the date.
+        again = Clocks().devices(store)
+        again.load()
+        assert again.find_valid(tablet.id) is not None
+
+    asyncio.run(scenario())
+
+
+def test_while_the_clock_is_not_set_no_token_counts_that_ends(store: Store) -> None:
+    async def scenario() -> None:
+        clocks = Clocks()
+        devices = clocks.devices(store)
+        (short, _), (ever, _) = [
+            await devices.add_program(*one) for one in (("a", "read", 2), ("b", "read", None))
+        ]
+        clocks.utc = 300.0
+        assert (devices.find_valid(short.id), devices.find_valid(ever.id)) == (None, ever)
+        reason = devices.explain_end(short)
+        assert reason is not None
+        assert reason.startswith("The clock of the robot's computer has not been set")
+        with pytest.raises(RefusedError, match="make a token that never ends"):
+            await devices.add_program("c", "read", 2)
+        await devices.add_program("d", "read", None)
+        clocks.utc = 2e9 + DAY_SECONDS
+        assert devices.find_valid(short.id) is short
 
     asyncio.run(scenario())
 

@@ -5,9 +5,10 @@ from typing import Any
 
 import pytest
 
-from server.features.doctor.checks import BUILT, CHECKS, examine
+from server.features.doctor.checks import CHECKS, examine
 from server.features.doctor.findings import worst
 from server.features.doctor.machine import SERVICE, Machine
+from server.platform.wall_clock import SOFTWARE_MADE
 
 UART = "enable_uart=1\ndtoverlay=disable-bt\n"
 UNIT = "[Service]\nExitType=cgroup\nOOMPolicy=continue\nRestart=always\n"
@@ -29,7 +30,7 @@ GOOD = Machine(
     reset="gpio:/dev/gpiochip0:4",
     reset_label="pinctrl-bcm2835",
     cameras=("unicam",),
-    now=BUILT + 1,
+    now=SOFTWARE_MADE + 1,
     throttled=0,
     memory=512_000_000,
     swaps=("/dev/zram0",),

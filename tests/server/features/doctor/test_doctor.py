@@ -139,6 +139,24 @@ def test_a_raspberry_pi_is_read_from_its_files(settings: Settings, tmp_path: Pat
     assert look(settings, tmp_path).memory_cgroup
 
 
+@pytest.mark.parametrize(
+    ("mounts", "given_up"),
+    [
+        ("/dev/root / ext4 rw,relatime,emergency_ro 0 0\n", True),
+        ("/dev/root / ext4 rw,noatime 0 0\n/dev/sda /media/emergency_ro ext4 rw 0 0\n", False),
+        ("/dev/root / ext4 rw 0 0\n/dev/sda {data} ext4 rw,abort,emergency_ro 0 0\n", True),
+        ("/dev/sda {data} ext4 rw,emergency_ro 0 0\n/dev/sdb {data} ext4 rw 0 0\n", False),
+        ("", False),
+        ("nonsense\n", False),
+    ],
+)
+def test_a_disk_that_the_kernel_has_given_up_is_read_only(
+    settings: Settings, tmp_path: Path, mounts: str, given_up: bool
+) -> None:
+    write(tmp_path, "proc/mounts", mounts.format(data=settings.data.path))
+    assert look(settings, tmp_path).disk_read_only == given_up
+
+
 def test_a_library_that_cannot_be_imported_is_named(
     settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

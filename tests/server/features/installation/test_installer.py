@@ -46,6 +46,7 @@ def test_an_installation_is_whole(tmp_path: Path, release: Path) -> None:
     assert (config.server.host, config.server.tls) == ("0.0.0.0", True)
     assert {one.name for one in places.units.iterdir()} == set(write_units(places))
     assert places.command.stat().st_mode & 0o777 == 0o755
+    assert "SystemMaxUse=100M" in places.journal_limit.read_text()
     assert (places.current / "wheels/numpy-2.0-cp311-cp311-linux_x86_64.whl").exists()
     assert "µ-CAT 1.0.0 runs" in computer.lines
 
@@ -124,6 +125,7 @@ def test_another_computer_has_no_boot_settings_and_an_emulated_board(tmp_path: P
     install(computer, release)
     assert load(computer.places.config).robot.mode == "emulated"
     assert not (tmp_path / "pc/boot").exists()
+    assert not computer.places.journal_limit.exists()
 
 
 def test_it_is_removed_without_the_data(tmp_path: Path, release: Path) -> None:
@@ -136,6 +138,7 @@ def test_it_is_removed_without_the_data(tmp_path: Path, release: Path) -> None:
     assert places.config.exists()
     assert not places.software.exists()
     assert not places.command.exists()
+    assert not places.journal_limit.exists()
     assert list(places.units.iterdir()) == []
     assert any("systemctl disable --quiet --now mucat-runtime.service" in one for one in computer.commands)
     computer.installer(computer.effects()).uninstall()
@@ -220,6 +223,12 @@ def test_no_service_comes_before_a_path_unit() -> None:
     before = [line for text in units.values() for line in text.splitlines() if line.startswith("Before=")]
     assert before
     assert not [line for line in before if ".path" in line]
+
+
+def test_no_crash_fills_the_card() -> None:
+    units = write_units(InstallPlaces(Path("/")))
+    for name in ("mucat.service", "mucat-runtime.service"):
+        assert "LimitCORE=0" in units[name].splitlines()
 
 
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="there is no systemd")

@@ -26,7 +26,7 @@ from server.platform.store import Store
 from server.platform.wall_clock import DAY
 from tests.server.blocks import depth_block
 
-NOW = 1.7e9
+NOW = 1.9e9
 
 
 class Disk(NamedTuple):
@@ -103,6 +103,20 @@ def test_old_sessions_in_the_bin_are_purged(keep: Keep) -> None:
         assert (keeper.count(SessionRow), keeper.count(Chunk)) == (1, 3)
 
     keep(NO_RULES, scenario)
+
+
+def test_sessions_of_an_impossible_date_have_no_age(keep: Keep) -> None:
+    async def scenario(keeper: Keeper) -> None:
+        for name in ("kept", "binned", "old"):
+            await keeper.record(name, DAY if name == "old" else NOW - 500.0)
+        await keeper.catalogue.delete(2)
+        await keeper.age_bin(NOW - 800.0)
+        for _ in range(2):
+            await keeper.retention.apply(NOW + keeper.clock.now() - 50.0)
+            keeper.clock.forward(2 * DAY)
+        assert (keeper.names(), keeper.names(deleted=True)) == (["kept"], ["old", "binned"])
+
+    keep(SessionsConfig(keep_free=0.0, keep_days=0.5), scenario)
 
 
 def test_for_a_day_after_a_clock_jump_nothing_is_purged_by_age(keep: Keep) -> None:

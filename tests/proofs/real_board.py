@@ -1,0 +1,74 @@
+"""An installed robot with a board: an emulated one outside the container, at a serial port within it.
+
+An update whose firmware differs puts it onto the board, and the way back puts the older firmware back.
+"""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from robot_runtime.config import LinkConfig
+from robot_runtime.places import BUILD
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
+from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
+from server.features.board.previous_firmware import read_program, write_program
+from tests.proofs.container import Container
+from tests.proofs.small_computer import CONFIG, DATA, SERVICES
+from tests.proofs.steps import Steps, ask_server
+
+PORT = "/dev/ttyBOARD"
+DIALOUT = 20
+"""The group's number in Debian."""
+PLACE, MARK = 0x7C00, b"later firmware"
+"""A place in the flash memory behind the robot's program, and what the later firmware has there."""
+CONFIGURE = f"""
+sed -i -e 's|^mode = .*|mode = "robot"|' -e 's|^port = "/dev/serial0"|port = "{PORT}"|' \
+    -e 's|^reset = .*|reset = "board:/board/socket"|' {CONFIG}
+systemctl restart {SERVICES}
+"""
+LINK = """
+print(*(one["state"] for one in ask(data, "GET", "/health")["parts"] if one["name"] == "link"))
+"""
+
+
+@contextmanager
+def board(folder: Path) -> Iterator[list[str]]:
+    """Run the board; yields the options by which systemd-nspawn gives it to a container."""
+    baud = LinkConfig().baud
+    build_firmware(BUILD, baud)
+    tty, socket = folder / "tty", folder / "socket"
+    loader = ("--bootloader", str(BUILD / "firmware/optiboot.hex"))
+    with EmulatorProcess(BUILD / "board", firmware_path(BUILD, baud, ".elf"), tty, socket, *loader):
+        folder.chmod(0o755)
+        socket.chmod(0o666)
+        port = tty.resolve()
+        os.chown(port, -1, DIALOUT)
+        port.chmod(0o660)
+        yield [f"--bind={port}:{PORT}", f"--bind={folder}:/board"]
+
+
+def mark_firmware(path: Path) -> None:
+    """Make another firmware of this one, which the robot runs as well."""
+    write_program(read_program(path).ljust(PLACE, b"\xff") + MARK, path)
+
+
+def update_with_board(container: Container, steps: Steps, older: str, later: str) -> None:
+    """Connect the board, and let an update and the way back change its firmware."""
+    previous = container.root / DATA.lstrip("/") / "firmware-previous.hex"
+
+    def is_linked() -> bool:
+        return container.order(ask_server(LINK))[1].strip() == "ok"
+
+    steps.take("a robot with a board", CONFIGURE, "")
+    steps.wait("it is linked", is_linked)
+    steps.take(
+        "update with other firmware", f"mucat update /releases/{later}.zip", f"µ-CAT {later} is in use"
+    )
+    steps.check("the older firmware was on the board", MARK not in read_program(previous))
+    steps.runs(later)
+    steps.wait("it is linked", is_linked)
+    steps.take("roll back with the firmware", "mucat rollback", f"µ-CAT {older} is in use")
+    steps.check("the later firmware was on the board", MARK in read_program(previous))
+    steps.runs(older)
+    steps.wait("it is linked", is_linked)

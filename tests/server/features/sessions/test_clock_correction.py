@@ -1,0 +1,161 @@
+"""A computer that starts with an old date: the sessions, and what is decided by their dates."""
+
+import asyncio
+import json
+from typing import Any
+
+import pytest
+from sqlalchemy import update
+from sqlmodel import col, select
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.transport.blocks import Block
+from server.features.sessions.clock_correction import ClockCorrection
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.session import new_row
+from server.platform.models import BookmarkRow, SessionRow
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.platform.store import Store, StoreError, insert_row
+
+RIGHT = 1.9e9
+"""s since 1970, when the steady clock is 1000 s."""
+AHEAD = RIGHT - 1000.0
+OLD, YESTERDAY = 500.0, RIGHT - 86_400.0
+"""A clock that was never set, and one that Raspberry Pi OS has continued from its last end."""
+
+
+class Pi:
+    """A computer whose clock is wrong at first."""
+
+    def __init__(self, store: Store, settings: Settings) -> None:
+        self.store = store
+        self.settings = settings
+        self.clock = SimulatedClock(1000.0)
+        self.told: list[str] = []
+        self.synchronised, self.suspended = False, False
+        self.notices = Notices(self.clock, self._hear)
+        self.recorder = Recorder(store, self.clock, self.notices, lambda: None)
+        self.correction = ClockCorrection(
+            store, self.notices, self.clock, lambda: self.synchronised, lambda: self.suspended
+        )
+
+    def _hear(self, block: Block) -> None:
+        self.told += [one["text"] for one in json.loads(block.payload) if one["kind"] == "clock"]
+
+    async def record(self, started: float, name: str = "", **columns: Any) -> int:
+        """A session that began 1000 s after the computer's start, by a clock that said `started`."""
+        row = new_row(self.settings, self.clock, name, "", "null")
+        row.started, row.started_steady = started, 1000.0
+        for column, value in columns.items():
+            setattr(row, column, value)
+        session = (await self.recorder.start(row)).id
+        await self.recorder.stop(session)
+        await self.store.write(
+            lambda connection: connection.exec_driver_sql(
+                f"UPDATE session SET ended = {started + 10.0} WHERE id = {session}"
+            )
+        )
+        return session
+
+    async def look(self, ahead: float = AHEAD) -> None:
+        """Ten seconds pass; the clock is ahead of the steady one by so much."""
+        self.clock.forward(10.0)
+        await self.correction.apply(self.clock.now() + ahead)
+
+    def row(self, session: int) -> SessionRow:
+        with self.store.read() as database:
+            return database.exec(select(SessionRow).where(col(SessionRow.id) == session)).one()
+
+
+@pytest.fixture
+def pi(store: Store, settings: Settings) -> Pi:
+    return Pi(store, settings)
+
+
+def test_a_session_of_1970_has_its_right_date_once_the_clock_is_set(pi: Pi) -> None:
+    async def scenario() -> None:
+        session = await pi.record(OLD, "Armed 1970-01-01 00:08 UTC", origin="arming")
+        mark = {"session_id": session, "time": 1005.0, "text": "here", "made": OLD + 5.0}
+        await pi.store.write(lambda connection: insert_row(connection, BookmarkRow, mark))
+        await pi.look(OLD - 1000.0)
+        assert (pi.row(session).started, pi.told) == (OLD, [])
+        await pi.look()
+        row = pi.row(session)
+        assert (row.started, row.ended) == (RIGHT, RIGHT + 10.0)
+        assert row.name == "Armed 2030-03-17 17:46 UTC"
+        with pi.store.read() as database:
+            assert database.exec(select(BookmarkRow.made)).one() == RIGHT + 5.0
+        assert pi.told == [
+            "The computer's clock was set: 1 session has its right date now "
+            "(1970-01-01 00:08 was 2030-03-17 17:46 UTC)."
+        ]
+        await pi.look()
+        assert len(pi.told) == 1
+
+    asyncio.run(scenario())
+
+
+def test_a_plausible_but_old_date_is_corrected_when_a_time_server_has_set_the_clock(pi: Pi) -> None:
+    async def scenario() -> None:
+        session = await pi.record(YESTERDAY)
+        await pi.look(YESTERDAY - 1000.0)
+        # Somebody sets it by hand: who knows whether that is right.
+        await pi.look()
+        assert pi.row(session).started == YESTERDAY
+        pi.synchronised = True
+        await pi.look()
+        assert pi.row(session).started == RIGHT
+
+    asyncio.run(scenario())
+
+
+@pytest.mark.parametrize("case", ["always synchronised", "suspended", "another start", "simulated", "import"])
+def test_a_difference_that_has_another_cause_changes_no_date(pi: Pi, case: str) -> None:
+    async def scenario() -> None:
+        columns = {
+            "another start": {"boot": "another"},
+            "simulated": {"origin": case},
+            "import": {"origin": case},
+        }
+        session = await pi.record(YESTERDAY, **columns.get(case, {}))
+        pi.synchronised = case == "always synchronised"
+        pi.suspended = case == "suspended"
+        await pi.look()
+        pi.synchronised = True
+        await pi.look()
+        assert (pi.row(session).started, pi.told) == (YESTERDAY, [])
+
+    asyncio.run(scenario())
+
+
+def test_the_correction_is_tried_again_where_the_disk_fails(pi: Pi, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario() -> None:
+        session = await pi.record(YESTERDAY)
+        await pi.look(YESTERDAY - 1000.0)
+        pi.synchronised = True
+
+        async def write(*_: object) -> None:
+            raise StoreError("the disk is full")
+
+        with monkeypatch.context() as failing:
+            failing.setattr(pi.store, "write", write)
+            with pytest.raises(StoreError, match="full"):
+                await pi.look()
+        await pi.look()
+        assert pi.row(session).started == RIGHT
+
+    asyncio.run(scenario())
+
+
+def test_a_deleted_session_stays_its_whole_time_in_the_bin(pi: Pi) -> None:
+    async def scenario() -> None:
+        before, after = await pi.record(OLD), await pi.record(OLD)
+        for session, moment in ((before, OLD + 8.0), (after, RIGHT + 9.0)):
+            await pi.store.execute(
+                update(SessionRow).where(col(SessionRow.id) == session).values(deleted=moment)
+            )
+        await pi.look()
+        assert [pi.row(one).deleted for one in (before, after)] == [RIGHT + 8.0, RIGHT + 10.0]
+
+    asyncio.run(scenario())
