@@ -7,7 +7,7 @@ from pathlib import Path
 from packages.architectures import PackagingError
 from robot_runtime.places import PACKAGES
 
-EXTRAS = ("pi", "scene", "parquet", "identify")
+EXTRAS = ("pi", "scene", "parquet", "identify", "ros2")
 DEBIAN = PACKAGES / "packages/debian-13.txt"
 """Versions that fit the packages of a 32-bit Debian 13, for which pip finds no wheels."""
 FROM_APT = ("numpy", "opencv-python-headless", "pydantic", "pydantic-core")

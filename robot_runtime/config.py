@@ -16,6 +16,7 @@ from robot_runtime.contract.vision_settings import VisionSettings
 
 NETWORK_ENDPOINT = re.compile(r"tls/[^\s/#?;]+:[0-9]+")
 """A Zenoh endpoint with certificates. What may follow in one, from ? or # on, could switch them off."""
+ROS2_NAMESPACE = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]{0,63}){0,4}")
 HIL_BAUD_MIN = 115_200
 """bit/s from which the line carries the fins' angles at full rate."""
 
@@ -142,10 +143,35 @@ class SessionsConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DoorsConfig:
-    """The doors for other programs, at `/rosbridge` and `/foxglove` of the server; closed unless true."""
+    """The doors for other programs: `/rosbridge` and `/foxglove` of the server, ROS 2; closed unless true.
+
+    For ROS 2: the endpoint, the domain, and the namespace, "" or as "/name".
+    """
 
     rosbridge: bool = False
     foxglove: bool = False
+    ros2: bool = False
+    ros2_listen: str = "tls/127.0.0.1:7448"
+    ros2_domain: Annotated[int, Range(0, 232)] = 0
+    ros2_namespace: str = ""
+
+    def __post_init__(self) -> None:
+        if not NETWORK_ENDPOINT.fullmatch(self.ros2_listen):
+            raise ConfigError(
+                f"doors.ros2_listen is {self.ros2_listen!r}, which would let in programs without a "
+                'certificate of this robot; use "tls/ADDRESS:PORT"'
+            )
+        if not ROS2_NAMESPACE.fullmatch(self.ros2_namespace):
+            raise ConfigError(
+                f'doors.ros2_namespace is {self.ros2_namespace!r}; use a name of ROS 2 such as "/turtle", or '
+                '"" for none'
+            )
+
+    @property
+    def ros2_address(self) -> tuple[str, int]:
+        """Returns the host and port of the door for ROS 2."""
+        host, _, port = self.ros2_listen.removeprefix("tls/").rpartition(":")
+        return host.strip("[]"), int(port)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,7 +21,9 @@ from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import import_samples
 from server.features.comparison.worker import ComparisonWorker
 from server.features.doctor.examination import Examination
+from server.features.doors.commands import DoorCommands
 from server.features.doors.house import Doors
+from server.features.doors.ros2_door import Ros2Door
 from server.features.events.announcer import EventAnnouncer
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
@@ -101,10 +103,17 @@ class Container:
         self._add_identification()
         self.doors = Doors(settings, self.clock, self.hub)
         self.commands = CommandDesk(self.changes, settings, self.alarms)
+        self._add_ros2()
         self.heavy_requests = HeavyRequests()
         self.downloads = DatabaseDownloads(settings.data)
         self.layouts = Layouts(self.store)
         self.updates = PageUpdates(self.settings.data, InstallPlaces())
+
+    def _add_ros2(self) -> None:
+        commands = DoorCommands(
+            "/ros2", self.clock, self.access, self.commands, self.bridge, self.arbiter, self.audit
+        )
+        self.ros2 = Ros2Door(self.settings, self.access, self.arbiter, self.audit, self.doors, commands)
 
     def _add_lease(self) -> None:
         self.lease_sync = LeaseSync(self.bridge.send_lease)
@@ -239,8 +248,10 @@ class Container:
                     self._notify_health(),
                 )
             ]
+            await self.ros2.open()
             yield
         finally:
+            await self.ros2.close()
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)

@@ -73,6 +73,7 @@ def _serve(settings: Settings) -> int:
     from robot_runtime.simulation.boards.emulator_process import BoardError, check_emulator
     from robot_runtime.simulation.boards.firmware import FirmwareBuildError, build_firmware
     from server.app import create_app
+    from server.features.doors.ros2_door import check_ros2
     from server.http.serving import make_server, open_socket
     from server.platform.authority import Authority
     from server.platform.certificate import prepare_certificate
@@ -81,8 +82,10 @@ def _serve(settings: Settings) -> int:
     from server.processes.server_runner import ServerRunner
     from server.processes.supervisor import plan
 
-    if settings.zenoh.listen:
+    if settings.zenoh.listen or settings.doors.ros2:
         Authority(settings).prepare()
+    if settings.doors.ros2:
+        check_ros2(settings)
     if settings.emulated_board:
         try:
             build_firmware(settings.build, settings.link.baud, hil=settings.in_the_loop)

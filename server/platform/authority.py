@@ -62,17 +62,31 @@ class Authority:
             raise SetupError(f"{name!r} is no name of a certificate: use up to 32 of A-Z, a-z, 0-9, - and _.")
         if any(one.name == name for one in self.issued()):
             raise SetupError(f"{name} has a certificate. Revoke it first: mucat certificate revoke {name}")
-        self.prepare()
         common_name = f"{name}.{secrets.token_hex(4)}"
+        made = self._make(common_name, destination, f"subjectAltName=DNS:{name}")
+        try:
+            write_whole(self._folder / SIMULATORS / f"{common_name}.pem", made.read_bytes(), 0o600)
+        except OSError as problem:
+            raise SetupError(f"The certificate {name} cannot be put into force: {problem}.") from problem
+
+    def issue_program(self, common_name: str, destination: Path) -> None:
+        """Make the certificate of a ROS 2 program, with its key, in a new folder.
+
+        The server knows the program by `common_name`; the robot's own Zenoh admits it to nothing.
+        """
+        self._make(common_name, destination)
+
+    def _make(self, common_name: str, destination: Path, *extensions: str) -> Path:
+        self.prepare()
         try:
             destination.mkdir(mode=0o700)
             made = destination / CERTIFICATE
-            extensions = (f"subjectAltName=DNS:{name}", "extendedKeyUsage=clientAuth", _LEAF)
+            extensions = (*extensions, "extendedKeyUsage=clientAuth", _LEAF)
             make_certificate(made, destination / KEY, common_name, extensions, self._signer)
             shutil.copyfile(self._signer.certificate, destination / AUTHORITY)
-            write_whole(self._folder / SIMULATORS / f"{common_name}.pem", made.read_bytes(), 0o600)
         except OSError as problem:
             raise SetupError(f"The certificate in {destination} cannot be made: {problem}.") from problem
+        return made
 
     def revoke(self, name: str) -> None:
         """Take a certificate out of force."""

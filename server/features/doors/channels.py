@@ -13,6 +13,7 @@ from robot_runtime.contract.topics import TIME, Kind
 from robot_runtime.transport.blocks import Block, read_rows
 from server.features.doors.cbor import encode_cbor
 from server.features.doors.png import encode_png
+from server.features.doors.ros2_messages import ros2_types
 
 Value = Record | Mapping[str, Any] | bytes
 """A record of a topic of rows, a document, or a picture's JPEG file."""
@@ -76,6 +77,11 @@ class ChannelMessage:
     def cbor(self) -> bytes:
         """The same in CBOR, with bytes as they are."""
         return encode_cbor({"op": "publish", "topic": self.channel.name, "msg": self.fields})
+
+    @cached_property
+    def cdr(self) -> bytes:
+        """The message as ROS 2 serialises it."""
+        return ros2_types().encode(self.channel.type, self.fields)
 
     @cached_property
     def png(self) -> str:

@@ -12,14 +12,15 @@ from robot_runtime.transport.blocks import Block
 from server.features.doors.channels import HEALTH, DoorChannel, Sample, read_samples
 from server.features.doors.foxglove_channels import foxglove_channels
 from server.features.doors.publisher import Publisher
-from server.features.doors.ros_channels import ros_channels
+from server.features.doors.ros_channels import ros_channels, standard_channels
 from server.features.doors.subscriptions import DoorClient
 from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.identity import SHELL, Identity
 from server.platform.settings import Settings
 from server.stream.hub import DEVICE_MAX, EvictedError, Hub, Send
 
-DoorName = Literal["rosbridge", "foxglove"]
+DoorName = Literal["rosbridge", "foxglove", "ros2"]
+ROS2: DoorName = "ros2"
 CLIENTS_MAX = 20
 """Programs at one door."""
 BILLION = 1_000_000_000
@@ -28,8 +29,10 @@ BILLION = 1_000_000_000
 class Door:
     """One door: its publisher and its clients."""
 
-    def __init__(self, name: DoorName, open_: bool, channels: Iterable[DoorChannel]) -> None:
+    def __init__(self, name: DoorName, open_: bool, channels: Iterable[DoorChannel], path: str = "") -> None:
         self.name = name
+        self.path = path or f"/{name}"
+        """Its path below the server's address, or an endpoint of Zenoh."""
         self.open = open_
         self.publisher = Publisher(channels, self.evict)
         self.clients: dict[DoorClient, asyncio.Task[None]] = {}
@@ -53,6 +56,7 @@ class Doors:
         self.doors: dict[str, Door] = {
             "rosbridge": Door("rosbridge", settings.doors.rosbridge, ros_channels()),
             "foxglove": Door("foxglove", settings.doors.foxglove, foxglove_channels(simulated)),
+            ROS2: Door(ROS2, settings.doors.ros2, standard_channels(), settings.doors.ros2_listen),
         }
         self.robot = settings.robot
         self.session = secrets.token_hex(8)

@@ -232,8 +232,8 @@ DIAGNOSTICS, IMAGE = "diagnostic_msgs/msg/DiagnosticArray", "sensor_msgs/msg/Com
 LINES = tuple(topic.name for topic in TOPICS if topic.lines)
 
 
-def ros_channels() -> list[DoorChannel]:
-    """All channels of the rosbridge door."""
+def standard_channels() -> list[DoorChannel]:
+    """The channels whose types are ROS's own."""
     standard = [
         DoorChannel("/imu/data", "sensor_msgs/msg/Imu", ("imu",), _imu),
         DoorChannel("/depth", "std_msgs/msg/Float64", ("depth",), _depth),
@@ -258,6 +258,11 @@ def ros_channels() -> list[DoorChannel]:
         )
         for name in PICTURES
     ]
+    return [*standard, *pictures]
+
+
+def ros_channels() -> list[DoorChannel]:
+    """All channels of the rosbridge door."""
     own = [
         DoorChannel(
             f"/mucat/{topic.name}",
@@ -270,7 +275,7 @@ def ros_channels() -> list[DoorChannel]:
         for topic in TOPICS
         if topic.kind is not Kind.PICTURE
     ]
-    return [*standard, *pictures, *own]
+    return [*standard_channels(), *own]
 
 
 def _picture_name(topic: str) -> str:

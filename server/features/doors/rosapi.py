@@ -15,12 +15,12 @@ from server.features.doors.commands import (
     parameter_values,
 )
 from server.features.doors.house import Door, Doors
+from server.features.doors.ros2_messages import TRIGGER
 from server.features.doors.ros_channels import stamp, type_name
 from server.features.doors.session import UnusableMessageError, mapping_of, text_of
 from server.features.doors.twist import TAKEN_IN
 
 NODE = "/mucat"
-TRIGGER = "std_srvs/srv/Trigger"
 ARGUMENTS: dict[str, tuple[str, ...]] = {
     "topics": (),
     "topics_for_type": ("type",),

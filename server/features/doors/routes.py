@@ -164,7 +164,7 @@ def _describe(door: Door, arbiter: ControlArbiter) -> DoorDetails:
     holder = arbiter.lease.holder
     return DoorDetails(
         name=door.name,
-        path=f"/{door.name}",
+        path=door.path,
         open=door.open,
         clients=[
             DoorClientDetails(
@@ -176,6 +176,7 @@ def _describe(door: Door, arbiter: ControlArbiter) -> DoorDetails:
                     {one.channel.name for one in client.subscriptions.values() if not one.channel.hidden}
                 ),
                 sent=client.sent,
+                refused=client.refused,
                 in_control=holder is not None and holder == client.owner,
             )
             for client in door.clients

@@ -57,6 +57,8 @@ class DoorClient:
         """Its number as a client of the control lease."""
         self.sent = 0
         """Messages sent."""
+        self.refused = 0
+        """Messages and calls of a ROS 2 program that were refused."""
         self.dismissal: EvictedError | None = None
         self.subscriptions: dict[int | str, DoorSubscription] = {}
         self._send_raw = send

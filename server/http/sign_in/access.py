@@ -94,6 +94,13 @@ class Access:
         """The identity of a program's token. Raises SignInEndedError where it counts no longer."""
         return self._find_bearer(token)
 
+    def identify_certificate(self, common_name: str) -> Identity | None:
+        """The identity of a program's certificate, whose common name is the digest of the program's token.
+
+        Raises SignInEndedError where it counts no longer.
+        """
+        return self._see(self.devices.find_digest(common_name, "program"))
+
     def refresh(self, identity: Identity | None) -> Identity | None:
         """The caller's identity as it is now, perhaps in another role; None where access has ended."""
         if identity is None or identity == SHELL:

@@ -125,7 +125,11 @@ class Devices:
 
     def find(self, secret: str, kind: Kind) -> Device | None:
         """The device of this kind that has this secret, also where its time is over."""
-        device = self._devices.get(self._by_secret.get(digest(secret), 0))
+        return self.find_digest(digest(secret), kind)
+
+    def find_digest(self, secret: str, kind: Kind) -> Device | None:
+        """The same by the digest of the secret."""
+        device = self._devices.get(self._by_secret.get(secret, 0))
         return device if device is not None and device.kind == kind else None
 
     def find_valid(self, number: int) -> Device | None:

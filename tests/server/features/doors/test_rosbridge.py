@@ -33,7 +33,7 @@ def test_a_door_is_closed_unless_the_configuration_opens_it(settings: Settings) 
         with pytest.raises(InvalidStatus):
             async with open_rosbridge(served, token):
                 pass
-        (rosbridge, foxglove) = (await served.api.get("/doors")).json()
+        (rosbridge, foxglove, _) = (await served.api.get("/doors")).json()
         assert (rosbridge["open"], foxglove["open"]) == (False, False)
 
     play(settings, scenario)
@@ -45,7 +45,7 @@ def test_a_token_in_the_address_or_in_the_first_message_signs_in(settings: Setti
         async with open_rosbridge(served, token, origin="http://else.where") as socket:
             client = RosbridgeClient(socket)
             assert (await client.call("/rosapi/get_time"))["result"] is True
-            (rosbridge, _) = (await served.api.get("/doors")).json()
+            (rosbridge, *_) = (await served.api.get("/doors")).json()
             assert [(one["name"], one["role"]) for one in rosbridge["clients"]] == [("Reader", "viewer")]
         async with open_rosbridge(served, None) as socket:
             client = RosbridgeClient(socket)
@@ -175,7 +175,7 @@ def test_throttle_and_queue_length_hold_samples_back(settings: Settings) -> None
             await client.say(op="unsubscribe", topic="/depth")
             await client.say(op="unsubscribe", topic="/mucat/depth")
             await client.call("/rosapi/get_time")
-            (rosbridge, _) = (await served.api.get("/doors")).json()
+            (rosbridge, *_) = (await served.api.get("/doors")).json()
             assert rosbridge["clients"][0]["topics"] == []
 
     play_open(settings, scenario)
@@ -336,7 +336,7 @@ def test_everything_that_is_listed_can_be_subscribed(settings: Settings) -> None
                 if name not in ("/cmd_vel", "/mucat/stop"):
                     await client.say(op="subscribe", topic=name, type=kind)
             await client.call("/rosapi/nodes")
-            (rosbridge, _) = (await served.api.get("/doors")).json()
+            (rosbridge, *_) = (await served.api.get("/doors")).json()
             assert set(rosbridge["clients"][0]["topics"]) == set(listed["topics"]) - {
                 "/cmd_vel",
                 "/mucat/stop",

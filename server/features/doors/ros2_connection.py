@@ -1,0 +1,98 @@
+"""One connection of a program of ROS 2: its bytes to and from a Zenoh session of its own."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+
+from server.features.doors.commands import DoorCommands, DoorPilot
+from server.features.doors.house import Doors
+from server.features.doors.ros2_node import Ros2Node
+from server.features.doors.ros2_session import Ros2Session
+from server.features.doors.subscriptions import DoorClient
+
+CHUNK_BYTES = 65_536
+BURST_BYTES, BYTES_PER_SECOND = 524_288, 65_536
+"""What a program may send: a router of ROS 2 first tells of all its nodes."""
+
+MakeNode = Callable[[Ros2Session], tuple[Ros2Node, Path]]
+"""Makes the robot's node for a session, and the path of the socket that leads to it. Raises OSError."""
+
+
+class Ros2Connection:
+    """Serves a program that was admitted, from its Zenoh session's beginning to its end."""
+
+    def __init__(
+        self,
+        doors: Doors,
+        commands: DoorCommands,
+        pilot: DoorPilot,
+        reader: asyncio.StreamReader,
+        writer: asyncio.StreamWriter,
+    ) -> None:
+        self._doors = doors
+        self._commands = commands
+        self._pilot = pilot
+        self._reader = reader
+        self._writer = writer
+        self._publish: Callable[[bytes], None] = lambda _: None
+
+    async def send(self, data: bytes | str) -> None:
+        """Publish a message, as soon as the program has read enough of what was sent before."""
+        assert isinstance(data, bytes)
+        await self._writer.drain()
+        self._publish(data)
+
+    async def listen(self, client: DoorClient, make_node: MakeNode) -> None:
+        """Serve the program until it leaves. Raises OSError."""
+        client.owner = self._pilot.owner.number
+        session = Ros2Session(client, self._pilot, self._doors, self._commands, self._writer.drain)
+        async with _open_node(make_node, session) as (node, path):
+            self._publish = lambda data: node.publish(*session.unpack(data))
+            reader, writer = await asyncio.open_unix_connection(path)
+            parts = (_pump_in(self._reader, writer), _pump(reader, self._writer), session.run(node))
+            work = [asyncio.create_task(one) for one in parts]
+            try:
+                await asyncio.wait(work, return_when=asyncio.FIRST_COMPLETED)
+            finally:
+                self._publish = lambda _: None
+                for one in work:
+                    one.cancel()
+                await asyncio.gather(*work, return_exceptions=True)
+                writer.close()
+
+
+@asynccontextmanager
+async def _open_node(make: MakeNode, session: Ros2Session) -> AsyncIterator[tuple[Ros2Node, Path]]:
+    # A thread cannot be cancelled: what it opens is closed.
+    opening = asyncio.ensure_future(asyncio.to_thread(make, session))
+    try:
+        yield await asyncio.shield(opening)
+    finally:
+        node, path = await opening
+        await asyncio.to_thread(node.close)
+        for left in (path, path.with_name(f"{path.name}.lock")):
+            left.unlink(missing_ok=True)
+
+
+async def _pump(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    """Pass bytes on until the end, at the speed at which they are read."""
+    with suppress(OSError):
+        while data := await reader.read(CHUNK_BYTES):
+            writer.write(data)
+            await writer.drain()
+
+
+async def _pump_in(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    """The same from a program, with a limit of bytes per second."""
+    loop = asyncio.get_running_loop()
+    allowed, last = float(BURST_BYTES), loop.time()
+    with suppress(OSError):
+        while data := await reader.read(CHUNK_BYTES):
+            writer.write(data)
+            await writer.drain()
+            now = loop.time()
+            allowed = min(BURST_BYTES, allowed + (now - last) * BYTES_PER_SECOND) - len(data)
+            last = now
+            if allowed < 0:
+                await asyncio.sleep(-allowed / BYTES_PER_SECOND)
