@@ -1,11 +1,10 @@
-"""Missions: the library, the editor of cards by keyboard and pointer, TOML both ways, the dry run, and roles."""
+"""Missions: the library, the editor by keyboard and pointer, TOML both ways, the dry run, and roles."""
 
 import re
 import tomllib
 from pathlib import Path
 from typing import Any
 
-import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.browser.axe import AXE, faults
@@ -125,7 +124,7 @@ def test_a_mission_is_written_from_nothing_by_keyboard_alone(page: Page, site: S
             keyboard.type(value)
     assert places(page) == ["Mission sequence", "1 hold", "2 dive", "3 repeat", "4 surface"]
 
-    # The steps are put in order by Alt and arrows: dive first, hold into the repetition and out, and in again.
+    # Alt and arrows put the steps in order: dive first, hold into the repetition, out, and in again.
     keyboard.press("ArrowUp")
     keyboard.press("ArrowUp")
     expect(card(page, "2")).to_be_focused()
@@ -208,7 +207,9 @@ def test_toml_changes_the_cards_and_cards_write_toml(page: Page, site: Site) -> 
     open_mission(page, site, "both_ways")
     toml = show_toml(page)
     text = OWN.format(name="both_ways")
-    toml.fill(text.replace("depth = 0.5", "depth = 0.7").replace("red", "marker 7") + "\n[trial]\nseconds = 5\n")
+    toml.fill(
+        text.replace("depth = 0.5", "depth = 0.7").replace("red", "marker 7") + "\n[trial]\nseconds = 5\n"
+    )
     expect(card(page, "1")).to_contain_text("depth 0.7 m")
     expect(card(page, "2")).to_contain_text("sees marker 7")
     card(page, "2").click()
@@ -391,5 +392,7 @@ def test_an_open_card_fits_the_screen_and_is_accessible(any_page: Page, site: Si
         any_page.get_by_role("button", name=view, exact=True).click()
         assert faults(any_page) == [], view
     width = any_page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
-    inner = any_page.evaluate("document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth")
+    inner = any_page.evaluate(
+        "document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth"
+    )
     assert (width, inner) == (0, 0)

@@ -39,7 +39,9 @@ def test_signing_in_has_a_title(browser: Browser, site: Site) -> None:
     context.close()
 
 
-@pytest.mark.parametrize("name", ["Sessions", "System", "Tune", "Missions", "Scenarios", "Comm tests", "Operate"])
+@pytest.mark.parametrize(
+    "name", ["Sessions", "System", "Tune", "Missions", "Scenarios", "Comm tests", "Operate"]
+)
 def test_the_heading_of_the_next_page_gets_the_focus(page: Page, name: str) -> None:
     pages = page.get_by_role("navigation", name="Pages")
     pages.get_by_role("link", name="Sessions" if name == "System" else "System", exact=True).click()

@@ -4761,7 +4761,7 @@ export interface components {
         MissionTrialResult: {
             /**
              * Curve
-             * @description depth, m, twice a second
+             * @description depth, m, twice a second from its start to its end
              */
             curve: number[];
             /**

@@ -36,7 +36,8 @@ _LONGEST = 3600.0
 class TrialResult:
     """The outcome of a mission with one seed. `phase` is null where it did not begin; `text` says why.
 
-    `failed` is the path of the step that failed. `curve` has the depth, m, every `CURVE_PERIOD` s.
+    `failed` is the path of the step that failed. `curve` has the depth, m, every `CURVE_PERIOD` s from
+    its start to its end.
     """
 
     seed: int
@@ -126,18 +127,27 @@ class _Watch:
         self.last: dict[str, Any] | None = None
         self.problem = ""
         self.curve: list[float] = []
+        self._began: float | None = None
 
     def blocks(self, data: bytes) -> None:
         """Takes the mission's documents and the depths."""
         for block in read_blocks(data):
             if block.topic.name == "mission" and block.topic.kind is Kind.DOCUMENTS:
-                self.last = json.loads(block.payload)[-1]
-                if self.last is not None and self.last["phase"] not in ("running", "paused"):
+                documents = json.loads(block.payload)
+                self.last = documents[-1]
+                if self._began is None:
+                    self._began = documents[0]["time"]
+                if not self._is_running:
                     self.on_end()
-            elif block.topic.name == "control":
+            elif block.topic.name == "control" and self._began is not None and self._is_running:
                 for time, record in read_rows(block):
-                    if isinstance(record, Control) and time >= len(self.curve) * CURVE_PERIOD:
+                    due = self._began + len(self.curve) * CURVE_PERIOD
+                    if isinstance(record, Control) and time >= due:
                         self.curve.append(round(record.depth, 2))
+
+    @property
+    def _is_running(self) -> bool:
+        return self.last is not None and self.last["phase"] in ("running", "paused")
 
     def event(self, event: str, **more: Any) -> None:
         """Notes what was refused."""

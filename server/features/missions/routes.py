@@ -52,7 +52,9 @@ async def keep_mission(settings: Provided[Settings], body: MissionBody) -> Missi
     return summarize_mission(await run_in_threadpool(_library(settings).keep, body.text))
 
 
-@router.operation("DELETE /{name}", Need.OPERATOR, UnknownMissionError, {409: "It is shipped"}, status_code=204)
+@router.operation(
+    "DELETE /{name}", Need.OPERATOR, UnknownMissionError, {409: "It is shipped"}, status_code=204
+)
 def delete_mission(settings: Provided[Settings], name: str) -> None:
     """Delete a mission of the data folder with all its versions."""
     _library(settings).delete(name)

@@ -114,7 +114,7 @@ class MissionTrialResult(BaseModel):
     elapsed: float = Field(description="s")
     deepest: float = Field(description="m")
     failed: str | None = Field(description="path of the step that failed")
-    curve: list[float] = Field(description="depth, m, twice a second")
+    curve: list[float] = Field(description="depth, m, twice a second from its start to its end")
 
 
 class MissionTrial(BaseModel):

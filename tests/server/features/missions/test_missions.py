@@ -115,6 +115,7 @@ def test_a_trial_tells_the_outcome_of_each_seed(settings: Settings) -> None:
             (2, "failed", "2"),
         ]
         assert all(0.5 < one.deepest < 0.75 for one in state.results)
+        assert all(2 * one.elapsed == pytest.approx(len(one.curve), abs=2) for one in state.results)
         assert all(max(one.curve) == pytest.approx(one.deepest, abs=0.06) for one in state.results)
         trials.start("test", OWN + "[trial]\nseed = 4\n", {}, 1)
         await trials.wait()
