@@ -3582,6 +3582,11 @@ export interface components {
              */
             name: string;
             /**
+             * Refused
+             * @description messages and calls of a ROS 2 program that were refused
+             */
+            refused: number;
+            /**
              * Role
              * @enum {string}
              */
@@ -3613,13 +3618,16 @@ export interface components {
              * Name
              * @enum {string}
              */
-            name: "rosbridge" | "foxglove";
+            name: "rosbridge" | "foxglove" | "ros2";
             /**
              * Open
              * @description `[doors]` in robot.toml says so
              */
             open: boolean;
-            /** Path */
+            /**
+             * Path
+             * @description below the server's address; for ROS 2 the endpoint of Zenoh
+             */
             path: string;
         };
         /**

@@ -1,4 +1,4 @@
-"""What one connected program of ROS 2 subscribes to, publishes and calls."""
+"""The session of one connected program of ROS 2: what it subscribes to, publishes and calls."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterable

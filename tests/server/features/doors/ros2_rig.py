@@ -69,11 +69,11 @@ def open_zenoh(values: dict[str, Any]) -> zenoh.Session:
 
 
 @contextmanager
-def overriding(values: dict[str, Any]) -> Iterator[None]:
+def overriding(values: dict[str, Any] | str) -> Iterator[None]:
     """rmw_zenoh's own way of changing a session's settings."""
-    os.environ["ZENOH_CONFIG_OVERRIDE"] = ";".join(
-        f"{key}={json.dumps(value)}" for key, value in values.items()
-    )
+    if not isinstance(values, str):
+        values = ";".join(f"{key}={json.dumps(value)}" for key, value in values.items())
+    os.environ["ZENOH_CONFIG_OVERRIDE"] = values
     try:
         yield
     finally:
@@ -153,7 +153,9 @@ class Ros2Peer:
 def await_match(declared: "zenoh.Publisher | zenoh.Querier") -> None:
     """Wait until the robot is known as the other end, as ROS 2 waits for a service."""
     end = time.monotonic() + SECONDS
-    while not declared.matching_status.matching:
+    # Zenoh's stub calls this a bool; it is a MatchingStatus.
+    status: Callable[[], Any] = lambda: declared.matching_status  # noqa: E731
+    while not status().matching:
         assert time.monotonic() < end, f"nobody is at {declared.key_expr}"
         time.sleep(0.005)
 
@@ -170,7 +172,7 @@ def write_definitions(kind: str, folder: Path) -> None:
 
 
 @asynccontextmanager
-async def ros2_peer(served: Served, values: dict[str, Any], domain: int = 0) -> AsyncIterator[Ros2Peer]:
+async def ros2_peer(served: Served, values: dict[str, Any] | str, domain: int = 0) -> AsyncIterator[Ros2Peer]:
     """A program whose session has these settings."""
     messages = served.settings.data.path.parent / "messages"
 

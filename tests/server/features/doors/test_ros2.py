@@ -373,9 +373,14 @@ def publish_most(served: Served) -> None:
     """A sample of each other topic."""
     served.container.doors.see_health([{"name": "board", "state": "failed", "text": MARK}])
     now = served.container.clock.now()
-    flags = dict.fromkeys(Status.wires, 0) | {"battery": 7.4}
+    flags: dict[str, Any] = dict.fromkeys(Status.wires, 0) | {"battery": 7.4}
     control = dict.fromkeys(Control.wires, 0.25)
-    motor = {"time": 0, "wanted": (0.0,) * 4, "angle": (0.1, -0.2, 0.3, -0.4), "drive": (0,) * 4}
+    motor: dict[str, Any] = {
+        "time": 0,
+        "wanted": (0.0,) * 4,
+        "angle": (0.1, -0.2, 0.3, -0.4),
+        "drive": (0,) * 4,
+    }
     served.runtime.publish(
         rows_block("truth", 0, (now, truth((1.0, 2.0, 0.7), TURNED))),
         depth_block(served, 0.7),
@@ -473,7 +478,7 @@ async def gets_something(values: dict[str, Any]) -> bool:
         try:
             return any(one.ok for one in session.liveliness().get("@ros2_lv/**", timeout=2.0))
         finally:
-            session.close()
+            session.close()  # type: ignore[no-untyped-call]
 
     return await asyncio.to_thread(look)
 
