@@ -171,19 +171,20 @@ def write_definitions(kind: str, folder: Path) -> None:
         path.write_text(text, encoding="utf-8")
 
 
+def start_peer(messages: Path, values: dict[str, Any] | str, domain: int = 0) -> Ros2Peer:
+    """A program whose session has these settings, and whose types' definitions are put into `messages`."""
+    message_registry._registry = None
+    message_registry.get_registry(str(messages))
+    with overriding(values):
+        ZenohSession.get_instance()
+    return Ros2Peer(messages, domain)
+
+
 @asynccontextmanager
 async def ros2_peer(served: Served, values: dict[str, Any] | str, domain: int = 0) -> AsyncIterator[Ros2Peer]:
-    """A program whose session has these settings."""
+    """A program beside a server that runs in this event loop."""
     messages = served.settings.data.path.parent / "messages"
-
-    def start() -> Ros2Peer:
-        message_registry._registry = None
-        message_registry.get_registry(str(messages))
-        with overriding(values):
-            ZenohSession.get_instance()
-        return Ros2Peer(messages, domain)
-
-    peer = await asyncio.to_thread(start)
+    peer = await asyncio.to_thread(start_peer, messages, values, domain)
     try:
         yield peer
     finally:
