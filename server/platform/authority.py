@@ -17,6 +17,12 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 _LEAF = "basicConstraints=critical,CA:FALSE"
 
 
+def check_name(name: str) -> None:
+    """Raises SetupError where a certificate cannot have this name."""
+    if not NAME.fullmatch(name):
+        raise SetupError(f"{name!r} is no name of a certificate: use up to 32 of A-Z, a-z, 0-9, - and _.")
+
+
 class IssuedCertificate(NamedTuple):
     """A certificate in force."""
 
@@ -58,8 +64,7 @@ class Authority:
 
     def issue(self, name: str, destination: Path) -> None:
         """Make a simulator's certificate, with its key, in a new folder."""
-        if not NAME.fullmatch(name):
-            raise SetupError(f"{name!r} is no name of a certificate: use up to 32 of A-Z, a-z, 0-9, - and _.")
+        check_name(name)
         if any(one.name == name for one in self.issued()):
             raise SetupError(f"{name} has a certificate. Revoke it first: mucat certificate revoke {name}")
         common_name = f"{name}.{secrets.token_hex(4)}"

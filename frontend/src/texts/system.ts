@@ -259,11 +259,12 @@ export const system = {
   },
   doors: {
     title: 'Other programs',
-    closed: 'Closed. [doors] in robot.toml opens them to roslib, Foxglove and others.',
-    names: { rosbridge: 'rosbridge', foxglove: 'Foxglove' },
+    closed: 'Closed. [doors] in robot.toml opens them to roslib, Foxglove, ROS 2 and others.',
+    names: { rosbridge: 'rosbridge', foxglove: 'Foxglove', ros2: 'ROS 2' },
     shut: 'closed',
     connected: (count: number) => (count === 0 ? 'open, nobody connected' : `open, ${count} connected`),
     topics: (count: number) => (count === 1 ? '1 topic' : `${count} topics`),
+    refused: (count: number) => `${count} refused`,
     control: 'has control',
   },
   people: {

@@ -42,6 +42,7 @@ class Ros2Connection:
         assert isinstance(data, bytes)
         await self._writer.drain()
         self._publish(data)
+        await asyncio.sleep(0)  # lets the bytes pass on
 
     async def listen(self, client: DoorClient, make_node: MakeNode) -> None:
         """Serve the program until it leaves. Raises OSError."""

@@ -24,6 +24,8 @@ SETTINGS: Mapping[str, Any] = {
     "transport/link/protocols": ["unixsock-stream"],
     "transport/unicast/max_sessions": 1,
     "transport/link/rx/max_message_size": MESSAGE_MAX,
+    # A burst of pictures and samples fits; the door waits with the next message where the program is slow.
+    "transport/link/tx/queue/size/data": 16,
     "transport/shared_memory/enabled": False,
     "timestamping/enabled": True,  # the cache of a latched topic needs it
     "adminspace/enabled": False,
@@ -134,14 +136,18 @@ class Ros2Node:
 
         def receive(sample: zenoh.Sample) -> None:
             typed = str(sample.key_expr) == key
-            self._receive(Incoming(endpoint, typed, _read(sample.payload), _read(sample.attachment) or b""))
+            self._receive(
+                Incoming(
+                    endpoint, typed, read_payload(sample.payload), read_payload(sample.attachment) or b""
+                )
+            )
 
         declared = self._session.declare_subscriber(self._names.any_type(endpoint), receive)
         self._entities.append(declared)
 
     def _serve(self, endpoint: Endpoint) -> None:
         def receive(query: zenoh.Query) -> None:
-            payload, attachment = _read(query.payload), _read(query.attachment) or b""
+            payload, attachment = read_payload(query.payload), read_payload(query.attachment) or b""
             self._receive(Incoming(endpoint, True, payload, attachment, query))
 
         declared = self._session.declare_queryable(self._names.key(endpoint), receive, complete=True)
@@ -163,7 +169,7 @@ class _Ros2Publisher:
         self._publisher.put(payload, attachment=attachment.to_bytes())
 
 
-def _read(data: "zenoh.ZBytes | None") -> bytes | None:
+def read_payload(data: "zenoh.ZBytes | None") -> bytes | None:
     """The bytes; none where nothing came, None where it is too much."""
     if data is None:
         return b""

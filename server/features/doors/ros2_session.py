@@ -1,4 +1,4 @@
-"""What one connected program of ROS 2 subscribes to, publishes and calls."""
+"""The session of one connected program of ROS 2: what it subscribes to, publishes and calls."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterable
@@ -13,7 +13,7 @@ from server.features.doors.ros2_node import Incoming, Ros2Node
 from server.features.doors.rosapi import command_services
 from server.features.doors.session import DoorSession, UnusableMessageError
 from server.features.doors.subscriptions import DoorClient, DoorSubscription
-from server.features.doors.twist import CMD_VEL, STOP_TOPIC, TAKEN_IN, read_twist
+from server.features.doors.twist import STOP_TOPIC, TAKEN_IN, read_twist
 
 LINES_DEPTH = 1000
 """As ROS's own loggers publish /rosout."""
@@ -122,6 +122,9 @@ class Ros2Session(DoorSession):
 
     def _act(self, incoming: Incoming, node: Ros2Node) -> None:
         endpoint = incoming.endpoint
+        if endpoint.name == STOP_TOPIC and endpoint.kind == "MS":
+            self.begin(self._stop(), always=True)  # whatever the message is
+            return
         if not incoming.typed:
             raise UnusableMessageError(
                 f"{endpoint.name} has the type {endpoint.type}, with ROS 2's own hash."
@@ -130,11 +133,9 @@ class Ros2Session(DoorSession):
             raise UnusableMessageError(f"A message may have {PAYLOAD_MAX} bytes.")
         if incoming.query is not None:
             self._call(incoming, incoming.payload, node)
-        elif endpoint.name == CMD_VEL:
+        else:
             linear, angular = read_twist(_decode(endpoint.type, incoming.payload))
             self._commands.drive(self._pilot, linear, angular)
-        else:  # STOP, whatever the message holds
-            self.begin(self._stop(), always=True)
 
     async def _stop(self) -> None:
         await self._perform(STOP)

@@ -7,7 +7,7 @@ import click
 
 from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY
 from server.http.sign_in.tokens import digest
-from server.platform.authority import Authority
+from server.platform.authority import Authority, check_name
 from server.platform.command_line import FILE, with_settings
 from server.platform.folder_lock import runner_of
 from server.platform.running_server import ask
@@ -51,6 +51,7 @@ def ros2(settings: Settings, name: str, scope: str, days: int, destination: Path
 
     The program is listed under People, and revoked there.
     """
+    check_name(name)
     folder = destination or Path(f"mucat-{name}")
     if folder.exists():
         raise SetupError(f"{folder} exists. Remove it, or choose another folder with --to.")

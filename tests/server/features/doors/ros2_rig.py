@@ -69,11 +69,11 @@ def open_zenoh(values: dict[str, Any]) -> zenoh.Session:
 
 
 @contextmanager
-def overriding(values: dict[str, Any]) -> Iterator[None]:
+def overriding(values: dict[str, Any] | str) -> Iterator[None]:
     """rmw_zenoh's own way of changing a session's settings."""
-    os.environ["ZENOH_CONFIG_OVERRIDE"] = ";".join(
-        f"{key}={json.dumps(value)}" for key, value in values.items()
-    )
+    if not isinstance(values, str):
+        values = ";".join(f"{key}={json.dumps(value)}" for key, value in values.items())
+    os.environ["ZENOH_CONFIG_OVERRIDE"] = values
     try:
         yield
     finally:
@@ -153,7 +153,9 @@ class Ros2Peer:
 def await_match(declared: "zenoh.Publisher | zenoh.Querier") -> None:
     """Wait until the robot is known as the other end, as ROS 2 waits for a service."""
     end = time.monotonic() + SECONDS
-    while not declared.matching_status.matching:
+    # Zenoh's stub calls this a bool; it is a MatchingStatus.
+    status: Callable[[], Any] = lambda: declared.matching_status  # noqa: E731
+    while not status().matching:
         assert time.monotonic() < end, f"nobody is at {declared.key_expr}"
         time.sleep(0.005)
 
@@ -169,19 +171,20 @@ def write_definitions(kind: str, folder: Path) -> None:
         path.write_text(text, encoding="utf-8")
 
 
+def start_peer(messages: Path, values: dict[str, Any] | str, domain: int = 0) -> Ros2Peer:
+    """A program whose session has these settings, and whose types' definitions are put into `messages`."""
+    message_registry._registry = None
+    message_registry.get_registry(str(messages))
+    with overriding(values):
+        ZenohSession.get_instance()
+    return Ros2Peer(messages, domain)
+
+
 @asynccontextmanager
-async def ros2_peer(served: Served, values: dict[str, Any], domain: int = 0) -> AsyncIterator[Ros2Peer]:
-    """A program whose session has these settings."""
+async def ros2_peer(served: Served, values: dict[str, Any] | str, domain: int = 0) -> AsyncIterator[Ros2Peer]:
+    """A program beside a server that runs in this event loop."""
     messages = served.settings.data.path.parent / "messages"
-
-    def start() -> Ros2Peer:
-        message_registry._registry = None
-        message_registry.get_registry(str(messages))
-        with overriding(values):
-            ZenohSession.get_instance()
-        return Ros2Peer(messages, domain)
-
-    peer = await asyncio.to_thread(start)
+    peer = await asyncio.to_thread(start_peer, messages, values, domain)
     try:
         yield peer
     finally:

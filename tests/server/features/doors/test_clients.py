@@ -1,16 +1,19 @@
 """Unmodified clients of other people at the doors of the whole emulated robot."""
 
 import json
+import re
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.stack import Stack
+from tests.server.features.doors.ros2_rig import start_peer
+from tests.stack import Stack, free_port
 
 CLIENTS = Path(__file__).parents[3] / "clients"
 SECONDS = 120
@@ -22,7 +25,8 @@ pytestmark = pytest.mark.stack
 def _robot() -> Iterator[Stack]:
     with tempfile.TemporaryDirectory(prefix="mucat-") as name:
         config = Path(name) / "robot.toml"
-        config.write_text("[doors]\nrosbridge = true\nfoxglove = true\n", encoding="utf-8")
+        ros2 = f'ros2 = true\nros2_listen = "tls/127.0.0.1:{free_port()}"\n'
+        config.write_text(f"[doors]\nrosbridge = true\nfoxglove = true\n{ros2}", encoding="utf-8")
         with Stack(Path(name) / "data", "--config", str(config)) as stack:
             yield stack
 
@@ -115,3 +119,41 @@ def test_foxgloves_own_client_shows_sets_drives_and_stops(robot: Stack) -> None:
     assert said["stopped"]["success"]
     assert "configById" in said["asset"]
     assert "no asset" in said["none"]
+
+
+def test_zenoh_ros2_sdk_reads_drives_and_stops(robot: Stack, tmp_path: Path) -> None:
+    robot.api.post("/control/release")
+    folder = tmp_path / "lab"
+    config = robot.data.parent / "robot.toml"
+    command = [str(robot.program), "certificate", "ros2", "lab", "--scope", "operate", "--to", str(folder)]
+    command += ["--data", str(robot.data), "--config", str(config)]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True, timeout=SECONDS).stdout
+    (values,) = re.findall(r"ZENOH_CONFIG_OVERRIDE='(.*)' ros2 run", printed)
+    peer = start_peer(
+        tmp_path / "messages", values.replace("ADDRESS", "127.0.0.1").replace('"lab/', f'"{folder}/')
+    )
+    try:
+        peer.subscribe("/imu/data", "sensor_msgs/msg/Imu")
+        _, measured = peer.received.get(timeout=SECONDS)
+        assert measured.linear_acceleration.z == pytest.approx(9.8, abs=1.5)
+        assert measured.header.frame_id == "base_link"
+        wheel = peer.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
+        assert peer.call("/mucat/arm")[0] is False
+        assert peer.call("/mucat/take_control") == (True, "You have control.")
+        assert peer.call("/mucat/arm")[0] is True
+        peer.subscribe("/joint_states", "sensor_msgs/msg/JointState")
+        vector = peer.type("geometry_msgs/msg/Vector3")
+        sticks = {"linear": vector(x=0.5, y=0.0, z=0.0), "angular": vector(x=0.0, y=0.0, z=0.0)}
+        end, swung = time.monotonic() + SECONDS, 0.0
+        while swung < 0.1:
+            assert time.monotonic() < end, "the fins do not move"
+            wheel.publish(**sticks)
+            topic, message = peer.received.get(timeout=SECONDS)
+            if topic == "/joint_states":
+                swung = max(abs(message.position))
+        assert peer.call("/mucat/stop")[0] is True
+        while robot.api.get("/robot").json()["armed"]:
+            assert time.monotonic() < end, "the robot stays armed"
+            time.sleep(0.02)
+    finally:
+        peer.close()

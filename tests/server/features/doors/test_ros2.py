@@ -2,7 +2,8 @@
 
 import asyncio
 import base64
-from collections.abc import Iterable
+import time
+from collections.abc import Set
 from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
 from math import nan
@@ -14,6 +15,8 @@ import zenoh
 
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Beacon, Depth, Motor, Status
+from server.features.doors.ros2_messages import PAYLOAD_MAX
+from server.features.doors.ros2_node import read_payload
 from server.features.doors.ros_channels import standard_channels
 from server.platform.authority import Authority
 from server.platform.settings import Settings
@@ -81,7 +84,7 @@ def test_a_program_gets_the_values_of_rosbridge(settings: Settings) -> None:
                 publish(served)
                 theirs, ours = await asyncio.gather(by_rosbridge(page, names), by_ros2(peer, names))
                 for name in names:
-                    assert same(ours[name], theirs[name]), (name, ours[name], theirs[name])
+                    assert not differences(ours[name], theirs[name]), name
             assert ours["/imu/data"]["linear_acceleration.z"] == pytest.approx(9.5, abs=1e-3)
             (client,) = await doors_of(served)
             assert (client["name"], client["role"], set(client["topics"])) == ("Lab", "viewer", {*channels})
@@ -241,7 +244,9 @@ def test_what_is_not_valid_is_refused_and_counted(settings: Settings) -> None:
             for payload in bad[:4]:
                 assert not await asyncio.to_thread(answers, session, arm, payload)
             assert served.runtime.driven == []
-            assert [name for name, _ in served.runtime.asked if name != "there"] == []
+            session.put("0/mucat/stop/std_msgs::msg::dds_::Bool_/RIHS01_0", b"")
+            await until(lambda: ("stop", {}) in served.runtime.asked, "STOP by whatever message")
+            assert [name for name, _ in served.runtime.asked if name != "there"] == ["stop"]
             (client,) = await doors_of(served)
             assert client["refused"] >= len(bad) + 4
         finally:
@@ -281,6 +286,7 @@ def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
                 served.container.doors.see(picture_block(number, 300_000))
                 assert (await page.next("publish"))["topic"] == topic
                 await asyncio.sleep(0)
+            reading.set()
 
     play_ros2(settings, scenario)
 
@@ -310,6 +316,26 @@ def test_a_flood_of_a_program_is_slowed_down_and_stop_passes(settings: Settings)
             await asyncio.to_thread(session.close)
 
     play_ros2(settings, scenario)
+
+
+def test_a_certificate_that_ends_ends_its_connection(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        folder = await issue(served, "read")
+        (device,) = (one for one in served.container.access.devices.all() if one.name == "Lab")
+        device.ends = time.time() + 3
+        async with ros2_peer(served, tls_settings(served, folder)) as peer:
+            await asyncio.to_thread(peer.subscribe, "/depth", "std_msgs/msg/Float64")
+            await until(lambda: subscribed(served) == {"/depth"}, "the subscription")
+            await until(lambda: not served.container.doors.doors["ros2"].clients, "the end")
+            assert time.time() >= device.ends
+
+    play_ros2(settings, scenario)
+
+
+def test_a_message_that_is_too_large_is_not_read() -> None:
+    assert read_payload(zenoh.ZBytes(bytes(PAYLOAD_MAX))) == bytes(PAYLOAD_MAX)
+    assert read_payload(zenoh.ZBytes(bytes(PAYLOAD_MAX + 1))) is None
+    assert read_payload(None) == b""
 
 
 def subscribed(served: Served) -> set[str]:
@@ -347,9 +373,14 @@ def publish_most(served: Served) -> None:
     """A sample of each other topic."""
     served.container.doors.see_health([{"name": "board", "state": "failed", "text": MARK}])
     now = served.container.clock.now()
-    flags = dict.fromkeys(Status.wires, 0) | {"battery": 7.4}
+    flags: dict[str, Any] = dict.fromkeys(Status.wires, 0) | {"battery": 7.4}
     control = dict.fromkeys(Control.wires, 0.25)
-    motor = {"time": 0, "wanted": (0.0,) * 4, "angle": (0.1, -0.2, 0.3, -0.4), "drive": (0,) * 4}
+    motor: dict[str, Any] = {
+        "time": 0,
+        "wanted": (0.0,) * 4,
+        "angle": (0.1, -0.2, 0.3, -0.4),
+        "drive": (0,) * 4,
+    }
     served.runtime.publish(
         rows_block("truth", 0, (now, truth((1.0, 2.0, 0.7), TURNED))),
         depth_block(served, 0.7),
@@ -362,22 +393,22 @@ def publish_most(served: Served) -> None:
     )
 
 
-async def by_rosbridge(page: RosbridgeClient, topics: Iterable[str]) -> dict[str, dict[str, Any]]:
+async def by_rosbridge(page: RosbridgeClient, topics: Set[str]) -> dict[str, dict[str, Any]]:
     """The newest message of each topic, flat."""
     found: dict[str, dict[str, Any]] = {}
-    while found.keys() != {*topics}:
+    while found.keys() != topics:
         message = await page.next("publish")
-        if is_wanted(message["topic"], flat := flatten(message["msg"])):
+        if message["topic"] in topics and is_wanted(message["topic"], flat := flatten(message["msg"])):
             found[message["topic"]] = flat
     return found
 
 
-async def by_ros2(peer: Ros2Peer, topics: Iterable[str]) -> dict[str, dict[str, Any]]:
+async def by_ros2(peer: Ros2Peer, topics: Set[str]) -> dict[str, dict[str, Any]]:
     """The same at the other door."""
     found: dict[str, dict[str, Any]] = {}
-    while found.keys() != {*topics}:
+    while found.keys() != topics:
         topic, message = await asyncio.to_thread(peer.received.get, timeout=SECONDS)
-        if is_wanted(topic, flat := flatten(message)):
+        if topic in topics and is_wanted(topic, flat := flatten(message)):
             found[topic] = flat
     return found
 
@@ -389,20 +420,22 @@ def is_wanted(topic: str, message: dict[str, Any]) -> bool:
     return message.get(key) == value
 
 
-def same(one: dict[str, Any], other: dict[str, Any]) -> bool:
-    """True where all values are equal; of 32 bits, or in JSON, a number may be rounded."""
-    return one.keys() == other.keys() and all(
-        pytest.approx(value, rel=1e-6, nan_ok=True) == other[key]
-        if isinstance(value, int | float)
-        else value == other[key]
-        for key, value in one.items()
-    )
+def differences(one: dict[str, Any], other: dict[str, Any]) -> dict[str, tuple[Any, Any]]:
+    """The values that are not equal; of 32 bits, or in JSON, a number may be rounded."""
+    pairs = {key: (one.get(key), other.get(key)) for key in one.keys() | other.keys()}
+    return {
+        key: (first, second)
+        for key, (first, second) in pairs.items()
+        if first != (pytest.approx(second, rel=1e-6, nan_ok=True) if isinstance(second, float) else second)
+    }
 
 
 def flatten(value: Any, name: str = "") -> dict[str, Any]:
     """The plain values of a message by their path; base64, null and arrays of rosbridge as ROS 2 has them."""
     if is_dataclass(value):
-        value = {one.name: getattr(value, one.name) for one in fields(value) if one.name != "__msgtype__"}
+        # Constants are fields here, too.
+        names = [one.name for one in fields(value) if one.name.islower() and one.name != "__msgtype__"]
+        value = {one: getattr(value, one) for one in names}
     if isinstance(value, numpy.ndarray):
         value = bytes(value) if value.dtype == numpy.uint8 else value.tolist()
     if name == "data" and isinstance(value, str):
@@ -445,7 +478,7 @@ async def gets_something(values: dict[str, Any]) -> bool:
         try:
             return any(one.ok for one in session.liveliness().get("@ros2_lv/**", timeout=2.0))
         finally:
-            session.close()
+            session.close()  # type: ignore[no-untyped-call]
 
     return await asyncio.to_thread(look)
 
@@ -465,6 +498,9 @@ async def pass_on(
                     await gate.wait()
                 sink.write(data)
                 await sink.drain()
-        sink.close()
 
-    await asyncio.gather(pump(reader, back, None), pump(there, writer, reading))
+    try:
+        await asyncio.gather(pump(reader, back, None), pump(there, writer, reading))
+    finally:
+        for one in (back, writer):
+            one.transport.abort()

@@ -1,0 +1,99 @@
+"""Anything at all as a message or call of a ROS 2 program: it is used, or refused and counted."""
+
+import asyncio
+from collections.abc import Iterator
+from contextlib import suppress
+from struct import pack
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from robot_runtime.clock import Clock
+from server.container import Container
+from server.features.doors.commands import DoorCommands, DoorPilot
+from server.features.doors.ros2_messages import TRIGGER, ros2_types
+from server.features.doors.ros2_names import Attachment
+from server.features.doors.ros2_node import Incoming
+from server.features.doors.ros2_session import Ros2Session, ros2_endpoints
+from server.features.doors.ros_channels import standard_channels
+from server.features.doors.session import UnusableMessageError
+from server.features.doors.subscriptions import DoorClient
+from server.http.sign_in.identity import SHELL
+from server.platform.settings import Settings
+from tests.server.new_database import place_empty
+
+EXAMPLES = 200
+CHECKS = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+NUMBERS = st.lists(st.floats() | st.floats(-2, 2), min_size=6, max_size=6)
+PAYLOADS = (
+    st.none()
+    | st.binary(max_size=70)
+    | st.builds(lambda head, rest: head + rest, st.sampled_from([b"\0\1\0\0", b"\0\0\0\0"]), st.binary())
+    | NUMBERS.map(lambda six: b"\0\1\0\0" + pack("<6d", *six))
+)
+
+
+@pytest.fixture
+def container(settings: Settings) -> Iterator[Container]:
+    place_empty(settings.data)
+    container = Container(settings, (), "mucat_token")
+    yield container
+    container.store.close()
+    container.audit.close()
+
+
+@settings(max_examples=EXAMPLES, suppress_health_check=CHECKS)
+@given(place=st.integers(0), typed=st.booleans(), payload=PAYLOADS, attachment=st.binary(max_size=40))
+def test_the_door_uses_or_refuses_anything(
+    container: Container, place: int, typed: bool, payload: bytes | None, attachment: bytes
+) -> None:
+    """Nobody has control, so that driving is refused, too."""
+    endpoints = [one for one in ros2_endpoints(standard_channels()) if one.kind != "MP"]
+    endpoint = endpoints[place % len(endpoints)]
+    query: Any = object() if endpoint.kind == "SS" else None
+
+    async def run() -> None:
+        async def send(_: str | bytes) -> None:
+            raise AssertionError("nothing is sent")
+
+        async def writable() -> None:
+            pass
+
+        commands = DoorCommands(
+            "/ros2",
+            container.clock,
+            container.access,
+            container.commands,
+            container.bridge,
+            container.arbiter,
+            container.audit,
+        )
+        with container.arbiter.page(SHELL) as owner:
+            client = DoorClient(1, SHELL, "", send, container.services[Clock])  # type: ignore[arg-type]
+            session = Ros2Session(client, DoorPilot(owner, ""), container.doors, commands, writable)
+            session.act(Incoming(endpoint, typed, payload, attachment, query), None)  # type: ignore[arg-type]
+            calls = session.cancel_calls()
+            assert client.refused == (not calls)
+            await asyncio.gather(*calls, return_exceptions=True)
+
+    asyncio.run(run())
+
+
+@settings(max_examples=1000)
+@given(kind=st.sampled_from(["geometry_msgs/msg/Twist", f"{TRIGGER}_Request"]), data=st.binary(max_size=80))
+def test_any_bytes_are_a_message_or_none(kind: str, data: bytes) -> None:
+    for head in (b"", b"\0\1\0\0", b"\0\0\0\0"):
+        with suppress(ValueError):
+            ros2_types().decode(kind, head + data)
+
+
+@given(data=st.binary(max_size=40) | st.binary(min_size=33, max_size=33))
+def test_any_bytes_are_an_attachment_or_none(data: bytes) -> None:
+    try:
+        found = Attachment.from_bytes(data)
+    except UnusableMessageError:
+        assert len(data) != 33 or data[16] != 16
+    else:
+        assert found.to_bytes() == data
