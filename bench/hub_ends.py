@@ -1,8 +1,8 @@
 """`python -m bench.hub_ends ROLE ...`: the processes whose cost and latency `bench.hub` measures.
 
-`server DATA PORT PAGE` is the server alone, `source DATA` sends it samples over Zenoh as the runtime does,
-`foxglove PORT` logs the same samples to foxglove-sdk's server in its own process. Each runs until its
-standard input ends.
+`server DATA PORT PAGE` is the server alone, `doors` the same with open doors, `source DATA` sends it samples
+over Zenoh as the runtime does, `foxglove PORT` logs the same samples to foxglove-sdk's server in its own
+process. Each runs until its standard input ends.
 """
 
 import asyncio
@@ -16,6 +16,7 @@ from pathlib import Path
 from struct import Struct
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.config import DoorsConfig
 from robot_runtime.contract.topics import BY_NAME, TIME
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.transport.replay_cache import ReplayCache
@@ -56,8 +57,11 @@ def _every_tick(do: Callable[[float], None], ended: threading.Event) -> None:
         due += 1 / RATE
 
 
-async def _serve(data: Path, port: int, page: Path, ended: threading.Event) -> None:
-    settings = Settings(data=DataFolder(data), config=Path("robot.toml"), port=port, page=page)
+async def _serve(
+    data: Path, port: int, page: Path, ended: threading.Event, doors: DoorsConfig | None = None
+) -> None:
+    folder, opened = DataFolder(data), doors or DoorsConfig()
+    settings = Settings(data=folder, config=Path("robot.toml"), port=port, page=page, doors=opened)
     prepare(settings.data)
     server = make_server(create_app(settings, ()))
     with open_socket("127.0.0.1", port) as listener:
@@ -121,8 +125,9 @@ def main() -> None:
         ended.set()
 
     threading.Thread(target=wait, daemon=True).start()
-    if role == "server":
-        asyncio.run(_serve(Path(rest[0]), int(rest[1]), Path(rest[2]).resolve(), ended))
+    if role in ("server", "doors"):
+        doors = DoorsConfig(rosbridge=True, foxglove=True) if role == "doors" else None
+        asyncio.run(_serve(Path(rest[0]), int(rest[1]), Path(rest[2]).resolve(), ended, doors))
     elif role == "source":
         _source(Path(rest[0]), ended)
     else:

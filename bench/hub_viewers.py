@@ -21,13 +21,15 @@ _TIMEOUT = 20.0
 _DRAIN_EVERY = 0.05
 _TOPICS = {BY_NAME[name].id for name in TOPICS}
 
-Times = Callable[[bytes], list[float]]
+Times = Callable[[str | bytes], list[float]]
 """When the samples in a message were made (s, steady clock)."""
 
 
-def OURS(message: bytes) -> list[float]:  # noqa: N802 - one of two
+def OURS(message: str | bytes) -> list[float]:  # noqa: N802 - one of two
     """Blocks, one after the other."""
-    times = []
+    times: list[float] = []
+    if isinstance(message, str):
+        return times
     at = 0
     while at < len(message):
         topic, _, count, _, size = HEADER.unpack_from(message, at)
@@ -39,9 +41,11 @@ def OURS(message: bytes) -> list[float]:  # noqa: N802 - one of two
     return times
 
 
-def THEIRS(message: bytes) -> list[float]:  # noqa: N802 - one of two
+def THEIRS(message: str | bytes) -> list[float]:  # noqa: N802 - one of two
     """foxglove.sdk.v1: an opcode, the subscription (u32), the time of logging (u64), the payload."""
-    return [TIME.unpack_from(message, 13)[0]] if message[0] == 1 else []
+    if isinstance(message, str) or message[0] != 1:
+        return []
+    return [TIME.unpack_from(message, 13)[0]]
 
 
 class Viewer:
@@ -140,10 +144,10 @@ class HealthMonitor:
 
     def _run(self) -> None:
         for message in self._viewer.messages():
-            if isinstance(message, str):
-                continue
             now = monotonic()
             times = self._viewer.times(message)
+            if not times:
+                continue
             self._samples += len(times)
             self._bytes += len(message) + (2 if len(message) < 126 else 4)
             self._latencies += [now - time for time in times]

@@ -52,6 +52,7 @@ PARTS = {
         Part("replay", draws=True),
         Part("stack"),
         Part("hub"),
+        Part("doors"),
         Part("page", draws=True),
     )
 }

@@ -264,8 +264,9 @@ class FoxgloveSession(DoorSession):
             self._say(ERROR, f"The parameters were not set: {problem}", "parameters")
             self._send_parameters([*values], identifier)
             return
-        listed = [_parameter(name, value) for name, value in values.items()]
-        self._answer(op="parameterValues", parameters=listed, **_with(identifier))
+        if identifier is not None:
+            listed = [_parameter(name, value) for name, value in values.items()]
+            self._answer(op="parameterValues", parameters=listed, **_with(identifier))
 
     def _watch_parameters(self, said: dict[str, Any]) -> None:
         current = parameter_values(self._doors.document("parameters"))

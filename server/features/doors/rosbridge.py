@@ -33,6 +33,7 @@ THROTTLE_MAX = 3_600_000
 """ms."""
 REFUSED_OPS = {
     "fragment": "Fragments are not put together here: send messages of up to 4 KiB whole.",
+    "png": "Pictures are not unpacked here: send operations as JSON.",
     "advertise_service": "Programs cannot offer services to the robot.",
     "unadvertise_service": "Programs cannot offer services to the robot.",
     "service_response": "Programs cannot offer services to the robot.",

@@ -237,9 +237,11 @@ async def dive(served: Served, folder: Path) -> dict[str, list[Pose]]:
             # The pose has the newest position when an attitude comes.
             before = time - 0.01
             served.runtime.publish(rows_block("truth", place, (before, truth((1.0, 2.0, pose[3]), attitude))))
-            # A message of the simulator waits in the server for the robot's next one.
             served.runtime.publish(rows_block("depth", place, (before, depth)))
-            await until(partial(has_come, served, "truth", place), "the water")
+            while not has_come(served, "truth", place):
+                # A message of the simulator waits in the server for the robot's next one.
+                served.runtime.publish(state_block(next(states)))
+                await asyncio.sleep(0.02)
             served.runtime.publish(rows_block("imu", place, (time, imu(attitude))))
             await until(partial(has_come, served, "imu", place), "the attitude")
         found: dict[str, list[Pose]] = {}
