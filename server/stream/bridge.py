@@ -321,9 +321,9 @@ def _read_own_blocks(name: str, data: bytes, run: str) -> list[Block]:
 
 
 def _require_sender(blocks: Iterable[Block], sender: str) -> None:
-    foreign = {block.topic.name for block in blocks if block.topic.sender != sender}
-    if foreign:
-        raise LayoutError(f"the {sender} does not send {', '.join(sorted(foreign))}")
+    for block in blocks:
+        if block.topic.sender != sender:
+            raise LayoutError(f"the {sender} does not send {block.topic.name}")
 
 
 def _silence(name: str, waited: bool) -> str:
