@@ -50,6 +50,7 @@ PARTS = {
         Part("compare", draws=True),
         Part("replay", draws=True),
         Part("stack"),
+        Part("quota", is_long=True, prefix="quota."),
         Part("hub"),
         Part("page", draws=True),
     )
