@@ -16,7 +16,7 @@ import psutil
 
 from bench.hub_ends import TOPICS
 from bench.hub_viewers import OURS, THEIRS, Drain, HealthMonitor, Viewer
-from bench.stack import cpu_seconds
+from bench.processes import cpu_seconds
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import free_port
@@ -85,8 +85,9 @@ def _summary(found: dict[tuple[str, int], _Figures]) -> dict[str, float]:
         figures[f"{who}.latency_ms_p99.{many}"] = percentiles[98] * 1000
     for many in _VIEWERS:
         ours, theirs = (found[who, many].cpu_ms_per_1000 for who in ("hub", "foxglove"))
-        name = "hub.ratio_to_foxglove" + ("" if many == _VIEWERS[-1] else f".{many}")
-        figures[name] = median(one / other for one, other in zip(ours, theirs, strict=True))
+        figures[f"hub.ratio_to_foxglove.{many}"] = median(
+            one / other for one, other in zip(ours, theirs, strict=True)
+        )
     return figures
 
 

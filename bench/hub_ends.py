@@ -22,7 +22,8 @@ from robot_runtime.transport.outbox import Outbox
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from server.app import create_app
-from server.http.serving import make_server, open_socket
+from server.http.listener import open_socket
+from server.http.serving import make_server
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings
 

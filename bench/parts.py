@@ -51,6 +51,7 @@ PARTS = {
         Part("compare", draws=True),
         Part("replay", draws=True),
         Part("stack"),
+        Part("quota", is_long=True, prefix="quota."),
         Part("hub"),
         Part("doors"),
         Part("page", draws=True),

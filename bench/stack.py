@@ -1,19 +1,13 @@
 """Processor time, memory and control jitter of a robot at full rate, recording, with one viewer."""
 
 import tempfile
-import threading
 import time
 from pathlib import Path
 
-import psutil
-from websockets.sync.client import connect
-from websockets.typing import Origin
-
 from bench import jitter
 from bench.hour import copy_hours
-from server.platform.pidfile import running_parts
-from server.platform.settings import DataFolder
-from tests.shell import shell_headers
+from bench.processes import anonymous_mb, cpu_seconds
+from bench.real_robot import LiveViewer, RealRobot
 from tests.stack import Stack
 
 _SETTLE = 5.0
@@ -23,45 +17,58 @@ _JITTER_SECONDS = 100.0
 
 
 def measure() -> dict[str, float]:
-    """CPU in percent of one core over half a minute; resident memory in MB at its end; ms by which the time
-    between two control ticks differs from their period, idle and while exporting and rendering.
+    """As on a robot: CPU in percent of one core over half a minute, and at its end MB of memory, resident and
+    anonymous. With the emulated board: ms by which the time between two control ticks differs from their
+    period, idle and while exporting and rendering.
     """
+    return _load() | _jitter()
+
+
+def _load() -> dict[str, float]:
+    with tempfile.TemporaryDirectory() as folder, RealRobot(Path(folder)) as robot:
+        viewer = LiveViewer(robot)
+        robot.api.post("/sessions", json={"name": "bench"}).raise_for_status()
+        robot.arm()
+        time.sleep(_SETTLE)
+        processes = robot.robot_processes | robot.outside
+        before = {name: cpu_seconds(process) for name, process in processes.items()}
+        received = viewer.bytes
+        time.sleep(_SECONDS)
+        cpu = {
+            name: (cpu_seconds(process) - before[name]) / _SECONDS * 100
+            for name, process in processes.items()
+        }
+        figures = {f"cpu.{name}_percent": value for name, value in cpu.items()}
+        figures["cpu.robot_stack_percent"] = sum(cpu[name] for name in robot.robot_processes)
+        figures["stream.viewer_kb_per_s"] = (viewer.bytes - received) / _SECONDS / 1000
+        for name, process in robot.robot_processes.items():
+            figures[f"rss.{name}_mb"] = process.memory_info().rss / 1e6
+            figures[f"anonymous.{name}_mb"] = anonymous_mb(process)
+        figures["anonymous.robot_mb"] = sum(map(anonymous_mb, robot.robot_processes.values()))
+        viewer.close()
+        robot.api.post("/robot/stop").raise_for_status()
+    return figures
+
+
+def _jitter() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         data = Path(folder)
         (hour,) = copy_hours(data)
         with Stack(data) as stack:
-            viewer = _Viewer(stack)
+            viewer = LiveViewer(stack)
             # Before arming, which would begin a recording of its own.
             recording = {"name": "bench"}
             session = stack.api.post("/sessions", json=recording).raise_for_status().json()["id"]
             stack.arm()
             time.sleep(_SETTLE)
-            began = time.monotonic()
-            found = _load(stack, viewer)
-            phases = {"idle": _phase(began)}
+            phases = {"idle": _phase(time.monotonic())}
             with jitter.busy(stack, hour):
                 time.sleep(_SETTLE)
                 phases["busy"] = _phase(time.monotonic())
             viewer.close()
             stack.api.post("/robot/stop").raise_for_status()
             stack.api.post(f"/sessions/{session}/stop")
-        return found | jitter.figures(data, session, phases)
-
-
-def _load(stack: Stack, viewer: "_Viewer") -> dict[str, float]:
-    running = running_parts(DataFolder(stack.data).run)
-    parts = {name: psutil.Process(running[name].pid) for name in ("runtime", "board", "simulator")}
-    parts["server"] = stack.server
-    before = {name: cpu_seconds(process) for name, process in parts.items()}
-    received = viewer.bytes
-    time.sleep(_SECONDS)
-    cpu = {name: (cpu_seconds(process) - before[name]) / _SECONDS * 100 for name, process in parts.items()}
-    figures = {f"cpu.{name}_percent": value for name, value in cpu.items()}
-    figures["cpu.robot_stack_percent"] = cpu["server"] + cpu["runtime"]
-    figures["stream.viewer_kb_per_s"] = (viewer.bytes - received) / _SECONDS / 1000
-    figures["rss.server_mb"] = parts["server"].memory_info().rss / 1e6
-    figures["rss.runtime_mb"] = parts["runtime"].memory_info().rss / 1e6
-    return figures
+        return jitter.figures(data, session, phases)
 
 
 def _phase(began: float) -> tuple[float, float]:
@@ -69,33 +76,3 @@ def _phase(began: float) -> tuple[float, float]:
     end = began + _JITTER_SECONDS
     time.sleep(max(end - time.monotonic(), 0.0))
     return began, end
-
-
-class _Viewer:
-    """A client that reads everything, as a page does."""
-
-    def __init__(self, stack: Stack) -> None:
-        self.bytes = 0
-        self._socket = connect(
-            f"ws://127.0.0.1:{stack.port}/api/live",
-            origin=Origin(stack.url),
-            additional_headers=shell_headers(DataFolder(stack.data)),
-            max_size=None,
-            proxy=None,
-        )
-        self._thread = threading.Thread(target=self._read, daemon=True)
-        self._thread.start()
-
-    def close(self) -> None:
-        self._socket.close()
-        self._thread.join()
-
-    def _read(self) -> None:
-        for message in self._socket:
-            self.bytes += len(message)
-
-
-def cpu_seconds(process: psutil.Process) -> float:
-    """s on a processor. The scheduler's own count: the usual one sees only who runs when the clock ticks."""
-    tasks = Path(f"/proc/{process.pid}/task").iterdir()
-    return sum(int((task / "schedstat").read_text().split()[0]) for task in tasks) * 1e-9

@@ -12,15 +12,25 @@ from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.durable_files import keep_private
 from robot_runtime.profile import fit_to_this_computer
 from robot_runtime.robot import Robot
-from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
+from robot_runtime.transport.lifetime import (
+    add_server_options,
+    end_on_request,
+    end_with_parent,
+    limit_memory,
+)
 from robot_runtime.transport.network import LOCAL_ONLY, listen_settings
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.settings_file import VisionSettingsFile
+
+BYTES_MAX = 600_000_000
+"""Of the runtime's own memory, threads' stacks and OpenCV's buffers included; it needs a third of that."""
 
 
 def main() -> int:
     """Runs until SIGTERM or SIGINT. Returns 2 if the configuration or an endpoint cannot be used."""
     keep_private()
+    # It is the last process of the robot that may lack memory.
+    limit_memory(BYTES_MAX, share=0.75)
     options = _options()
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if options.with_parent:

@@ -1,5 +1,8 @@
 """The profile: a computer with little processor time looks at smaller pictures, less often.
 
+It also has little memory: there the runner of the server does not hold the server's libraries
+(`server.startup`).
+
 Control and the checks for faults are the same in both profiles, and so are the limits within which a fault is
 found.
 """
@@ -44,6 +47,11 @@ def fit(config: Config, profile: Profile) -> Config:
     return replace(config, vision=vision)
 
 
+def profile_here(config: Config) -> Profile:
+    """Returns the profile on this computer."""
+    return choose_profile(config, len(os.sched_getaffinity(0)), memory_bytes())
+
+
 def fit_to_this_computer(config: Config) -> Config:
     """Returns the configuration in the profile of this computer."""
-    return fit(config, choose_profile(config, len(os.sched_getaffinity(0)), memory_bytes()))
+    return fit(config, profile_here(config))

@@ -42,6 +42,8 @@ RISE_MIN = 0.1
 """m of rise in that time; in still water it is 0.3 m."""
 _STATUS_STALE = 0.5
 _NEVER = float("-inf")
+_LIMITS = {name: fault.limit - CHECK_PERIOD for name, fault in BY_NAME.items()}
+"""s after which a check must detect each fault, to stay within its limit."""
 
 
 class BoardLink(Protocol):
@@ -107,8 +109,8 @@ class FaultDetector:
         self._hil = hil
         self._arming_obstacles = arming_obstacles
         baud = line.baud
-        self._silent = max(_limit("board_silent") - ARRIVAL, frames_airtime(3, baud))
-        self._depth_stale = stale_after(_limit("depth_stale"), Depth, baud)
+        self._silent = max(_LIMITS["board_silent"] - ARRIVAL, frames_airtime(3, baud))
+        self._depth_stale = stale_after(_LIMITS["depth_stale"], Depth, baud)
         self._imu_stale = stale_after(BY_NAME["imu_stale"].limit - ARRIVAL, Imu, baud)
         self._status_stale = stale_after(_STATUS_STALE, Status, baud)
         self._heard = self._imu = self._upright = _NEVER
@@ -158,7 +160,7 @@ class FaultDetector:
 
         After a stall, messages that waited are read as if they had just arrived.
         """
-        stalled = self._age(self._checked) > _limit("runtime_stalled")
+        stalled = self._age(self._checked) > _LIMITS["runtime_stalled"]
         self._checked = self._clock.now()
         return stalled
 
@@ -175,9 +177,11 @@ class FaultDetector:
 
         While the robot is disarmed, only faults with `always` and those already `active` are checked.
         """
-        found = self._conditions(mode)
-        checked = {name for name in found if mode != "disarmed" or BY_NAME[name].always} | {*active}
-        wrong = {name: "" for name, there in found.items() if there and name in checked}
+        wrong = {
+            name: ""
+            for name, there in self._conditions(mode).items()
+            if there and (mode != "disarmed" or BY_NAME[name].always or name in active)
+        }
         if "board_silent" in wrong and not self._line.connected:
             wrong["board_silent"] = f"({self._line.text})"
         if "fin_failing" in wrong:
@@ -225,36 +229,36 @@ class FaultDetector:
         return reasons
 
     def _conditions(self, mode: Mode) -> dict[str, bool]:
-        pilot = self._age(self._pilot.taken) if mode == "manual" else 0.0
-        patience = self.server_patience
-        depth_age = self._age(self._depth_time)
-        low = self.status is not None and bool(self.status.flags & _BATTERY_LOW)
+        now, status, patience = self._clock.now(), self.status, self.server_patience
+        pilot = now - self._pilot.taken if mode == "manual" else 0.0
+        depth_age, depth_stale = now - self._depth_time, self._depth_stale
+        imu_is_stale = self._imu_is_stale()
         return {
-            "pilot_quiet": pilot > _limit("pilot_quiet"),
-            "pilot_lost": pilot > _limit("pilot_lost"),
-            "server_silent": patience is not None and self._age(self._server) > patience,
-            "board_silent": not self._line.connected or self._age(self._heard) > self._silent,
-            "depth_stale": depth_age > self._depth_stale,
-            "depth_frozen": depth_age <= self._depth_stale and self._depth_is_frozen(),
-            "depth_range": depth_age <= self._depth_stale < self._age(self._depth_sane),
-            "imu_stale": self._imu_is_stale(),
-            "imu_frozen": not self._imu_is_stale() and self._imu_is_frozen(),
+            "pilot_quiet": pilot > _LIMITS["pilot_quiet"],
+            "pilot_lost": pilot > _LIMITS["pilot_lost"],
+            "server_silent": patience is not None and now - self._server > patience,
+            "board_silent": not self._line.connected or now - self._heard > self._silent,
+            "depth_stale": depth_age > depth_stale,
+            "depth_frozen": depth_age <= depth_stale and self._depth_is_frozen(),
+            "depth_range": depth_age <= depth_stale < now - self._depth_sane,
+            "imu_stale": imu_is_stale,
+            "imu_frozen": not imu_is_stale and self._imu_is_frozen(),
             "capsized": self._capsized(),
-            "vision_stale": mode == "automatic" and self._age(self._vision) > _limit("vision_stale"),
+            "vision_stale": mode == "automatic" and now - self._vision > _LIMITS["vision_stale"],
             "not_rising": self._does_not_rise(),
-            "battery_low": low,
+            "battery_low": status is not None and bool(status.flags & _BATTERY_LOW),
             "fin_failing": bool(self._faults & _FIN_FAULTS),
             "simulator_silent": self._hil is not None and self._hil.lost,
         }
 
     def _depth_is_frozen(self) -> bool:
-        return self._pressures.last(_limit("depth_frozen"), self._clock.now())
+        return self._pressures.last(_LIMITS["depth_frozen"], self._clock.now())
 
     def _imu_is_frozen(self) -> bool:
         # In the loop the board repeats the simulator's last reading, whose silence is another fault.
         if self._hil is not None:
             return False
-        limit, now = _limit("imu_frozen"), self._clock.now()
+        limit, now = _LIMITS["imu_frozen"], self._clock.now()
         return self._rates.last(limit, now) or self._forces.last(limit, now)
 
     def _imu_is_stale(self) -> bool:
@@ -262,7 +266,7 @@ class FaultDetector:
         return self._heard - self._imu > self._imu_stale
 
     def _capsized(self) -> bool:
-        return not self._imu_is_stale() and self._age(self._upright) > _limit("capsized")
+        return not self._imu_is_stale() and self._age(self._upright) > _LIMITS["capsized"]
 
     def _does_not_rise(self) -> bool:
         if self._ascent is None or self._depth <= AT_SURFACE:
@@ -284,11 +288,6 @@ class FaultDetector:
 def _failing(faults: int) -> list[str]:
     """Returns the fins' parts that have one of these faults."""
     return [part for fault, part in _FIN_PARTS.items() if faults & fault]
-
-
-def _limit(name: str) -> float:
-    """Returns the s after which a check must detect the fault, to stay within its limit."""
-    return BY_NAME[name].limit - CHECK_PERIOD
 
 
 _FIN_PARTS = {

@@ -19,16 +19,25 @@ from robot_runtime.simulation.water.hil import HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water_process import WaterProcess
-from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
+from robot_runtime.transport.lifetime import (
+    add_server_options,
+    end_on_request,
+    end_with_parent,
+    limit_memory,
+)
 from robot_runtime.transport.network import LOCAL_ONLY, connect_settings
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 log = logging.getLogger(__name__)
 
+BYTES_MAX = 400_000_000
+"""Of the simulator's own memory."""
+
 
 def main() -> int:
     """Runs until SIGTERM or SIGINT. Returns 2 if the craft cannot be used."""
     keep_private()
+    limit_memory(BYTES_MAX)
     arguments = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(levelname)s simulation: %(message)s")
     if arguments.with_parent:

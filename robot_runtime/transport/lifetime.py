@@ -18,6 +18,8 @@ HEARTBEAT = "heartbeat"
 LINGER_SECONDS = 30.0
 _PR_SET_PDEATHSIG = 1
 _CHECK_SECONDS = 1.0
+_STACK_BYTES = 1_048_576
+"""Of a thread; the kernel's default is 8 MB, and the runtime has forty threads."""
 
 
 def end_with_parent(parent: int | None = None, number: signal.Signals = signal.SIGTERM) -> None:
@@ -44,12 +46,18 @@ def limit_process(memory: int, seconds: int) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (seconds,) * 2)
 
 
-def limit_memory(memory: int) -> None:
-    """Limits this process: bytes of its own memory, at most half of the computer's.
+def limit_memory(memory: int, share: float = 0.5) -> None:
+    """Limits this process: bytes of its own memory, at most this share of the computer's.
 
-    Beyond that an allocation raises MemoryError.
+    Beyond that an allocation raises MemoryError. Processes that it starts inherit the limit, and may set
+    another. The stacks of threads count whole, so that those of later threads are made small.
     """
-    resource.setrlimit(resource.RLIMIT_DATA, (min(memory, memory_bytes() // 2),) * 2)
+    threading.stack_size(_STACK_BYTES)
+    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    limit = min(memory, int(share * memory_bytes()))
+    if hard != resource.RLIM_INFINITY:
+        limit = min(limit, hard)
+    resource.setrlimit(resource.RLIMIT_DATA, (limit, hard))
 
 
 def give_way(niceness: int) -> None:

@@ -6,9 +6,11 @@ for. Callbacks run in Zenoh's own threads.
 
 import json
 import logging
+import os
 import secrets
 import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, Self
 
 import zenoh
@@ -25,6 +27,10 @@ _OPENING_MS = 50
 """ms for which a peer's opening waits at most for the others' declarations; Zenoh's own default is 500."""
 _RETRY_MS_MIN, _RETRY_MS_MAX = 50, 200
 """ms between two attempts to connect to a lost peer, doubled from the first to the last."""
+
+_THREADS = "(net: (worker_threads: 1), acc: (handover: net), rx: (handover: net), tx: (handover: net))"
+"""Zenoh's `ZENOH_RUNTIME`: one thread does all its work. With a thread for each kind of work, which is its
+default, three are woken for a message, and the work of each is less than its waking."""
 
 _REFUSAL = zenoh.Encoding.TEXT_PLAIN
 
@@ -63,12 +69,16 @@ class ZenohTransport:
     ) -> None:
         self.run = secrets.token_hex(8)
         self._prefix = f"mucat/{robot}/"
+        # Zenoh reads it once, when a process opens its first session.
+        os.environ.setdefault("ZENOH_RUNTIME", _THREADS)
         try:
             self._session = zenoh.open(_configuration(listen, connect, scouting, client, network))
         except zenoh.ZError as problem:
             does = "reach" if client else "listen on"
             raise OSError(f"cannot {does} {', '.join(connect if client else listen)}: {problem}") from problem
         self._publishers: dict[str, zenoh.Publisher] = {}
+        self._watched: dict[str, bool] = {}
+        """Of the names that were asked for: if anybody subscribes to them now."""
         self._queryables: list[zenoh.Queryable[None]] = []
 
     def publish(self, name: str, payload: bytes) -> None:
@@ -77,9 +87,15 @@ class ZenohTransport:
 
     def watched(self, name: str) -> bool:
         """Returns True if anybody subscribes to `name` now."""
-        # Zenoh's stub calls this a bool; it is a MatchingStatus.
-        status: Any = self._publisher(name).matching_status
-        return bool(status.matching)
+        if name not in self._watched:
+            publisher = self._publisher(name)
+            # It is asked for each block that is sent: a listener is told of changes alone.
+            see = partial(self._see_matching, name)
+            publisher.declare_matching_listener(zenoh.handlers.Callback(see, indirect=False))
+            # Zenoh's stub calls this a bool; it is a MatchingStatus.
+            status: Any = publisher.matching_status
+            self._watched.setdefault(name, bool(status.matching))
+        return self._watched[name]
 
     def subscribe(self, pattern: str, callback: Callable[[str, bytes], None]) -> Subscription:
         """Calls back with the name and payload of every message whose name matches ("depth", "**")."""
@@ -142,6 +158,9 @@ class ZenohTransport:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+    def _see_matching(self, name: str, status: zenoh.MatchingStatus) -> None:
+        self._watched[name] = status.matching
 
     def _publisher(self, name: str) -> zenoh.Publisher:
         publisher = self._publishers.get(name)

@@ -1,4 +1,4 @@
-"""The listening socket and the web server around the application."""
+"""The web server around the application."""
 
 import asyncio
 import errno
@@ -20,23 +20,17 @@ from server.http.connections import (
     TlsHandshake,
     raise_file_limit,
 )
+from server.http.listener import BACKLOG
 from server.http.websocket_protocol import WebSocketProtocol
 from server.platform.certificate import Certificate
 from server.platform.reverse_proxy import Network
-from server.platform.settings import SetupError
 
 log = logging.getLogger(__name__)
 
 OUT_OF_FILES = frozenset({errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM})
 REPORT_SECONDS = 60.0
-TICKS_PER_SECOND = 10
-"""Of uvicorn's main loop."""
-SEND_BUFFER_BYTES = 65_536
-"""Small: with the kernel's default of megabytes, a client that stopped reading goes unnoticed for minutes."""
-USER_TIMEOUT_MS = 10_000
-"""The kernel ends a connection whose data nobody has taken for this long."""
-BACKLOG = 128
-"""Clients that may wait while the server restarts."""
+TICK_SECONDS = 0.25
+"""s between two looks at the connections, and at whether the server shall end."""
 MESSAGE_BYTES_MAX = 4096
 HEAD_BYTES_MAX = 16_384
 GRACE_SECONDS = 3
@@ -44,30 +38,6 @@ KEEP_ALIVE_SECONDS = 60
 """The time for which an idle connection stays open. It is longer than the 5 s that are usual in programs: the
 program closes the connection first, and no request meets a reset.
 """
-
-
-def open_socket(host: str, port: int) -> socket.socket:
-    """A listening socket whose connections inherit its limits. Raises SetupError where it cannot be had."""
-    try:
-        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        listener = socket.socket(family, kind, protocol)
-    except OSError as problem:
-        raise SetupError(
-            f"{host} is no address of this computer: {problem.strerror}. Choose one with --host."
-        ) from (problem)
-    try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
-        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, USER_TIMEOUT_MS)
-        listener.bind(address)
-        listener.listen(BACKLOG)
-    except OSError as problem:
-        listener.close()
-        raise SetupError(
-            f"Port {port} of {host} cannot be had: {problem.strerror}. "
-            "End the program that uses it, or choose another with --port."
-        ) from problem
-    return listener
 
 
 class WebServer(uvicorn.Server):
@@ -96,10 +66,14 @@ class WebServer(uvicorn.Server):
         ]
         self.started = True
 
+    async def main_loop(self) -> None:
+        """Tick until the server shall end; uvicorn's own loop wakes ten times a second."""
+        while not await self.on_tick(0):
+            await asyncio.sleep(TICK_SECONDS)
+
     async def on_tick(self, counter: int) -> bool:
         """Look after the connections; true where the server shall end."""
-        if counter % TICKS_PER_SECOND == 0:
-            self.connections.expire()
+        self.connections.expire()
         return await super().on_tick(counter)
 
 

@@ -28,6 +28,7 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.places import BUILD, DEFAULT_CONFIG, IN_REPOSITORY
+from robot_runtime.profile import Profile, profile_here
 from server.platform.pidfile import RUNTIME_PAUSED, hold_still, running_parts
 from server.platform.reverse_proxy import Network, read_proxies, read_public_url
 
@@ -128,6 +129,7 @@ class Settings:
     config: Path
     robot: str = "turtle"
     mode: Mode = "emulated"
+    profile: Profile = "full"
     link: LinkConfig = field(default_factory=LinkConfig)
     hil: HilConfig = field(default_factory=HilConfig)
     sessions: SessionsConfig = field(default_factory=SessionsConfig)
@@ -237,6 +239,7 @@ def read_settings(
         config=config.absolute(),
         robot=loaded.robot.name,
         mode=loaded.robot.mode,
+        profile=profile_here(loaded),
         link=loaded.link,
         hil=loaded.hil,
         sessions=loaded.sessions,

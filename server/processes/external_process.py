@@ -12,6 +12,7 @@ from pathlib import Path
 from robot_runtime.clock import Clock
 from robot_runtime.durable_files import write_whole
 from server.platform.pidfile import Running
+from server.processes.exit_status import describe_status
 from server.processes.logs import ProcessLog
 from server.processes.managed_process import (
     NEED_POLL_SECONDS,
@@ -20,7 +21,7 @@ from server.processes.managed_process import (
     ProcessCommand,
     SeeDown,
 )
-from server.processes.process import AdoptedProcess, describe_status
+from server.processes.process import AdoptedProcess
 
 ABSENT_SECONDS = 10.0
 """systemd starts a killed process again at once; a start takes seconds on a Raspberry Pi Zero."""

@@ -17,8 +17,9 @@ from robot_runtime.places import EMULATOR_REMEDY
 from server import VERSION
 from server.platform.pidfile import pid_file
 from server.processes.backoff import Backoff, describe_pause, is_killed
+from server.processes.exit_status import describe_status
 from server.processes.logs import ProcessLog
-from server.processes.process import AdoptedProcess, Process, ProcessGroup, describe_status
+from server.processes.process import AdoptedProcess, Process, ProcessGroup
 
 log = logging.getLogger(__name__)
 

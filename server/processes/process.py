@@ -146,16 +146,3 @@ class AdoptedProcess(ProcessGroup):
 
     def _reap(self) -> None:
         select.select([self._handle], [], [], KILL_SECONDS)
-
-
-def describe_status(status: int | None) -> str:
-    """Describe the end of a process, in words that follow its name; `status` is None if it is not known."""
-    if status is None:
-        return "has ended; its exit status is not known, because an earlier server had started it"
-    if status >= 0:
-        return f"has ended with exit status {status}"
-    try:
-        name = Signals(-status).name
-    except ValueError:
-        name = str(-status)
-    return f"was ended by signal {name}"

@@ -23,7 +23,7 @@ from robot_runtime.transport.lifetime import end_with_parent
 from server.platform.pidfile import PidFile
 from server.platform.settings import DataFolder
 from server.processes.backoff import Backoff, describe_pause, is_killed
-from server.processes.process import describe_status
+from server.processes.exit_status import describe_status
 
 Serve = Callable[[str], int]
 """Serves until the server ends, and returns its exit status. The argument describes the end of the server

@@ -275,9 +275,13 @@ class Bridge:
             self._drain()
 
     def _drain(self) -> None:
-        # Before the queue is read: what arrives from now on schedules an emptying of its own.
-        self._scheduled = False
         self._emptied = self._loop.time()
+        if len(self._queue) > 1:
+            # They come faster than the queue is emptied: nobody needs to wake the loop for the next one.
+            self._loop.call_later(ROUND_SECONDS, self._drain)
+        else:
+            # Before the queue is read: what arrives from now on schedules an emptying of its own.
+            self._scheduled = False
         self._empty_queue()
 
     def _empty_queue(self) -> None:
@@ -321,9 +325,9 @@ def _read_own_blocks(name: str, data: bytes, run: str) -> list[Block]:
 
 
 def _require_sender(blocks: Iterable[Block], sender: str) -> None:
-    foreign = {block.topic.name for block in blocks if block.topic.sender != sender}
-    if foreign:
-        raise LayoutError(f"the {sender} does not send {', '.join(sorted(foreign))}")
+    for block in blocks:
+        if block.topic.sender != sender:
+            raise LayoutError(f"the {sender} does not send {block.topic.name}")
 
 
 def _silence(name: str, waited: bool) -> str:

@@ -9,8 +9,8 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
 
-from robot_runtime.contract.topics import BY_ID, Kind, Topic
-from robot_runtime.transport.blocks import Block
+from robot_runtime.contract.topics import BY_ID, TIME, Kind, Topic
+from robot_runtime.transport.blocks import HEADER, Block
 
 CHUNK_SECONDS = 2.0
 CHUNK_BLOCKS = 100
@@ -91,14 +91,17 @@ class _TopicBacklog:
         self._since = 0.0
         self._tick = 0
 
-    def add(self, block: Block, tick: int, time: float) -> None:
+    def add(self, block: Block, tick: int, time: float) -> bool:
+        """Add a block; returns True where it completed a chunk."""
         if not self._blocks:
             self._since = time
         self._blocks.append(block)
         self._tick = tick
         self.bytes += len(block.data)
-        if time - self._since >= CHUNK_SECONDS or len(self._blocks) >= CHUNK_BLOCKS:
+        complete = time - self._since >= CHUNK_SECONDS or len(self._blocks) >= CHUNK_BLOCKS
+        if complete:
             self._gather()
+        return complete
 
     def forget(self, before: float, bytes_max: int) -> None:
         while self._chunks and (self._chunks[0].since < before or self.bytes > bytes_max):
@@ -137,12 +140,16 @@ class TopicHistory:
 
     def add(self, block: Block, tick: int, now: float) -> None:
         """Add a block that is sent at `tick`, at `now` (s, steady clock)."""
-        backlog = self._topics.setdefault(block.topic.id, _TopicBacklog(block.topic))
-        if block.topic.newest_only:
+        topic = block.topic
+        backlog = self._topics.get(topic.id)
+        if backlog is None:
+            backlog = self._topics[topic.id] = _TopicBacklog(topic)
+        if topic.newest_only:
             backlog.forget_all()
         # A backlog from before this server's start is older than now.
-        backlog.add(block, tick, block.time_of(block.first) if block.topic.kind is Kind.ROWS else now)
-        backlog.forget(now - self._seconds, self._bytes_max)
+        time = TIME.unpack_from(block.data, HEADER.size)[0] if topic.kind is Kind.ROWS else now
+        if backlog.add(block, tick, time):
+            backlog.forget(now - self._seconds, self._bytes_max)
 
     def since(self, tick: int, message_bytes: int, rows_from: float = -inf) -> list[list[bytes]]:
         """Every block sent after `tick`, topic by topic, in groups of about `message_bytes`.

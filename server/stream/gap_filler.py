@@ -9,7 +9,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 
 from robot_runtime.contract.topics import Topic
-from robot_runtime.transport.blocks import Block
+from robot_runtime.transport.blocks import NUMBERS, Block
 from robot_runtime.transport.replay_cache import BacklogReply
 
 Ask = Callable[[Mapping[str, int]], Awaitable[BacklogReply | None]]
@@ -53,7 +53,8 @@ class GapFiller:
         elif run != self.run:
             self._catch_up(run, blocks, self.everything())
         elif self._follow(blocks) or self._follow(blocks := self._fresh(blocks)):
-            self._pass_on(blocks)
+            if blocks:
+                self._deliver(blocks)
         else:
             numbers = {topic.name: self._expected.get(topic.id, 0) for topic in self.topics}
             if numbers == self._last_request:
@@ -107,11 +108,14 @@ class GapFiller:
         self.run, self._expected, self._last_request = run, {}, {}
 
     def _follow(self, blocks: list[Block]) -> bool:
+        """Expects what comes after these blocks; does nothing and returns False where one is missing."""
         expected = dict(self._expected)
         for block in blocks:
-            if expected.get(block.topic.id, block.first) != block.first:
+            topic = block.topic.id
+            if expected.get(topic, block.first) != block.first:
                 return False
-            expected[block.topic.id] = block.following
+            expected[topic] = (block.first + block.count) % NUMBERS
+        self._expected = expected
         return True
 
     def _fresh(self, blocks: list[Block]) -> list[Block]:

@@ -17,7 +17,8 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.transport.outbox import SIMULATOR_STREAM, STREAM
 from server.app import create_app
 from server.container import Container
-from server.http.serving import make_server, open_socket
+from server.http.listener import open_socket
+from server.http.serving import make_server
 from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.schema import prepare
 from server.platform.settings import Settings

@@ -25,11 +25,13 @@ from robot_runtime.experiments.comm_test.lab import (
 )
 from robot_runtime.experiments.comm_test.line import Cancellation
 from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
-from robot_runtime.transport.lifetime import end_with_parent, give_way
+from robot_runtime.transport.lifetime import end_with_parent, give_way, limit_memory
 
 REFUSED = 2
 """The exit status for a document that cannot be run."""
 NICENESS = 10
+BYTES_MAX = 400_000_000
+"""Of the process's own memory."""
 
 
 def main() -> int:
@@ -43,6 +45,7 @@ def main() -> int:
         parser.error("the robot's board needs --port and --reset")
     if arguments.with_parent:
         end_with_parent()
+    limit_memory(BYTES_MAX)
     if alone:
         return _transfer(arguments)
     stop = Cancellation()

@@ -9,14 +9,23 @@ from pathlib import Path
 from robot_runtime.clock import SteadyClock
 from robot_runtime.durable_files import keep_private
 from robot_runtime.simulation.scene.process import SceneProcess
-from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
+from robot_runtime.transport.lifetime import (
+    add_server_options,
+    end_on_request,
+    end_with_parent,
+    limit_memory,
+)
 from robot_runtime.transport.network import LOCAL_ONLY, connect_settings
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
+
+BYTES_MAX = 1_500_000_000
+"""Of the scene's own memory, its software renderer included."""
 
 
 def main() -> None:
     """Runs until SIGTERM or SIGINT."""
     keep_private()
+    limit_memory(BYTES_MAX)
     arguments = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(levelname)s scene: %(message)s")
     # It logs modules that are not needed.

@@ -16,9 +16,10 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.boards.firmware import firmware_path
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
+from server.processes.exit_status import describe_status
 from server.processes.logs import ProcessLog
 from server.processes.managed_process import Notify
-from server.processes.process import Process, describe_status
+from server.processes.process import Process
 from server.processes.supervisor import ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 

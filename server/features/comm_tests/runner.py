@@ -25,7 +25,8 @@ from server.features.comm_tests.runs import CommTestStore, End
 from server.features.comm_tests.schemas import Cell, Phase, Place
 from server.platform.settings import Settings
 from server.platform.store import StoreError
-from server.processes.process import PipedProcess, describe_status
+from server.processes.exit_status import describe_status
+from server.processes.process import PipedProcess
 
 log = logging.getLogger(__name__)
 

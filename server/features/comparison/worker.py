@@ -11,7 +11,7 @@ from typing import Literal
 
 from robot_runtime.transport.lifetime import memory_bytes
 from server.platform.errors import UnavailableError
-from server.processes.process import describe_status
+from server.processes.exit_status import describe_status
 
 Task = Literal["compare", "lines", "signals", "report"]
 

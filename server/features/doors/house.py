@@ -71,9 +71,11 @@ class Doors:
 
     def see(self, block: Block) -> None:
         """Pass a block on to the clients of all doors."""
+        if not self._open:
+            return
         topic = block.topic
         listening = [one for one in self.doors.values() if one.publisher.listens(topic.name)]
-        if not self._open or not (listening or topic.newest_only):
+        if not (listening or topic.newest_only):
             return
         offset = utc_time() - self._clock.now()
         try:

@@ -24,7 +24,7 @@ from server.features.doors.ros2_node import Ros2Node
 from server.features.doors.ros2_session import Ros2Session, ros2_endpoints
 from server.features.lease.arbiter import ControlArbiter
 from server.http.audit import AuditLog
-from server.http.serving import open_socket
+from server.http.listener import open_socket
 from server.http.sign_in.access import Access
 from server.http.sign_in.devices import SignInEndedError
 from server.http.sign_in.identity import Identity

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from signal import SIGTERM
 from typing import Any
 
-from server.processes.process import PipedProcess, describe_status
+from server.processes.exit_status import describe_status
+from server.processes.process import PipedProcess
 
 ERROR_BYTES = 2_000
 """Length of the stored end of the output that is no JSON, which explains a failure."""

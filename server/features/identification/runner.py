@@ -18,7 +18,7 @@ from server.features.identification.schemas import (
     IdentificationState,
 )
 from server.platform.settings import Settings
-from server.processes.process import describe_status
+from server.processes.exit_status import describe_status
 
 LINE_BYTES_MAX = 16_000_000
 SECONDS_MAX = 1800.0

@@ -2,7 +2,7 @@
 
 import asyncio
 import json
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from math import isfinite
 from time import time
 from typing import Annotated, Any
@@ -26,12 +26,15 @@ from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.access import PAGE_PROTOCOL, Access
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import MESSAGES, Need, may_say
+from server.http.websocket_protocol import BINARY
 from server.platform.audit_file import Outcome
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
-from server.stream.hub import Client, EvictedError, Hub
+from server.stream.hub import Client, EvictedError, Hub, Send
 from server.stream.socket_ends import close_with_reason, end_after
 
+ABNORMAL_CLOSURE = 1006
+"""The code of a connection that ended without a closing frame (RFC 6455, 7.4.1)."""
 INVALID_MAX = 20
 """Invalid messages in a row after which the socket is closed."""
 WATCHABLE = frozenset({"picture", "observer", "mask", "balanced"})
@@ -169,10 +172,7 @@ async def live(
     offered = PAGE_PROTOCOL in socket.scope["subprotocols"]
     await socket.accept(subprotocol=PAGE_PROTOCOL if offered else None)
 
-    async def send(data: bytes | str) -> None:
-        kind = "bytes" if isinstance(data, bytes) else "text"
-        await socket.send({"type": "websocket.send", kind: data})
-
+    send = _sender(socket)
     try:
         # Access may have been revoked while the socket opened; from here on the hub dismisses it.
         if access.refresh(caller) != caller:
@@ -185,6 +185,23 @@ async def live(
         return
     except EvictedError as reason:
         await close_with_reason(socket, reason)
+
+
+def _sender(socket: WebSocket) -> Send:
+    """Sends binary messages past the application's layers, where the server's protocol offers it."""
+    extension = socket.scope.get("extensions", {}).get(BINARY)
+    send_binary: Callable[[bytes], Awaitable[None]] = extension["send"] if extension else socket.send_bytes
+
+    async def send(data: bytes | str) -> None:
+        if isinstance(data, str):
+            await socket.send_text(data)
+            return
+        try:
+            await send_binary(data)
+        except OSError as problem:
+            raise WebSocketDisconnect(ABNORMAL_CLOSURE) from problem
+
+    return send
 
 
 @router.operation("GET /api/past", Need.VIEWER, media_type="application/octet-stream", tags=["live"])

@@ -11,7 +11,7 @@ from dataclasses import asdict
 from robot_runtime.errors import RefusedError
 from server.features.missions.schemas import MissionTrial, MissionTrialResult
 from server.platform.settings import Settings
-from server.processes.process import describe_status
+from server.processes.exit_status import describe_status
 
 LINE_BYTES_MAX = 4_000_000
 SECONDS_MAX = 1800.0

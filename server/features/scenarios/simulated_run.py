@@ -26,7 +26,7 @@ from server.features.sessions.recorder import Recorder
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.process import describe_status
+from server.processes.exit_status import describe_status
 
 HEADER = Struct("<IB")
 EVENTS, BLOCKS = 0, 1

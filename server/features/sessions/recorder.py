@@ -21,7 +21,7 @@ from sqlalchemy import Connection, bindparam, insert, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.topics import BY_NAME, RECORDED, Topic
+from robot_runtime.contract.topics import BY_NAME, Topic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from server.features.sessions.chunks import encode
 from server.features.sessions.resume import InterruptedSession, MissingSamples, find_interrupted
@@ -228,7 +228,7 @@ class Recorder:
         topic = block.topic
         if topic is _PARAMETERS:
             self._standing = block
-        if not self._accepts or topic not in RECORDED or (self._skip and self._is_stored(block)):
+        if not self._accepts or not topic.recorded or (self._skip and self._is_stored(block)):
             return
         span = self._spans.get(topic.id)
         expected = self._expected.get(topic.id, block.first)
@@ -237,12 +237,13 @@ class Recorder:
             kind, missed = ("missed", ahead) if ahead < NUMBERS // 2 else ("restarted", 0)
             self._gathered.note(topic.name, kind, missed, self._clock.now())
             span = None
-        if span is None or span.run != block.run or span.size + len(block.payload) > SPAN_BYTES_MAX:
+        payload = block.payload
+        if span is None or span.run != block.run or span.size + len(payload) > SPAN_BYTES_MAX:
             span = self._spans[topic.id] = _Span(topic, block.run, block.first)
             self._gathered.spans.append(span)
-        span.payloads.append(block.payload)
+        span.payloads.append(payload)
         span.count += block.count
-        span.size += len(block.payload)
+        span.size += len(payload)
         self._expected[topic.id] = block.following
 
     def _is_stored(self, block: Block) -> bool:

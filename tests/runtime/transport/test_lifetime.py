@@ -1,4 +1,6 @@
 import fcntl
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -77,3 +79,21 @@ def test_without_the_folder_a_process_ends_at_once(tmp_path: Path) -> None:
     watch_server(lock, 30.0, Clock(), ended.set)
     lock.unlink()
     assert ended.wait(DEADLINE)
+
+
+LIMITED = """
+from robot_runtime.transport.lifetime import limit_memory
+limit_memory(200_000_000)
+try:
+    bytearray(300_000_000)
+except MemoryError:
+    print("refused")
+print(len(bytearray(50_000_000)))
+limit_memory(600_000_000)
+print(len(bytearray(300_000_000)))
+"""
+
+
+def test_memory_beyond_the_limit_is_refused_and_a_process_may_set_another() -> None:
+    ran = subprocess.run([sys.executable, "-c", LIMITED], capture_output=True, text=True, check=True)
+    assert ran.stdout.split() == ["refused", "50000000", "300000000"]

@@ -26,7 +26,8 @@ from server.http.connections import (
     Connections,
     raise_file_limit,
 )
-from server.http.serving import BACKLOG, REPORT_SECONDS, OutOfFiles, WebServer, make_server, open_socket
+from server.http.listener import BACKLOG, open_socket
+from server.http.serving import REPORT_SECONDS, OutOfFiles, WebServer, make_server
 from server.platform.certificate import Certificate, prepare_certificate, trust_only
 from server.platform.settings import Settings
 from tests.server.serving import Served, next_text, play

@@ -11,7 +11,8 @@ from uvicorn.protocols.utils import ClientDisconnected
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosedOK
 
-from server.http.serving import make_server, open_socket
+from server.http.listener import open_socket
+from server.http.serving import make_server
 
 SIZES = (0, 1, 125, 126, 65_535, 65_536, 300_000)
 

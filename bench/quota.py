@@ -1,0 +1,133 @@
+"""The robot's software with as little of a processor as a Raspberry Pi Zero W is thought to have.
+
+Control groups (version 1, as root) give it 1/25 of a core and 380 MB. The kernel grants no less than 1 ms at
+once, so that the quota's period is 25 ms. Runtime and server are groups in that one, with the weights of
+their systemd units.
+"""
+
+import os
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
+from itertools import pairwise
+from pathlib import Path
+from statistics import quantiles
+
+from sqlmodel import col, select
+
+from bench.processes import anonymous_mb, cpu_seconds
+from bench.real_robot import LiveViewer, RealRobot
+from server.features.sessions.recording import Recording
+from server.features.sessions.session import find_row
+from server.platform.models import Gap
+from server.platform.settings import DataFolder
+from server.platform.store import Reader
+
+_CPU, _MEMORY = Path("/sys/fs/cgroup/cpu"), Path("/sys/fs/cgroup/memory")
+_PERIOD_US, _QUOTA_US = 25_000, 1_000
+_MEMORY_BYTES = 380_000_000
+_SHARES = {"runtime": 10 * 1024, "server": 512}
+"""As CPUWeight=1000 and 50 in the units."""
+_SETTLE, _SECONDS = 10.0, 60.0
+_TICK = 0.1
+
+
+def measure() -> dict[str, float]:
+    """Of a minute with a viewer and a recording, in the lean profile: ms by which the time between two
+    control ticks differs from their period, ticks left out, samples missing in the recording, messages that
+    told the viewer of samples left out, alarms; and % of a core, and MB of anonymous memory. `natively` is
+    the same without a quota.
+    """
+    figures = {}
+    for name in ("natively", "quota"):
+        with tempfile.TemporaryDirectory() as folder, RealRobot(Path(folder), profile="lean") as robot:
+            session = robot.api.post("/sessions", json={"name": "bench"}).raise_for_status().json()["id"]
+            robot.arm()
+            with _groups(robot, limited=name == "quota"):
+                found = _dive(robot)
+            robot.api.post("/robot/stop").raise_for_status()
+            # The disarmed robot's recording is complete before it is read.
+            robot.api.post(f"/sessions/{session}/stop")
+            found |= _recorded(robot.data, session, found.pop("began"))
+        figures |= {f"quota.{figure}.{name}": value for figure, value in found.items()}
+    return figures
+
+
+def _dive(robot: RealRobot) -> dict[str, float]:
+    viewer = LiveViewer(robot)
+    time.sleep(_SETTLE)
+    processes = robot.robot_processes.values()
+    began, before = time.monotonic(), sum(map(cpu_seconds, processes))
+    time.sleep(_SECONDS)
+    spent = sum(map(cpu_seconds, processes)) - before
+    memory = sum(map(anonymous_mb, processes))
+    viewer.close()
+    return {
+        "began": began,
+        "cpu_percent": 100 * spent / _SECONDS,
+        "anonymous_mb": memory,
+        "viewer_lost": viewer.lost,
+    }
+
+
+def _recorded(data: Path, session: int, began: float) -> dict[str, float]:
+    with closing(Reader(DataFolder(data).database)) as store:
+        row = find_row(store, session)
+        assert row is not None
+        times, _ = Recording(store, row).columns("control", [])
+        with store.read() as database:
+            missed = sum(database.exec(select(Gap.missed).where(col(Gap.session_id) == session)))
+        alarms = [
+            event
+            for event in Recording(store, row).documents("event", began, began + _SECONDS)
+            if event["severity"] == "alarm"
+        ]
+    ticks = [float(one) for one in times if began <= one <= began + _SECONDS]
+    percentiles = quantiles([1000 * abs(b - a - _TICK) for a, b in pairwise(ticks)], n=100)
+    return {
+        "jitter_ms_p50": percentiles[49],
+        "jitter_ms_p99": percentiles[98],
+        "ticks_left_out": max(round(_SECONDS / _TICK) - len(ticks), 0),
+        "samples_lost": missed,
+        "alarms": len(alarms),
+    }
+
+
+@contextmanager
+def _groups(robot: RealRobot, *, limited: bool) -> Iterator[None]:
+    """Puts the robot's processes into control groups. Raises OSError where they cannot be made."""
+    if not limited:
+        yield
+        return
+    name = f"mucat-bench-{os.getpid()}"
+    parent, memory = _CPU / name, _MEMORY / name
+    homes = {"runtime": ["runtime"], "server": ["runner", "server"]}
+    try:
+        for group in (parent, memory):
+            group.mkdir()
+        (memory / "memory.limit_in_bytes").write_text(str(_MEMORY_BYTES))
+        for group, names in homes.items():
+            (parent / group).mkdir()
+            (parent / group / "cpu.shares").write_text(str(_SHARES[group]))
+            for one in names:
+                pid = str(robot.robot_processes[one].pid)
+                (parent / group / "cgroup.procs").write_text(pid)
+                (memory / "cgroup.procs").write_text(pid)
+        (parent / "cpu.cfs_period_us").write_text(str(_PERIOD_US))
+        (parent / "cpu.cfs_quota_us").write_text(str(_QUOTA_US))
+        yield
+    finally:
+        _release(parent, memory)
+
+
+def _release(parent: Path, memory: Path) -> None:
+    """Gives the processes back, and removes the groups."""
+    for group, root in ((parent / "runtime", _CPU), (parent / "server", _CPU), (memory, _MEMORY)):
+        if group.exists():
+            for pid in (group / "cgroup.procs").read_text().split():
+                with suppress(OSError):
+                    (root / "cgroup.procs").write_text(pid)
+    for group in (parent / "runtime", parent / "server", parent, memory):
+        with suppress(FileNotFoundError):
+            group.rmdir()

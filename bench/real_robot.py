@@ -1,0 +1,116 @@
+"""Runs the software as on a robot: mode robot, its serial port the line of an emulated board beside it."""
+
+import subprocess
+import sys
+import threading
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import cv2
+import psutil
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from robot_runtime.clock import SteadyClock
+from robot_runtime.places import BUILD
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
+from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
+from robot_runtime.vision.card_camera import CardCamera
+from robot_runtime.vision.cards import make_card
+from server.platform.settings import DataFolder
+from tests.shell import shell_headers
+from tests.stack import Stack
+
+_BAUD = 250_000
+_CONFIG = """[robot]
+mode = "robot"
+profile = "{profile}"
+[link]
+port = "{port}"
+baud = {baud}
+[vision]
+camera = "file"
+file = "{picture}"
+"""
+
+
+class RealRobot(Stack):
+    """Server and runtime as on a Raspberry Pi; board and water are processes outside, as the real ones are.
+
+    The camera shows one picture, because to draw or render others is no work of a robot.
+    """
+
+    def __init__(self, data: Path, profile: str = "full") -> None:
+        self._config = data / "robot.toml"
+        super().__init__(data, "--config", str(self._config))
+        self.outside: dict[str, psutil.Process] = {}
+        """The processes of the board and of the water."""
+        self._profile = profile
+        self._ends = ExitStack()
+
+    def __enter__(self) -> Self:
+        with ExitStack() as opened:
+            port = self._start_board(opened)
+            picture = self.data / "card.png"
+            camera = CardCamera(320, 240, SteadyClock(), lambda: None)
+            cv2.imwrite(str(picture), camera.draw(0.0, make_card("yellow", {})))
+            text = _CONFIG.format(profile=self._profile, port=port, baud=_BAUD, picture=picture)
+            self._config.write_text(text)
+            super().__enter__()
+            self._ends = opened.pop_all()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with self._ends:
+            super().__exit__(kind, value, trace)
+
+    @property
+    def robot_processes(self) -> dict[str, psutil.Process]:
+        """The processes that a robot has, by name."""
+        return {"runner": self.process, "server": self.server, "runtime": self.part("runtime")}
+
+    def _start_board(self, opened: ExitStack) -> str:
+        build_firmware(BUILD, _BAUD)
+        elf = firmware_path(BUILD, _BAUD, ".elf")
+        tty, socket = self.data / "tty", self.data / "board.sock"
+        board = opened.enter_context(EmulatorProcess(BUILD / "board", elf, tty, socket, "--with-parent"))
+        water = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(socket), "--with-parent"]
+        simulator = opened.enter_context(subprocess.Popen(water))
+        opened.callback(simulator.terminate)
+        self.outside = {
+            "board": psutil.Process(board.process.pid),
+            "simulator": psutil.Process(simulator.pid),
+        }
+        return str(tty.resolve())
+
+
+class LiveViewer:
+    """A client that reads everything, as a page does."""
+
+    def __init__(self, stack: Stack) -> None:
+        self.bytes = 0
+        self.lost = 0
+        """Messages that say that samples were left out."""
+        self._socket = connect(
+            f"ws://127.0.0.1:{stack.port}/api/live",
+            origin=Origin(stack.url),
+            additional_headers=shell_headers(DataFolder(stack.data)),
+            max_size=None,
+            proxy=None,
+        )
+        self._thread = threading.Thread(target=self._read, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Leave."""
+        self._socket.close()
+        self._thread.join()
+
+    def _read(self) -> None:
+        for message in self._socket:
+            self.bytes += len(message)
+            self.lost += isinstance(message, str) and '"op": "dropped"' in message
