@@ -44,7 +44,6 @@ CONFIG = (
     *("--env", f"MUCAT_DATA={DATA}"),
     *("--env", "PYTHONUNBUFFERED=1"),
     *("--workingdir", DATA),
-    *("--volume", DATA),
     *("--port", "8000"),
     *("--stop-signal", "SIGTERM"),
 )

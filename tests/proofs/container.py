@@ -1,5 +1,6 @@
 """A computer with systemd: a container whose power can be cut. Needs root and systemd-nspawn."""
 
+import os
 import shutil
 import subprocess
 import time
@@ -23,7 +24,8 @@ START_SECONDS = 60.0
 CARD_BYTES = 200_000_000
 ORDER_SECONDS = 300.0
 GROUP = Path("/sys/fs/cgroup/memory/mucat-proof")
-"""The control group (version 1) that limits its memory."""
+DISK_GROUP = Path("/sys/fs/cgroup/blkio/mucat-proof")
+"""The control groups (version 1) that limit its memory, and the speed of its card."""
 _POLL = 0.2
 
 
@@ -61,6 +63,20 @@ class Container:
     def _card(self) -> Path:
         return self.root / "card"
 
+    @contextmanager
+    def slow_card(self, speed: int) -> Iterator[None]:
+        """The card at /card takes so many bytes/s meanwhile."""
+        number = self._card.stat().st_dev
+        device, file = (
+            f"{os.major(number)}:{os.minor(number)}",
+            DISK_GROUP / "blkio.throttle.write_bps_device",
+        )
+        file.write_text(f"{device} {speed}")
+        try:
+            yield
+        finally:
+            file.write_text(f"{device} 0")
+
     def wear_card_out(self) -> None:
         """Make the card at /card read-only, as the kernel does where a write to it fails."""
         subprocess.run(["mount", "-o", "remount,abort", str(self._card)], check=True)
@@ -70,11 +86,13 @@ class Container:
         command = ["systemd-nspawn", "--quiet", "--directory", str(self.root), "--boot", "--register=no"]
         command += ["--keep-unit", "--private-network", *self._options]
         log = self.root.with_name("services.log").open("wb")
-        GROUP.mkdir(exist_ok=True)
+        for group in (GROUP, DISK_GROUP):
+            group.mkdir(exist_ok=True)
         self._kills = 0
         self._kills = self.kills()
-        # The group first, the container in it then.
-        enter = ["sh", "-c", f'echo $$ > {GROUP}/cgroup.procs; exec "$@"', "sh"]
+        # The groups first, the container in them then.
+        join = f"echo $$ | tee {GROUP}/cgroup.procs {DISK_GROUP}/cgroup.procs >/dev/null"
+        enter = ["sh", "-c", f'{join}; exec "$@"', "sh"]
         self._nspawn = subprocess.Popen([*enter, *command], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
         end = time.monotonic() + START_SECONDS
         while self.order("systemctl is-system-running")[1].strip() not in ("running", "degraded"):

@@ -81,7 +81,7 @@ def swim(container: str, folder: Path) -> None:
 
 
 def buildah(*words: str) -> str:
-    """What it prints."""
+    """Runs buildah; returns what it printed."""
     done = subprocess.run(["buildah", *words], check=True, stdout=subprocess.PIPE, text=True)
     return done.stdout.strip()
 

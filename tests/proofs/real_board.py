@@ -20,8 +20,8 @@ from tests.proofs.steps import Steps, ask_server
 PORT = "/dev/ttyBOARD"
 DIALOUT = 20
 """The group's number in Debian."""
-PLACE, MARK = 0x7C00, b"later firmware"
-"""A place in the flash memory behind the robot's program, and what the later firmware has there."""
+WORDS, MARK = b"power on", b"POWER on"
+"""Words of the firmware, and how the later one spells them."""
 CONFIGURE = f"""
 sed -i -e 's|^mode = .*|mode = "robot"|' -e 's|^port = "/dev/serial0"|port = "{PORT}"|' \
     -e 's|^reset = .*|reset = "board:/board/socket"|' {CONFIG}
@@ -50,7 +50,9 @@ def board(folder: Path) -> Iterator[list[str]]:
 
 def mark_firmware(path: Path) -> None:
     """Make another firmware of this one, which the robot runs as well."""
-    write_program(read_program(path).ljust(PLACE, b"\xff") + MARK, path)
+    program = read_program(path)
+    assert program.count(WORDS) == 1
+    write_program(program.replace(WORDS, MARK), path)
 
 
 def update_with_board(container: Container, steps: Steps, older: str, later: str) -> None:

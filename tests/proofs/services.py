@@ -19,7 +19,7 @@ from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
 from tests.proofs.container import Container
 from tests.proofs.real_board import board, mark_firmware, update_with_board
-from tests.proofs.small_computer import live
+from tests.proofs.small_computer import RECORDING, live
 from tests.proofs.steps import Steps, ask_server
 
 LATER, BROKEN = "98.0.0", "99.0.0"
@@ -51,6 +51,9 @@ def try_all(container: Container) -> int:
     """The number of steps that did not end as they must."""
     steps = Steps(container)
     current = container.root / "opt/mucat/current"
+    steps.take("begin to install", "systemd-run --unit=install --collect sh /releases/first/install.sh", "")
+    steps.wait("it builds", lambda: any(container.root.glob("opt/mucat/versions/*/bin/pip")))
+    cut_power(container)
     steps.follow("Install", f"µ-CAT {VERSION} runs")
     steps.runs(VERSION)
     for title in ("Look", "Every day", "It does not start"):
@@ -62,6 +65,12 @@ def try_all(container: Container) -> int:
     for unit in ("mucat.service", "mucat-runtime.service"):
         steps.take(f"kill {unit}", f"systemctl kill -s KILL {unit}", "")
         steps.runs(VERSION)
+    steps.take("record again", "mucat record start cut", "has begun")
+    stored = ask_server(RECORDING.format(name="cut"))
+    steps.wait("it is stored", lambda: "True" in container.order(stored)[1])
+    cut_power(container)
+    steps.runs(VERSION)
+    steps.take("what was stored is there", f"{stored}; mucat sessions list", "True\n(.|\n)*interrupted")
     live(container, steps, VERSION)
     steps.take("a cut ZIP file", "mucat update /releases/cut.zip", "no whole ZIP file", status=1)
     steps.take("another's signature", "mucat update /releases/other", "signature .* is wrong", status=1)
@@ -82,15 +91,20 @@ def try_all(container: Container) -> int:
     begin = f"systemd-run --unit=update --collect mucat update /releases/{BROKEN}"
     steps.take("begin it once more", begin, "")
     steps.wait("it has switched", lambda: current.is_symlink() and current.readlink().name == BROKEN)
-    container.cut_power()
-    print("     the power is cut")
-    container.start()
+    cut_power(container)
     steps.runs(LATER)
     steps.take("roll back", "mucat rollback", f"µ-CAT {VERSION} is in use")
     update_with_board(container, steps, VERSION, LATER)
     steps.take("uninstall", "mucat uninstall", "stay")
     steps.take("the data stay", "ls /var/lib/mucat/mucat.db; ls /opt/mucat 2>&1 || true", "No such file")
     return steps.failed
+
+
+def cut_power(container: Container) -> None:
+    """Cut the power, and start the computer again."""
+    container.cut_power()
+    print("     the power is cut", flush=True)
+    container.start()
 
 
 def tells(container: Container, words: str) -> bool:

@@ -1,4 +1,4 @@
-"""What happens to small computers, on an installed robot: a damaged configuration, a full card, a read-only
+"""A small computer's life, on an installed robot: a damaged configuration, a full card, a read-only
 one, too little memory.
 """
 
@@ -11,6 +11,9 @@ from tests.proofs.container import Container
 from tests.proofs.steps import Steps, ask_server
 
 DATA = "/var/lib/mucat"
+SLOW_BYTES = 100_000
+"""bytes/s of a worn-out card."""
+SLOW_SECONDS = 30.0
 CONFIG = "/etc/mucat/robot.toml"
 SERVICES = "mucat-runtime mucat"
 MEMORY_BYTES = 600 * 10**6
@@ -25,13 +28,17 @@ print(next(one["text"] for one in ask(data, "GET", "/health")["parts"] if one["n
 FINDINGS = """
 print(*(one["text"] for one in ask(data, "GET", "/doctor") if one["verdict"] != "ok"))
 """
+GAPS = """
+session = next(one["id"] for one in ask(data, "GET", "/sessions") if one["name"] == "{name}")
+print(len(ask(data, "GET", f"/sessions/{{session}}")["gaps"]), "gaps")
+"""
 RECORDING = """
 print(*(one["samples"] > 0 for one in ask(data, "GET", "/sessions") if one["name"] == "{name}"))
 """
 
 
 def live(container: Container, steps: Steps, version: str) -> None:
-    """Let it all happen to this installation."""
+    """Takes this installation through all of it."""
     damage_configuration(steps, version)
     fill_card(container, steps, version)
     starve(container, steps, version)
@@ -60,6 +67,11 @@ def fill_card(container: Container, steps: Steps, version: str) -> None:
     card = f"mount --bind /card {DATA}; systemctl start {SERVICES}"
     steps.take("a small card", f"{copy}; {card}", "")
     steps.runs(version)
+    with container.slow_card(SLOW_BYTES):
+        steps.take("record on a slow card", "mucat record start slow", "has begun")
+        time.sleep(SLOW_SECONDS)
+        steps.take("end the recording", "mucat record stop", "has ended")
+    steps.take("nothing is missing", ask_server(GAPS.format(name="slow")), "^0 gaps")
     steps.take("record", "mucat record start full", "has begun")
     runtime = runtime_of(container)
     steps.take("fill the card", f"cat /dev/zero > {DATA}/fill 2>/dev/null; true", "")
@@ -105,7 +117,7 @@ def starve(container: Container, steps: Steps, version: str) -> None:
 
 
 def adjustment(process: psutil.Process) -> int:
-    """What is added to the chance that it is ended for memory; 0 for one that has just ended."""
+    """Returns what is added to the chance that it is ended for memory; 0 for one that has just ended."""
     try:
         return int(Path(f"/proc/{process.pid}/oom_score_adj").read_text())
     except OSError:
