@@ -15,7 +15,7 @@ import psutil
 
 from bench.hub import process
 from bench.hub_viewers import Drain, HealthMonitor, Viewer
-from bench.stack import cpu_seconds
+from bench.processes import cpu_seconds
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import free_port

@@ -104,8 +104,8 @@ def _groups(robot: RealRobot, *, limited: bool) -> Iterator[None]:
     parent, memory = _CPU / name, _MEMORY / name
     homes = {"runtime": ["runtime"], "server": ["runner", "server"]}
     try:
-        for group in (parent, memory):
-            group.mkdir()
+        for folder in (parent, memory):
+            folder.mkdir()
         (memory / "memory.limit_in_bytes").write_text(str(_MEMORY_BYTES))
         for group, names in homes.items():
             (parent / group).mkdir()

@@ -13,7 +13,7 @@ from statistics import median
 import httpx
 import psutil
 
-from bench.stack import cpu_seconds
+from bench.processes import cpu_seconds
 from robot_runtime.places import BUILD
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
