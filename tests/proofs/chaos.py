@@ -13,6 +13,7 @@ that, it is not filled. The clock jumps for the robot's processes alone (`wall_c
 import json
 import os
 import random
+import shutil
 import sqlite3
 import struct
 import subprocess
@@ -44,8 +45,6 @@ from tests.stack import ROOT, Stack
 DISK = "400m"
 PAUSE = (0.5, 4.0)
 """s between two misfortunes."""
-ROOM = 1 << 26
-"""B of the disk that are taken at once, then less and less."""
 JUMPS = (-86_400, -3600, 3600, 86_400, 10 * 365 * 86_400)
 """s by which the wall clock is wrong, from now on."""
 SAMPLE = 1.0
@@ -197,13 +196,13 @@ class Storm:
         self.report.done["disk full"] += 1
         ballast = self._world.folder.path / "ballast"
         with ballast.open("wb", buffering=0) as file:
-            size, room = 0, ROOM
-            while room:
-                try:
+            # Half of what is free each time: a step that finds no room gives all of it back, and would end
+            # the alarm that it raised.
+            size = 0
+            while room := shutil.disk_usage(ballast.parent).free // 2:
+                with suppress(OSError):
                     os.posix_fallocate(file.fileno(), size, room)
                     size += room
-                except OSError:
-                    room //= 2
         # Storing may go on for a while, in the room that the write-ahead log has on the disk already: so
         # `store_failing` need not come. That it comes where the database refuses is in test_alarms.py, and
         # what a full disk does to a recording in test_full_disk.py.
@@ -313,7 +312,7 @@ class Storm:
                 if topic == "control":
                     ticks += row_times(topic, data)
                 elif topic == "notice":
-                    notices = decode_documents(data)
+                    notices = list(decode_documents(data))
                     report.alarms.update(one["kind"] for one in notices)
                     self._disk_low += [one["time"] - started for one in notices if one["kind"] == "disk_low"]
         late = [1000 * abs(after - before - 0.1) for before, after in pairwise(ticks)]

@@ -84,7 +84,8 @@ class SlowPage:
             return
         for block in read_blocks(message):
             name = block.topic.name
-            if block.topic.kind is Kind.PICTURE:
+            # Of these only the newest is sent: what it replaces is not missing.
+            if block.topic.kind is Kind.PICTURE or block.topic.newest_only:
                 continue
             wanted = expected.get(name)
             # A smaller number: the sender was restarted, and losses are not known.
