@@ -12,7 +12,7 @@ from tests.browser.pages import LIVE, PAGES, View, settle, show
 from tests.browser.people import make_link
 from tests.stack import Stack
 
-WIDTHS = (360, 390, 768, 1024, 1280, 1440, 1920)
+WIDTHS = (360, 390, 768, 1024, 1280, 1366, 1440, 1920)
 CROWDED = """() => {
     const said = '[aria-label=Pages] a, .foot .opener, .top .name, .top .states > *, .top .row > *, .stop';
     const all = document.querySelectorAll(said);

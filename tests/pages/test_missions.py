@@ -273,6 +273,7 @@ def test_unsaved_changes_stay_over_a_reload_and_are_not_lost_silently(page: Page
     alert = page.get_by_role("alert").filter(has_text="“unsaved” has unsaved changes.")
     alert.get_by_role("button", name="Continue with it").click()
     expect(card(page, "1")).to_contain_text("depth 0.9 m")
+    expect(alert).to_be_hidden()
     page.get_by_role("link", name="All missions").click()
     page.get_by_role("link", name="Two depths", exact=True).click()
     alert.get_by_role("button", name="Discard them").click()
