@@ -84,6 +84,7 @@ def test_it_is_watched_taken_over_handed_back_and_replayed(page: Page, stack: St
     (recorded,) = stack.api.get(f"/sessions/{session}/missions").json()
     assert recorded["document"] == TEXT
     check_session(page, stack, session)
+    check_comparison(page, stack, session)
     check_replay(page, stack, session, {one["path"]: one["time"] for one in recorded["started"]})
 
 
@@ -95,6 +96,14 @@ def check_session(page: Page, stack: Stack, session: int) -> None:
     expect(step(mission, "5")).to_have_attribute("data-status", "done")
     mission.get_by_text("Mission (TOML)").click()
     expect(mission).to_contain_text('title = "Look around"')
+
+
+def check_comparison(page: Page, stack: Stack, session: int) -> None:
+    """A comparison can be aligned at the start of a step."""
+    page.goto(f"{stack.url}/#/sessions/compare/{session}")
+    page.get_by_label("Align at").select_option("Mission step")
+    page.get_by_label("Mission step", exact=True).select_option("3 Hold the depth for 60 s")
+    expect(page.get_by_text("s since the start of the mission’s step 3").first).to_be_visible()
 
 
 def check_replay(page: Page, stack: Stack, session: int, started: dict[str, Any]) -> None:
