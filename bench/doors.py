@@ -119,13 +119,18 @@ def _rosbridge(data: Path, port: int, receive_bytes: int | None) -> Viewer:
 def _foxglove(data: Path, port: int, receive_bytes: int | None) -> Viewer:
     headers = shell_headers(DataFolder(data)) | {"sec-websocket-protocol": "foxglove.websocket.v1"}
     viewer = Viewer(f"ws://127.0.0.1:{port}/foxglove", _times, headers, receive_bytes)
-    for message in viewer.messages():
-        if isinstance(message, str) and (said := json.loads(message))["op"] == "advertise":
-            channels = {one["topic"]: one["id"] for one in said["channels"]}
-            break
+    channels = _channels(viewer)
     wanted = [{"id": place, "channelId": channels[topic]} for place, topic in enumerate(("/imu", "/depth"))]
     viewer.send(json.dumps({"op": "subscribe", "subscriptions": wanted}))
     return viewer
+
+
+def _channels(viewer: Viewer) -> dict[str, int]:
+    """The numbers of the channels. Raises OSError where the connection ends before."""
+    for message in viewer.messages():
+        if isinstance(message, str) and (said := json.loads(message))["op"] == "advertise":
+            return {one["topic"]: one["id"] for one in said["channels"]}
+    raise ConnectionError("the door was closed before it listed its channels")
 
 
 def _stamps(message: str | bytes) -> list[float]:

@@ -40,7 +40,7 @@ class MqttOutlet:
         self._name = f"mucat-{robot}-{run[:8]}"
         self._config = config
         self._folder = folder
-        self._tally = Tally(config.mqtt)
+        self._tally = Tally(f"Broker {config.mqtt}")
         self._client: Client | None = None
         self._retained: dict[str, str] = {}
 

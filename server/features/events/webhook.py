@@ -39,7 +39,8 @@ class WebhookOutlet:
         self._address = urlsplit(config.webhook)
         self._config = config
         self._folder = folder
-        self._tally = Tally(config.webhook)
+        # Without the path, which may be a secret: everybody who may look sees the health.
+        self._tally = Tally(f"Receiver {self._address.scheme}://{self._address.netloc}")
         self._events: queue.Queue[PublishedEvent | None] = queue.Queue(WAITING_MAX)
         self._closing = threading.Event()
         self._headers = {"Content-Type": "application/json", "User-Agent": f"mucat/{VERSION}"}

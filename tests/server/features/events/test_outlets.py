@@ -97,7 +97,7 @@ def test_a_broker_gets_events_and_a_newcomer_finds_what_holds_now(tmp_path: Path
         found = listener.next("mucat/tested/event/session_ended")
         assert found["subject"] == "Tauchgang µ"
         wait_for(lambda: outlet.condition().state == "ok", "the condition")
-        assert outlet.condition().text.startswith(f"mqtt://127.0.0.1:{port}: Connected.")
+        assert outlet.condition().text.startswith(f"Broker mqtt://127.0.0.1:{port}: Connected.")
         for topic, value in (("session", {"id": 1, "name": "Dive"}), ("status", "online")):
             with closing(Listener(port)) as newcomer:
                 assert newcomer.next(f"mucat/tested/{topic}") == value
@@ -205,7 +205,8 @@ def test_a_web_address_gets_each_event_with_its_token(tmp_path: Path, receiver: 
         assert headers["Authorization"] == "Bearer lab-token"
         assert body["number"] == number
     outlet.close()
-    assert outlet.condition() == ("ok", f"{receiver.url}: Accepts events. Messages sent: 2.")
+    origin = receiver.url.removesuffix("/robots?lab=1")
+    assert outlet.condition() == ("ok", f"Receiver {origin}: Accepts events. Messages sent: 2.")
 
 
 @pytest.mark.usefixtures("quick")
