@@ -76,10 +76,10 @@ GOALS = {
     "control.crossing_ratio_max": _most(1.2),
     "control.overshoot_max": _most(0.05),
     "control.steady_cm_max": _most(2),
-    # Missed since it was set, by 3 to 6 %. Zenoh's own threads take some 1.7 % of a core in both processes
-    # together; of the runtime's Python 40 % is the check for faults, of the server's as much the hand-over of
-    # blocks to recorder and viewers.
-    "cpu.robot_stack_percent": _most(2, "python"),
+    # Missed; docs/reference/processes.md has the figures. What remains are some thirty rounds a second from
+    # the line to the viewer, each of which costs mostly its waking up. Fewer of them make the controllers
+    # swing wider, and by an estimate would miss `latency.sample_to_page_ms_p95`.
+    "cpu.robot_stack_percent": _most(2.5, "python"),
     "export.csv_1h_ratio": _most(1.3),
     "export.mcap_1h_ratio": _most(1.3),
     **_fault("pilot_quiet", 0.5, rest=0.5),
@@ -113,7 +113,12 @@ GOALS = {
     "latency.key_to_fin_ms_p95": _most(150),
     "latency.sample_to_page_ms_p95": _most(80),
     "hub.latency_ms_p50.50": _most(15, "python"),
-    "hub.ratio_to_foxglove": _most(0.5),
+    # Missed: 1.6, 1.0 and 0.54 (1.76, 1.16 and 0.64 before, on the same busy machine). foxglove-sdk, written
+    # in Rust, serves from the process that makes the samples. Our server gets them over Zenoh from another
+    # process; with one viewer a third of its time goes to Zenoh's thread and to that of its callback.
+    "hub.ratio_to_foxglove.1": _most(1.0),
+    "hub.ratio_to_foxglove.10": _most(0.7),
+    "hub.ratio_to_foxglove.50": _most(0.4),
     # In percent of the true number; of the buoyancy, of its surplus over the weight.
     "identify.error_percent_max": _most(5),
     "identify.weak_error_percent_max": _most(10),
@@ -129,6 +134,16 @@ GOALS = {
     "page.redraws_per_s.10s": _least(55),
     "page.redraw_ms": _most(8, "drawing"),
     "physics.speed_x": _least(25, "python"),
+    # The goal is 90 MB on 32 bits, which are 118 MB on 64, by the same processes on both. Missed: 101 MB on
+    # 32 bits, 137 MB on 64. Of the server's 57 MB 43 are libraries and code that it has loaded; Debian's
+    # OpenCV takes 15 of the runtime's 37 MB, since it is linked to 384 libraries.
+    "quota.anonymous_mb.natively": _most(118),
+    # Missed: 46 and 74 ms, on a machine so busy that it was 13 and 38 ms without the quota. The quota is
+    # used up, and the kernel then stops all threads for up to 24 ms, the control loop's as well.
+    "quota.jitter_ms_p99.quota": _most(20),
+    "quota.samples_lost.quota": _most(0),
+    "quota.ticks_left_out.quota": _most(0),
+    "quota.viewer_lost.quota": _most(0),
     "replay.page_seek_ms_p95": _most(150, "python"),
     "replay.seek_ms_p95": _most(150, "python"),
     **_goodput("link.goodput"),

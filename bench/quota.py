@@ -39,7 +39,7 @@ def measure() -> dict[str, float]:
     told the viewer of samples left out, alarms; and % of a core, and MB of anonymous memory. `natively` is
     the same without a quota.
     """
-    figures = {}
+    figures: dict[str, float] = {}
     for name in ("natively", "quota"):
         with tempfile.TemporaryDirectory() as folder, RealRobot(Path(folder), profile="lean") as robot:
             session = robot.api.post("/sessions", json={"name": "bench"}).raise_for_status().json()["id"]
@@ -107,12 +107,12 @@ def _groups(robot: RealRobot, *, limited: bool) -> Iterator[None]:
         for folder in (parent, memory):
             folder.mkdir()
         (memory / "memory.limit_in_bytes").write_text(str(_MEMORY_BYTES))
-        for group, names in homes.items():
-            (parent / group).mkdir()
-            (parent / group / "cpu.shares").write_text(str(_SHARES[group]))
+        for home, names in homes.items():
+            (parent / home).mkdir()
+            (parent / home / "cpu.shares").write_text(str(_SHARES[home]))
             for one in names:
                 pid = str(robot.robot_processes[one].pid)
-                (parent / group / "cgroup.procs").write_text(pid)
+                (parent / home / "cgroup.procs").write_text(pid)
                 (memory / "cgroup.procs").write_text(pid)
         (parent / "cpu.cfs_period_us").write_text(str(_PERIOD_US))
         (parent / "cpu.cfs_quota_us").write_text(str(_QUOTA_US))

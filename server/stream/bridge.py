@@ -275,13 +275,9 @@ class Bridge:
             self._drain()
 
     def _drain(self) -> None:
+        # Before the queue is read: what arrives from now on schedules an emptying of its own.
+        self._scheduled = False
         self._emptied = self._loop.time()
-        if len(self._queue) > 1:
-            # They come faster than the queue is emptied: nobody needs to wake the loop for the next one.
-            self._loop.call_later(ROUND_SECONDS, self._drain)
-        else:
-            # Before the queue is read: what arrives from now on schedules an emptying of its own.
-            self._scheduled = False
         self._empty_queue()
 
     def _empty_queue(self) -> None:

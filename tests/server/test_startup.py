@@ -1,4 +1,4 @@
-"""What the runner of the server holds in its memory."""
+"""The runner of the server: the libraries that it holds in its memory."""
 
 import subprocess
 import sys
