@@ -10,7 +10,7 @@ import click
 
 from robot_runtime.errors import RefusedError
 from server.platform.errors import ApiError
-from server.platform.last_configuration import read_service_settings
+from server.platform.last_configuration import read_usable_settings
 from server.platform.settings import SetupError, read_settings
 from server.platform.terminal import plain
 
@@ -50,13 +50,12 @@ class RowCommand(click.Command):
         return super().parse_args(ctx, spread)
 
 
-def with_settings(
-    command: Callable[..., int | None], *, is_service: bool = False
-) -> Callable[..., int | None]:
+def with_settings(command: Callable[..., int | None]) -> Callable[..., int | None]:
     """Add --data and --config to a command, and call it with the settings that follow from them.
 
     The function returns the exit status, or None for 0. An error of the server ends it with status 1.
-    What systemd starts gets those of the last configuration where the present one cannot be used.
+    Where the present configuration cannot be used, it gets those of the last one, and the reason is printed;
+    but a person who starts a server at a shell is refused.
     """
 
     @data_option
@@ -64,10 +63,12 @@ def with_settings(
     @wraps(command)
     def run(*, data: Path | None, config: Path | None, **options: Any) -> int | None:
         host, port = options.pop("host", None), options.pop("port", None)
-        # A person who starts a server at a shell sees at once what is wrong with the file.
-        read = read_service_settings if options.get("external_runtime", is_service) else read_settings
+        read = read_usable_settings if options.get("external_runtime", True) else read_settings
         try:
-            return command(read(config, data, host, port, os.environ), **options)
+            settings = read(config, data, host, port, os.environ)
+            if settings.configuration_problem:
+                click.echo(plain(f"mucat: {settings.configuration_problem}"), err=True)
+            return command(settings, **options)
         except (SetupError, ApiError, RefusedError) as problem:
             raise CommandError(str(problem)) from problem
 

@@ -1,4 +1,4 @@
-"""The last configuration that could be used: a service starts with it where robot.toml cannot be.
+"""The last configuration that could be used: services and commands take it where robot.toml cannot be.
 
 A file that a power cut or a slip of the editor has damaged does not take the robot away from its lab; and the
 default configuration would show emulated water where people stand before a real robot.
@@ -16,7 +16,7 @@ from server.platform.settings import Settings, SetupError, data_folder, read_set
 log = logging.getLogger(__name__)
 
 
-def read_service_settings(
+def read_usable_settings(
     config: Path | None,
     data: Path | None,
     host: str | None,
@@ -48,7 +48,7 @@ def _refuse_cut_off(config: Path, last: Path) -> None:
         if text != before and before.startswith(text):
             raise SetupError(
                 f"{config} has only the first {len(text)} of {len(before)} bytes that it had, and seems to "
-                f"be cut off. Write the rest again, from {last}; or remove that copy, if so it is right."
+                f"be cut off. Write the rest again, from {last}; or remove that copy, if that was meant."
             )
 
 

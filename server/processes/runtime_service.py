@@ -2,7 +2,6 @@
 
 import os
 import time
-from functools import partial
 from pathlib import Path
 
 import click
@@ -20,7 +19,7 @@ START_SECONDS = 60.0
 
 
 @click.command("runtime")
-@partial(with_settings, is_service=True)
+@with_settings
 def run_runtime(settings: Settings) -> None:
     """Run the robot's runtime alone; systemd starts this.
 

@@ -80,7 +80,7 @@ def fill_card(container: Container, steps: Steps, version: str) -> None:
     steps.runs(version)
     steps.wait("it records", lambda: "True" in container.order(ask_server(RECORDING.format(name="full")))[1])
     container.wear_card_out()
-    steps.wait("the page says so", lambda: "cannot be stored" in container.order(ask_server(HEALTH))[1])
+    steps.wait("the page says so", lambda: "Nothing can be stored" in container.order(ask_server(HEALTH))[1])
     steps.take("the doctor says so", "mucat doctor", "read-only: the card may be worn out", status=1)
     start = "systemctl kill -s KILL mucat; sleep 8; journalctl --since=-8s -u mucat --output=cat"
     steps.take("a server that starts on it", start, "mucat: .*[Rr]ead-only")

@@ -172,6 +172,20 @@ def test_an_impossible_start_is_refused_in_one_line(settings: Settings, tmp_path
     assert (unknown.returncode, "there is no mistake 'imu'; there are" in unknown.stderr) == (2, True)
 
 
+def test_commands_take_the_last_configuration_and_a_server_at_a_shell_does_not(
+    settings: Settings, tmp_path: Path
+) -> None:
+    bad = tmp_path / "bad.toml"
+    bad.write_text("")
+    settings.data.last_config.write_text('[robot]\nmode = "robot"\n[link]\nport = "/dev/nowhere"\n')
+    where = ("--data", str(settings.data.path), "--config", str(bad))
+    upload = mucat("upload", *where)
+    assert "seems to be cut off" in upload.stderr.splitlines()[0]
+    assert "/dev/nowhere" in upload.stderr.splitlines()[-1]
+    bad.write_text("[robot")
+    assert_refused(mucat("run", *where), "bad.toml cannot be read")
+
+
 def test_the_help_lists_the_mistakes() -> None:
     listed = mucat("run", "--help").stdout
     assert all(f"  {line}\n" in listed for line in write_list())

@@ -13,7 +13,7 @@ from server.features.doctor.findings import print_findings, worst
 from server.features.doctor.machine import Machine, read_machine
 from server.platform.command_line import config_option, data_option
 from server.platform.folder_lock import runner_of
-from server.platform.last_configuration import read_service_settings
+from server.platform.last_configuration import read_usable_settings
 from server.platform.running_server import ask
 from server.platform.settings import Settings, SetupError, data_folder, find_config
 from server.platform.terminal import echo
@@ -38,7 +38,7 @@ def doctor(data: Path | None, config: Path | None, *, as_json: bool) -> int:
 
 def _look(config: Path | None, data: Path | None) -> Machine:
     try:
-        settings = read_service_settings(config, data, None, None, os.environ)
+        settings = read_usable_settings(config, data, None, None, os.environ)
     except SetupError as problem:
         folder = data_folder(data, os.environ)
         settings = Settings(data=folder, config=(config or find_config(folder)).absolute())

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from server import VERSION
-from server.platform.last_configuration import read_service_settings
+from server.platform.last_configuration import read_usable_settings
 from server.platform.running_server import ask
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
@@ -95,7 +95,7 @@ def _sum_firmware(settings: Settings) -> str:
 def main() -> None:
     """Prints the survey. Ends with status 1 where the configuration is not valid, and the reason."""
     try:
-        settings = read_service_settings(Path(os.environ["MUCAT_CONFIG"]), None, None, None, os.environ)
+        settings = read_usable_settings(Path(os.environ["MUCAT_CONFIG"]), None, None, None, os.environ)
     except SetupError as problem:
         sys.exit(str(problem))
     echo(json.dumps(asdict(survey(settings))))

@@ -81,6 +81,8 @@ class Updater:
             if release.version == before:
                 raise SetupError(f"µ-CAT {before} is in use already. Nothing was changed.")
             self._refuse_in_use()
+            # Those of earlier updates that came to nothing, too.
+            self._remove_others(release.version)
             self._check_room(release)
             self._tell(f"µ-CAT {release.version} is built beside {before}. The robot can be used meanwhile.")
             environment = build_environment(effects, places, release)
@@ -267,10 +269,10 @@ class Updater:
         except (OSError, ValueError, TypeError) as problem:
             raise SetupError(f"{path} cannot be read: {problem}.") from problem
 
-    def _remove_others(self) -> None:
-        """Remove environments that nothing leads to any more."""
+    def _remove_others(self, coming: str = "") -> None:
+        """Remove environments that nothing leads to any more, but that of the version that is coming."""
         places = self._places
-        in_use = {places.version_of(places.current), places.version_of(places.previous)}
+        in_use = {coming, places.version_of(places.current), places.version_of(places.previous)}
         for one in sorted(places.versions.iterdir()):
             if one.name not in in_use:
                 self._effects.remove(one)

@@ -1,18 +1,18 @@
-"""A configuration that a power cut has damaged: services start with the last one that could be used."""
+"""A configuration that a power cut has damaged: the last one that could be used takes its place."""
 
 import re
 from pathlib import Path
 
 import pytest
 
-from server.platform.last_configuration import keep_configuration, read_service_settings
+from server.platform.last_configuration import keep_configuration, read_usable_settings
 from server.platform.settings import Settings, SetupError
 
 GOOD = '[robot]\nname = "nemo"\nmode = "robot"\n[link]\nport = "/dev/ttyAMA0"\n'
 
 
 def read(settings: Settings) -> Settings:
-    return read_service_settings(settings.config, settings.data.path, None, None, {})
+    return read_usable_settings(settings.config, settings.data.path, None, None, {})
 
 
 @pytest.fixture

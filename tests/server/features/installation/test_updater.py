@@ -128,7 +128,8 @@ def test_cut_off_at_any_effect_one_version_runs_with_all_dives_and_it_can_be_don
     while True:
         computer = installed(tmp_path / str(cuts), keys)
         computer.sick = {"2.0.0"} if sick else set()
-        place_version(computer, "0.9.0")
+        # It is removed when the update is over.
+        computer.places.previous.symlink_to(place_version(computer, "0.9.0"))
         try:
             update(computer, release, cuts)
         except PowerCutError:
@@ -330,6 +331,17 @@ def test_two_versions_are_kept(tmp_path: Path, keys: Path, release: Path) -> Non
     computer.schemas["3.0.0"] = 2
     update(computer, signed(tmp_path / "third", keys, "3.0.0"))
     assert sorted(one.name for one in computer.places.versions.iterdir()) == ["2.0.0", "3.0.0"]
+
+
+def test_updates_that_come_to_nothing_do_not_fill_the_card(tmp_path: Path, keys: Path) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    for number in range(2, 5):
+        version = f"{number}.0.0"
+        computer.wrong[version] = "OpenCV cannot be loaded."
+        folder = signed(tmp_path / version, keys, version)
+        with pytest.raises(SetupError, match="OpenCV"):
+            update(computer, folder)
+        assert {one.name for one in computer.places.versions.iterdir()} == {"1.0.0", version}
 
 
 def test_the_installation_is_changed_by_one_at_a_time(tmp_path: Path, keys: Path, release: Path) -> None:
