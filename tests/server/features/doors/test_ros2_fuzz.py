@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from struct import pack
 from typing import Any
+from unittest.mock import MagicMock
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -77,6 +78,24 @@ def test_the_door_uses_or_refuses_anything(
             calls = session.cancel_calls()
             assert client.refused == (not calls)
             await asyncio.gather(*calls, return_exceptions=True)
+
+    asyncio.run(run())
+
+
+def test_the_bytes_of_a_twist_drive_only_with_its_type(monkeypatch: pytest.MonkeyPatch) -> None:
+    driven: list[list[float]] = []
+    monkeypatch.setattr(DoorCommands, "__init__", lambda _: None)
+    monkeypatch.setattr(DoorCommands, "note_refusal", lambda *_: None)
+    monkeypatch.setattr(DoorCommands, "drive", lambda _, __, linear, ___: driven.append(linear))
+    (twist,) = (one for one in ros2_endpoints(standard_channels()) if one.name == "/cmd_vel")
+    payload = b"\0\1\0\0" + pack("<6d", 1, 2, 3, 4, 5, 6)
+
+    async def run() -> None:
+        doors, client = MagicMock(), MagicMock(refused=0)
+        session = Ros2Session(client, MagicMock(), doors, DoorCommands(), MagicMock())  # type: ignore[call-arg]
+        for typed in (False, True):
+            session.act(Incoming(twist, typed, payload, b""), MagicMock())
+        assert (client.refused, driven) == (1, [[1, 2, 3]])
 
     asyncio.run(run())
 
