@@ -55,7 +55,7 @@ def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -
     }
     assert heavy == {
         *("getComparisonReport", "compareSessions", "compareLines", "getBlocks"),
-        *("checkScenario", "checkMission", "readVision", "examineAgain"),
+        *("checkScenario", "checkMission", "readVision", "examineAgain", "listSessionMissions"),
     }
 
 
