@@ -4,6 +4,7 @@ import argparse
 import logging
 import sys
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 from robot_runtime.config import Config, craft_in, craft_path, load
@@ -23,14 +24,14 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.settings_file import VisionSettingsFile
 
 BYTES_MAX = 600_000_000
-"""Of the runtime's own memory, threads' stacks and OpenCV's buffers included; it needs a third of that."""
+"""Of the runtime's own memory: half of what it needs is room for stacks that nobody touches, so that this
+holds on the smallest computer as well."""
 
 
 def main() -> int:
     """Runs until SIGTERM or SIGINT. Returns 2 if the configuration or an endpoint cannot be used."""
     keep_private()
-    # It is the last process of the robot that may lack memory.
-    limit_memory(BYTES_MAX, share=0.75)
+    limit_memory(BYTES_MAX, share=inf)
     options = _options()
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if options.with_parent:

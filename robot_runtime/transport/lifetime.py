@@ -20,6 +20,8 @@ _PR_SET_PDEATHSIG = 1
 _CHECK_SECONDS = 1.0
 _STACK_BYTES = 1_048_576
 """Of a thread; the kernel's default is 8 MB, and the runtime has forty threads."""
+_PROCESSOR_BYTES = 20_000_000
+"""Room for the stacks, of 8 MB each, of the threads that libraries start for a processor."""
 
 
 def end_with_parent(parent: int | None = None, number: signal.Signals = signal.SIGTERM) -> None:
@@ -50,11 +52,13 @@ def limit_memory(memory: int, share: float = 0.5) -> None:
     """Limits this process: bytes of its own memory, at most this share of the computer's.
 
     Beyond that an allocation raises MemoryError. Processes that it starts inherit the limit, and may set
-    another. The stacks of threads count whole, so that those of later threads are made small.
+    another. The stacks of threads count whole, so that those of later threads are made small; NumPy and
+    OpenCV have threads of their own for each processor, for which there is room in addition.
     """
     threading.stack_size(_STACK_BYTES)
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    limit = min(memory, int(share * memory_bytes()))
+    room = memory + _PROCESSOR_BYTES * (os.cpu_count() or 1)
+    limit = int(min(room, share * memory_bytes()))
     if hard != resource.RLIM_INFINITY:
         limit = min(limit, hard)
     resource.setrlimit(resource.RLIMIT_DATA, (limit, hard))

@@ -82,7 +82,9 @@ def test_without_the_folder_a_process_ends_at_once(tmp_path: Path) -> None:
 
 
 LIMITED = """
+import os
 from robot_runtime.transport.lifetime import limit_memory
+os.cpu_count = lambda: 1
 limit_memory(200_000_000)
 try:
     bytearray(300_000_000)
