@@ -114,7 +114,7 @@ GOALS = {
     "latency.sample_to_page_ms_p95": _most(80),
     "hub.latency_ms_p50.50": _most(15, "python"),
     "hub.ratio_to_foxglove": _most(0.5),
-    # In percent of the true number; of the buoyancy, of its surplus over the weight. The first of eight crafts
+    # In percent of the true number; of the buoyancy, of its surplus over the weight. The first of 8 crafts
     # misses 5 by 2.5 and 10 by 0.3, in the damping of yaw and sway: errors of 2.5 standard deviations. The
     # robot moves sideways in curves only. Four crafts had been measured so far; three of them meet both.
     "identify.error_percent_max": _most(5),
