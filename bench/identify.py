@@ -1,19 +1,35 @@
-"""Identification: crafts that differ from the default by up to 40 % in every number, from their own swims."""
+"""Identification: crafts that differ from the default by up to 40 % in every number, from their sea trials.
+
+A sea trial is the scenario that people record for it, with the robot's own firmware, motors and recorder.
+"""
 
 import os
+import tempfile
 import time
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import redirect_stdout
 from dataclasses import dataclass
+from importlib.resources import files
+from io import StringIO
+from pathlib import Path
 
 import numpy as np
+import tomli_w
 
-from robot_runtime.contract.craft import Craft
+from bench.measurement import MeasurementError
+from robot_runtime.contract.craft import Craft, craft_table
+from robot_runtime.experiments import scenario
 from robot_runtime.experiments.identification.identify import identify
-from tests.runtime.experiments.identification.swimmer import random_craft, swim
+from robot_runtime.experiments.identification.streams import SessionStreams
+from server.cli import main
+from server.features.identification.sessions import read_streams
+from server.platform.settings import DataFolder
+from server.platform.store import Reader
+from tests.runtime.experiments.identification.swimmer import random_craft
 
 _CRAFTS = 8
-_SWIMS, _SECONDS = 5, 60.0
-"""Sessions of a fit, and the length of each; one more is left out."""
+_TRIALS = 4
+"""Sessions of a fit, of 90 s each; one more is left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,11 +45,30 @@ class _Found:
     """Processor time of the fit."""
 
 
+def _record(craft: Craft, first_seed: int) -> list[SessionStreams]:
+    """The streams of the sea trials of this craft."""
+    trial = (files(scenario) / "shipped" / "sea_trial.toml").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+        folder, data = Path(name), DataFolder(Path(name) / "data")
+        (folder / "true.toml").write_text(tomli_w.dumps({"title": "True", "craft": craft_table(craft)}))
+        (folder / "robot.toml").write_text('[craft]\nfile = "true.toml"\n')
+        for seed in range(first_seed, first_seed + _TRIALS + 1):
+            path = folder / f"{seed}.toml"
+            path.write_text(trial.replace("\nseed = 1\n", f"\nseed = {seed}\n"))
+            where = ["--data", str(data.path), "--config", str(folder / "robot.toml")]
+            with redirect_stdout(StringIO()):
+                status = main(["scenario", "run", str(path), *where])
+            if status:
+                raise MeasurementError(f"sea trial {seed} ended with {status}")
+        store = Reader(data.database)
+        return [read_streams(store, one) for one in range(1, _TRIALS + 2)]
+
+
 def _identify(number: int) -> _Found:
     true = random_craft(number)
-    swims = [swim(true, 100 * number + one, _SECONDS) for one in range(_SWIMS + 1)]
+    trials = _record(true, 100 * number)
     began = time.process_time()
-    found = identify(swims[:-1], swims[-1], Craft())
+    found = identify(trials[:-1], trials[-1], Craft())
     seconds = time.process_time() - began
     errors: dict[str, list[float]] = {"well": [], "weakly": [], "no": []}
     distances = []

@@ -4,9 +4,7 @@ The windows' starts are eliminated from each window's residuals by a projection 
 Golub and V. Pereyra, SIAM J. Numer. Anal. 10, 1973), so that `scipy.optimize.least_squares` sees the craft's
 numbers and the IMU's offsets alone. What is known before, each number's spread, counts as a measurement.
 
-Confidence follows from the Jacobian at the solution. Residuals of a channel are correlated in time, because
-the encoders' errors shake the simulated hull and sensors drift. So each channel's weight is 1/(σ·√τ), where σ
-is the standard deviation of its residuals and τ their integrated autocorrelation: τ samples count as one.
+Residuals are whitened (whitening.py). Confidence follows from the Jacobian at the solution.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,13 +14,14 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from robot_runtime.contract.craft import Craft
-from robot_runtime.experiments.identification.bodies import CHANNELS, STATES, Floats
+from robot_runtime.experiments.identification.bodies import STATES, Floats
 from robot_runtime.experiments.identification.quantities import OFFSET_SPREADS, QUANTITIES, CraftQuantity
-from robot_runtime.experiments.identification.shooting import OFFSETS, START_SPREADS, Shooting
+from robot_runtime.experiments.identification.shooting import OF_A_SESSION, OFFSETS, START_SPREADS, Shooting
 from robot_runtime.experiments.identification.streams import Windows
+from robot_runtime.experiments.identification.whitening import Whitening
 
 ROUNDS = 3
-"""Of a fit; each begins with the weights and starts that the one before has found."""
+"""Of a fit; each begins with the whitening and the starts that the one before has found."""
 STEPS_MAX = 6
 """Of a round."""
 SEEN = 0.5
@@ -48,10 +47,6 @@ class FitSolution:
     offset_deviations: Floats
     unseen: tuple[CraftQuantity, ...]
     """Quantities that these windows do not show; they stay as they were."""
-    sigma: Floats
-    """Standard deviation of each channel's residuals."""
-    correlation: Floats
-    """Samples of each channel that count as one."""
 
 
 class Fit:
@@ -60,14 +55,13 @@ class Fit:
     def __init__(self, windows: Windows, start: Craft, progress: Progress = lambda _share: None) -> None:
         self._shooting = Shooting(windows, start)
         self._progress = progress
-        self._weights = FIRST_WEIGHTS
-        self._sigma, self._correlation = FIRST_WEIGHTS, np.ones(CHANNELS)
+        self._whitening = Whitening.none(FIRST_WEIGHTS)
 
     def run(self) -> FitSolution:
         """Fits all numbers, and then once more those that are seen. Raises what `progress` raises."""
         fitted: list[CraftQuantity] = list(QUANTITIES)
         unseen: list[CraftQuantity] = []
-        numbers = np.zeros(len(fitted) + OFFSETS * self._shooting.sessions)
+        numbers = np.zeros(len(fitted) + OF_A_SESSION * self._shooting.sessions)
         for round_ in range(ROUNDS):
             numbers = self._solve(fitted, numbers)
             if round_ != ROUNDS - 2:
@@ -85,15 +79,13 @@ class Fit:
             fitted=tuple(fitted),
             scaled=numbers[:count],
             deviations=deviations[:count],
-            offsets=numbers[count:].reshape(-1, OFFSETS) * spreads,
-            offset_deviations=deviations[count:].reshape(-1, OFFSETS) * spreads,
+            offsets=numbers[count:].reshape(-1, OF_A_SESSION)[:, :OFFSETS] * spreads,
+            offset_deviations=deviations[count:].reshape(-1, OF_A_SESSION)[:, :OFFSETS] * spreads,
             unseen=tuple(unseen),
-            sigma=self._sigma,
-            correlation=self._correlation,
         )
 
     def _solve(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> Floats:
-        """The best scaled numbers from these on; then moves the windows' starts and sets the weights."""
+        """The best scaled numbers from these on; then moves the starts and models the residuals anew."""
         low, high = self._bounds(fitted)
         solution = least_squares(
             lambda at: self._project(fitted, at)[0],
@@ -107,20 +99,20 @@ class Fit:
         numbers = np.asarray(solution.x)
         for _ in range(2):
             self._move_starts(fitted, numbers)
-        self._weigh(fitted, numbers)
+        self._whitening = Whitening.of(self._shooting.errors(fitted, numbers)[0])
         return numbers
 
     def _bounds(self, fitted: Sequence[CraftQuantity]) -> tuple[Floats, Floats]:
         """The craft's ranges as scaled numbers, with room for a number that begins at its limit."""
         start = self._shooting.start
         pairs = [one.scaled_limits(start) for one in fitted]
-        pairs += [(-np.inf, np.inf)] * (OFFSETS * self._shooting.sessions)
+        pairs += [(-np.inf, np.inf)] * (OF_A_SESSION * self._shooting.sessions)
         low, high = np.array(pairs).T
         return low - 1e-5, high + 1e-5
 
     def _project(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats]:
         """Residuals and Jacobian without what other starts of the windows explain, and with the priors."""
-        residuals, of_starts, of_numbers = self._weighted(fitted, numbers)
+        residuals, of_starts, of_numbers = self._whiten(fitted, numbers)
         basis, _ = np.linalg.qr(of_starts)
         projected = residuals - np.einsum("wmk,wk->wm", basis, np.einsum("wmk,wm->wk", basis, residuals))
         cleaned = of_numbers - basis @ (basis.transpose(0, 2, 1) @ of_numbers)
@@ -129,8 +121,8 @@ class Fit:
             np.concatenate((cleaned.reshape(-1, len(numbers)), np.eye(len(numbers)))),
         )
 
-    def _weighted(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats, Floats]:
-        """Each window's weighted residuals, and their derivatives by its start and by the numbers.
+    def _whiten(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats, Floats]:
+        """Each window's whitened residuals, and their derivatives by its start and by the numbers.
 
         The last residuals are the distance of its start from the guess.
         """
@@ -139,8 +131,8 @@ class Fit:
         expected = ROUNDS * (STEPS_MAX + 3)
         self._progress(min(shooting.evaluations / expected, 0.99))
         windows = len(errors)
-        residuals = (errors / self._weights[:, None]).reshape(windows, -1)
-        slopes = (slopes / self._weights[:, None, None]).reshape(*residuals.shape, -1)
+        residuals = self._whitening.apply(errors).reshape(windows, -1)
+        slopes = self._whitening.apply(slopes).reshape(*residuals.shape, -1)
         away = ((shooting.states - shooting.guess) / START_SPREADS[:, None]).T
         own = np.zeros((windows, STATES, slopes.shape[2]))
         own[:, :, :STATES] = np.eye(STATES)
@@ -149,17 +141,10 @@ class Fit:
 
     def _move_starts(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> None:
         """One step of Gauss and Newton on the windows' starts."""
-        residuals, of_starts, _ = self._weighted(fitted, numbers)
+        residuals, of_starts, _ = self._whiten(fitted, numbers)
         basis, upper = np.linalg.qr(of_starts)
         step = np.linalg.solve(upper, np.einsum("wmk,wm->wk", basis, residuals)[:, :, None])[:, :, 0]
         self._shooting.states = self._shooting.states - step.T * START_SPREADS[:, None]
-
-    def _weigh(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> None:
-        """Sets the weights by the residuals of each channel."""
-        errors, _ = self._shooting.errors(fitted, numbers)
-        self._sigma = np.sqrt((errors**2).mean(axis=(0, 2)))
-        self._correlation = np.array([integrated_autocorrelation(errors[:, one]) for one in range(CHANNELS)])
-        self._weights = np.maximum(self._sigma * np.sqrt(self._correlation), 1e-9)
 
     def _deviations(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> Floats:
         """Standard deviations: the larger of those from the Jacobian and those from the windows' scatter.
@@ -198,19 +183,3 @@ class Fit:
                 return weak
             weak.append(place)
             there.remove(place)
-
-
-def integrated_autocorrelation(errors: Floats) -> float:
-    """τ = 1 + 2·Σρ(k) of rows of samples, up to the first lag at which ρ is not positive; at least 1.
-
-    Its source is A. Sokal, Monte Carlo Methods in Statistical Mechanics, 1996, chapter 3.
-    """
-    length = errors.shape[1]
-    spectrum = np.fft.rfft(errors, 2 * length, axis=1)
-    products = np.fft.irfft(np.abs(spectrum) ** 2, axis=1)[:, :length].sum(axis=0)
-    if products[0] <= 0:
-        return 1.0
-    shares = products / products[0]
-    ends = np.flatnonzero(shares <= 0)
-    last = int(ends[0]) if len(ends) else length
-    return max(float(1 + 2 * shares[1:last].sum()), 1.0)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import hypot
 from typing import Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from robot_runtime.experiments.identification.fit import Fit, FitSolution, Progr
 from robot_runtime.experiments.identification.prediction import KNOWN_MOMENTS, predict
 from robot_runtime.experiments.identification.quantities import CraftQuantity
 from robot_runtime.experiments.identification.streams import (
+    AGE_DEVIATION,
     EVERY,
     STEP,
     SessionStreams,
@@ -86,8 +88,6 @@ class Identification:
     """Of each session's IMU, of shape (sessions, 6), in rad/s and m/s²; nan for one without a window."""
     windows: tuple[int, ...]
     """Number of windows of each session."""
-    correlation: Floats
-    """Samples of each channel that count as one."""
     prediction: Prediction | None
 
 
@@ -119,7 +119,6 @@ def identify(
         noise=noise,
         offsets=offsets,
         windows=counts,
-        correlation=solution.correlation,
         prediction=prediction,
     )
 
@@ -129,6 +128,9 @@ def _list_results(solution: FitSolution, start: Craft) -> tuple[QuantityResult, 
     for quantity, scaled in zip(solution.fitted, solution.deviations.tolist(), strict=True):
         value = quantity.value(solution.craft)
         deviation = quantity.deviation(scaled, value)
+        if quantity.entry == "fin_delay":
+            # It counts from the readings' ages, which no motion shows.
+            deviation = hypot(deviation, AGE_DEVIATION)
         weak = deviation > WEAK * abs(value) if not quantity.spread else scaled > WEAK * 2
         seen: Seen = "weakly" if weak else "well"
         found.append(QuantityResult(quantity, quantity.value(start), value, deviation, seen))

@@ -8,7 +8,7 @@ from robot_runtime.contract.craft import Craft
 from robot_runtime.experiments.identification.bodies import STATES, Floats
 from robot_runtime.experiments.identification.fit import FIRST_WEIGHTS
 from robot_runtime.experiments.identification.quantities import OFFSET_SPREADS
-from robot_runtime.experiments.identification.shooting import OFFSETS, START_SPREADS, Shooting
+from robot_runtime.experiments.identification.shooting import OF_A_SESSION, OFFSETS, START_SPREADS, Shooting
 from robot_runtime.experiments.identification.streams import EVERY, STEP, Windows
 
 KNOWN = 2.0
@@ -32,10 +32,11 @@ def predict(windows: Windows, craft: Craft) -> Predicted:
     shooting = Shooting(windows, craft)
     count = len(windows)
     offsets = np.zeros((count, OFFSETS))
-    none = np.zeros(OFFSETS * shooting.sessions)
+    none = np.zeros(OF_A_SESSION * shooting.sessions)
     spreads = np.array(OFFSET_SPREADS)
     own = [
-        slice(STATES + OFFSETS * session, STATES + OFFSETS * (session + 1)) for session in windows.sessions
+        slice(STATES + OF_A_SESSION * session, STATES + OF_A_SESSION * session + OFFSETS)
+        for session in windows.sessions
     ]
     errors = np.empty(0)
     for iteration in range(_ITERATIONS + 1):

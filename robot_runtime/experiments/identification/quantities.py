@@ -142,6 +142,8 @@ QUANTITIES: tuple[CraftQuantity, ...] = (
 
 OFFSET_SPREADS: tuple[float, ...] = (0.1, 0.1, 0.1, 0.3, 0.3, 0.3)
 """Spread (σ) of the offsets of turn rate (rad/s) and specific force (m/s²) before a fit."""
+ZERO_SPREAD = 0.005
+"""rad, spread (σ) of an encoder's zero before a fit; its data sheet allows 0.0087 with a centred magnet."""
 
 
 def put_all(start: Craft, quantities: Sequence[CraftQuantity], scaled: Sequence[float]) -> Craft:

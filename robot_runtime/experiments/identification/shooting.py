@@ -9,13 +9,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from robot_runtime.contract.craft import Craft
-from robot_runtime.experiments.identification.bodies import CHANNELS, STATES, Bodies, Floats
-from robot_runtime.experiments.identification.quantities import OFFSET_SPREADS, CraftQuantity, put_all
+from robot_runtime.experiments.identification.bodies import STATES, Bodies, Floats
+from robot_runtime.experiments.identification.quantities import (
+    OFFSET_SPREADS,
+    ZERO_SPREAD,
+    CraftQuantity,
+    put_all,
+)
 from robot_runtime.experiments.identification.streams import EVERY, STEP, Windows
 
 START_SPREADS = np.array([0.05, 0.3, 0.3, 0.1, 0.15, 0.15, 0.05, 0.05, 0.05])
 """Standard deviations of the guessed starts, as `STATES`."""
 OFFSETS = len(OFFSET_SPREADS)
+FINS = 4
+OF_A_SESSION = OFFSETS + FINS
+"""Numbers of each session: the IMU's offsets and the encoders' zeros."""
 _SMALL = 1e-4
 """Step of a difference quotient, in standard deviations."""
 
@@ -23,7 +31,9 @@ _SMALL = 1e-4
 class Shooting:
     """The windows, and the craft from which scaled numbers count.
 
-    `numbers` are the scaled numbers of the fitted quantities, then the scaled offsets of each session's IMU.
+    `numbers` are the scaled numbers of the fitted quantities, then for each session the scaled offsets of its
+    IMU and the scaled zeros of its encoders. Without these, a zero of 3 mrad would turn the strong strokes of
+    diving into a push forwards that is as large as the drag of slow swimming.
     `states` are the windows' starts, which its user moves.
     """
 
@@ -54,34 +64,47 @@ class Shooting:
         self.evaluations += 1
         windows, count = self.windows, len(fitted)
         craft = self.craft(fitted, numbers)
-        crafts, motions, which = [craft] * (1 + STATES), [windows.fins(craft.fin_delay)], [0] * (1 + STATES)
+        of_sessions = numbers[count:].reshape(-1, OF_A_SESSION)
+        offsets, zeros = (
+            of_sessions[:, :OFFSETS] * np.array(OFFSET_SPREADS),
+            of_sessions[:, OFFSETS:] * ZERO_SPREAD,
+        )
+        crafts, motions = [craft] * (1 + STATES), [windows.fins(craft.fin_delay, zeros)]
+        which = [0] * (1 + STATES)
         for place, quantity in enumerate(fitted):
             moved = numbers[:count].copy()
             moved[place] += _SMALL
             crafts.append(put_all(self.start, fitted, moved.tolist()))
             which.append(len(motions) if quantity.entry == "fin_delay" else 0)
             if which[-1]:
-                motions.append(windows.fins(crafts[-1].fin_delay))
+                motions.append(windows.fins(crafts[-1].fin_delay, zeros))
+        for fin in range(FINS):
+            crafts.append(craft)
+            which.append(len(motions))
+            moved = zeros.copy()
+            moved[:, fin] += _SMALL * ZERO_SPREAD
+            motions.append(windows.fins(craft.fin_delay, moved))
         starts = np.repeat(self.states[:, None, :], len(crafts), axis=1)
         for state in range(STATES):
             starts[state, 1 + state] += _SMALL * START_SPREADS[state]
         with np.errstate(over="ignore", invalid="ignore"):
             found = Bodies(crafts, motions, which).simulate(starts, STEP, EVERY)
-        offsets = numbers[count:].reshape(-1, OFFSETS) * np.array(OFFSET_SPREADS)
         base = found[:, :, 0] - windows.measured
         base[1:] += offsets.T[:, list(windows.sessions)][:, None, :]
         slopes = (found[:, :, 1:] - found[:, :, :1]) / _SMALL
         # A craft without sense may move without bounds, and the fit must be able to go back.
         base, slopes = np.nan_to_num(base, posinf=1e6, neginf=-1e6), np.nan_to_num(slopes)
-        return base.transpose(2, 0, 1), np.concatenate(
-            (slopes.transpose(3, 0, 1, 2), self._of_offsets(base.shape[1])), axis=3
-        )
+        slopes = slopes.transpose(3, 0, 1, 2)
+        common, of_zeros = slopes[..., :-FINS], slopes[..., -FINS:]
+        return base.transpose(2, 0, 1), np.concatenate((common, self._of_sessions(of_zeros)), axis=3)
 
-    def _of_offsets(self, moments: int) -> Floats:
-        """Derivatives of the errors by the sessions' scaled offsets."""
+    def _of_sessions(self, of_zeros: Floats) -> Floats:
+        """Derivatives of the errors by the sessions' scaled numbers: a window has its session's."""
         windows = self.windows
-        steady = np.zeros((len(windows), CHANNELS, moments, OFFSETS * self.sessions))
+        found = np.zeros((*of_zeros.shape[:3], OF_A_SESSION * self.sessions))
         for window, session in enumerate(windows.sessions):
+            first = session * OF_A_SESSION
             for axis, spread in enumerate(OFFSET_SPREADS):
-                steady[window, 1 + axis, :, session * OFFSETS + axis] = spread
-        return steady
+                found[window, 1 + axis, :, first + axis] = spread
+            found[window, :, :, first + OFFSETS : first + OF_A_SESSION] = of_zeros[window]
+        return found

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import BSpline, make_smoothing_spline
 
 from robot_runtime.contract.craft import Craft
 from robot_runtime.experiments.identification.bodies import CHANNELS, STATES, FinMotions, Floats
@@ -15,20 +15,31 @@ EVERY = 2
 """Steps between two moments that are compared."""
 WINDOW = 8.0
 """s. Longer than the hull's memory of its start (1 s), shorter than the time in which errors add up."""
-WINDOWS_MAX = 36
+WINDOWS_MAX = 44
 """Of a fit: more cost time, and say little more."""
 GAP = 0.1
 """s without a sample across which no window reaches."""
 COVERED = 0.08
 """m of the pressure sensor's depth from which the hull is surely under water."""
+FIN_SAMPLES_MIN = 100
+"""Of a session: two seconds, a quarter of a window."""
 DEPTH_LATENCY = 0.0145
 """s from the pressure to its sample: conversion and the board's schedule (measured on the emulated board)."""
+FIN_CUTOFF = 18.0
+"""Hz above which a fin's angle is smoothed.
+
+A fin's own motion falls with the frequency, its power spectrum with the fourth power; at 14 Hz it is as large
+as the encoder's noise and steps, which are white (measured on the emulated board). A spline through every
+sample takes this noise for motion, and finds too much damping. Smoothing above 14 Hz takes away more motion
+than it leaves noise; above 18 Hz as much, so that the mean square speed, and with it the thrust, is right."""
 _TRIMMED = 0.623
 """Mean of the 90 % smallest squares of a standard normal variable: (0.9 - 2·1.645·φ(1.645)) / 0.9."""
 MEAN_AGE = 0.0025
 """s: specific forces are means over the time since the reading before."""
 MEASURED_AGE = 0.005
 """s by which readings lie behind the fins' angles of the same time stamp (measured on the emulated board)."""
+AGE_DEVIATION = 0.0005
+"""s, standard deviation of these ages: the board reads its encoders within a millisecond."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +70,7 @@ class Windows:
 
     measured: Floats
     """The channels of shape (CHANNELS, moments, windows)."""
-    splines: tuple[CubicSpline, ...]
+    splines: tuple[BSpline, ...]
     """Each window's fin angles over time."""
     starts: tuple[float, ...]
     """Each window's first moment (s of its session)."""
@@ -71,13 +82,17 @@ class Windows:
     def __len__(self) -> int:
         return len(self.starts)
 
-    def fins(self, delay: float) -> FinMotions:
-        """The fins at every half step, as the water feels them after this delay (s)."""
+    def fins(self, delay: float, zeros: Floats) -> FinMotions:
+        """The fins at every half step, as the water feels them after this delay (s).
+
+        `zeros` (rad), of shape (sessions, fins), are what the encoders show at angle 0.
+        """
         half_steps = 2 * EVERY * (self.measured.shape[1] - 1) + 1
         grid = np.arange(half_steps) * STEP / 2 - delay
         angles = [spline(start + grid) for spline, start in zip(self.splines, self.starts, strict=True)]
         speeds = [spline(start + grid, 1) for spline, start in zip(self.splines, self.starts, strict=True)]
-        return FinMotions(np.stack(angles, axis=2), np.stack(speeds, axis=2))
+        shown = np.stack(angles, axis=2) - zeros[list(self.sessions)].T
+        return FinMotions(shown, np.stack(speeds, axis=2))
 
     def chosen(self, places: Sequence[int]) -> "Windows":
         """Some of the windows."""
@@ -98,8 +113,8 @@ def cut(sessions: Sequence[SessionStreams], craft: Craft) -> Windows:
     found = [
         (place, spline, start, *_sample(session, start, craft))
         for place, session in enumerate(sessions)
-        if len(session.motor_times) > 3
-        for spline in [CubicSpline(*_ascending(session.motor_times, np.unwrap(session.angles, axis=0)))]
+        if len(session.motor_times) >= FIN_SAMPLES_MIN
+        for spline in [_smooth_fins(session)]
         for start in _starts(session)
     ]
     if not found:
@@ -154,6 +169,19 @@ def _sample(session: SessionStreams, start: float, craft: Craft) -> tuple[Floats
     state[4:6] = roll, pitch
     state[6:9] = measured[1:4, :3].mean(axis=1)
     return measured, state
+
+
+def _smooth_fins(session: SessionStreams) -> BSpline:
+    """The fin angles over time, smoothed above `FIN_CUTOFF`.
+
+    A smoothing spline that charges λ for each unit of ∫θ̈² passes the share 1 / (1 + λ·Δt·(2πf)⁴) of a
+    frequency f (P. Craven and G. Wahba, Numerische Mathematik 31, 1979).
+    """
+    times, angles = _ascending(session.motor_times, np.unwrap(session.angles, axis=0))
+    interval = float(np.median(np.diff(times)))
+    charge = 1 / (interval * (2 * np.pi * FIN_CUTOFF) ** 4)
+    fins = [make_smoothing_spline(times, column, lam=charge) for column in angles.T]
+    return BSpline(fins[0].t, np.stack([one.c for one in fins], axis=1), fins[0].k)
 
 
 def _ascending(times: Floats, values: Floats) -> tuple[Floats, Floats]:

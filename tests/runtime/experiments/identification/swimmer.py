@@ -1,6 +1,7 @@
 """A robot that swims at random in simulated water, and its sensors' streams as a session has them.
 
-It stands in for firmware and recording: fins as the firmware turns them, readings at its rates and steps.
+It stands in for firmware and recording: fins as the firmware turns them and motors of 30 ms follow, readings
+at its rates and steps.
 """
 
 from dataclasses import replace
@@ -21,6 +22,8 @@ _DOWN, _UP = pi / 2, -pi / 2
 _TICK = 2 * pi / 1024
 _TURN, _GROWTH = 4.9, 13.3
 """rad/s by which the firmware turns fins round, and lets their amplitude grow."""
+_LAG = 0.03
+"""s, of a motor, and of the loop that holds its angle."""
 Motion = tuple[tuple[float, float, float, float], float]
 """Directions of the four fins (rad), and their amplitude from peak to peak (rad)."""
 HEAVING: tuple[Motion, ...] = (((_DOWN,) * 4, 1.6), ((_UP,) * 4, 1.6), ((_DOWN,) * 4, 0.9), ((_UP,) * 4, 0.0))
@@ -49,7 +52,8 @@ def swim(
     simulator.set_basin(Basin(30.0))
     simulator.reset(StartPose(down=6.0), seed)
     zeros = [noise.gauss(0, craft.encoder.bias) for _ in range(4)]
-    directions, angles, amplitude, until = [_DOWN] * 4, [_DOWN] * 4, 0.0, 0.0
+    directions, amplitude, until = [_DOWN] * 4, 0.0, 0.0
+    angles, speeds = [_DOWN] * 4, [0.0] * 4
     motor, imu, attitudes, depth = [], [], [], []
     for step in range(1, round(seconds / _PERIOD) + 1):
         time = step * _PERIOD
@@ -63,8 +67,11 @@ def swim(
         ]
         amplitude += max(min(motion[1] - amplitude, _GROWTH * _PERIOD), -_GROWTH * _PERIOD)
         swing = amplitude / 2 * sin(2 * pi * 1.3 * time)
-        before, angles = angles, [one + swing for one in directions]
-        speeds = [(now - old) / _PERIOD for now, old in zip(angles, before, strict=True)]
+        speeds = [
+            speed + ((one + swing - angle) / _LAG - 2 * speed) * _PERIOD / _LAG
+            for one, angle, speed in zip(directions, angles, speeds, strict=True)
+        ]
+        angles = [angle + speed * _PERIOD for angle, speed in zip(angles, speeds, strict=True)]
         fins = [*angles, *speeds, 20.0, 20.0, 20.0, 20.0, 1.0]
         reading = simulator.advance(_PERIOD, FinMotion.of(fins))
         if step % 2:
