@@ -58,8 +58,8 @@ class MarkLeaf(Leaf):
 
     def __post_init__(self) -> None:
         Leaf.__post_init__(self)
-        if not 1 <= len(self.text.strip()) <= TEXT_MAX:
-            raise ValueError(f"text has 1 to {TEXT_MAX} characters")
+        if not 1 <= len(self.text.strip()) <= TEXT_MAX or not self.text.isprintable():
+            raise ValueError(f"text has 1 to {TEXT_MAX} characters, all of which can be printed")
 
     @property
     def words(self) -> str:

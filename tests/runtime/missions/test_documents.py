@@ -143,6 +143,7 @@ def test_a_document_of_any_size_is_refused_in_bounded_time() -> None:
             "times is 1001; it must lie between",
         ),
         ("{ do = 7 }", "do is 7; it must be one of"),
+        ('{ do = "mark", text = "a\\u0000b" }', "text has 1 to"),
     ],
 )
 def test_values_beyond_their_limits_are_refused_at_their_step(step: str, said: str) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from server.cli import main
 from server.features.backup import download
-from server.http import serving
+from server.http import listener
 from server.platform.settings import Settings
 from tests.server.serving import Served, play
 from tests.server.waiting import until
@@ -66,7 +66,7 @@ def test_one_download_at_a_time_and_an_aborted_one_frees_its_place(
 def test_a_client_that_does_not_read_is_disconnected(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(serving, "USER_TIMEOUT_MS", 500)
+    monkeypatch.setattr(listener, "USER_TIMEOUT_MS", 500)
 
     async def scenario(served: Served) -> None:
         # More than all buffers between the two ends can hold.
