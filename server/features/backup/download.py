@@ -78,7 +78,7 @@ class DatabaseDownloads:
 class FileDownload(StreamingResponse):
     """Sends a file, then closes it and calls `ended`; also if the client leaves.
 
-    The connection to a client that has stopped reading ends after `server.http.serving.USER_TIMEOUT_MS`.
+    The connection to a client that has stopped reading ends after `server.http.listener.USER_TIMEOUT_MS`.
     """
 
     def __init__(self, file: BinaryIO, name: str, ended: Callable[[], None]) -> None:
