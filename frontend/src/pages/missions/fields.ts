@@ -48,14 +48,16 @@ export function unknownFields(card: Card, known: readonly StepField[]): string[]
   return Object.keys(card.fields).filter((name) => !['do', 'note', ...known.map((one) => one.name)].includes(name));
 }
 
-/** The fields of a card in words: depth 0.6 m, within 0.05 m. */
+/** The fields of a card in words: depth 0.6 m, within 0.05 m; 8 s. */
 export function fieldWords(fields: Table, known: readonly StepField[]): string {
   return Object.entries(fields)
     .filter(([name]) => name !== 'do' && name !== 'note')
     .map(([name, value]) => {
       const field = known.find((one) => one.name === name);
       const angle = field?.unit === 'rad' && typeof value === 'number';
-      return `${name} ${angle ? `${degrees(value)}°` : fieldText(field?.kind ?? 'text', value)}${field?.unit && !angle ? ` ${field.unit}` : ''}`;
+      // The unit says it already.
+      const label = name === 'seconds' ? '' : `${name} `;
+      return `${label}${angle ? `${degrees(value)}°` : fieldText(field?.kind ?? 'text', value)}${field?.unit && !angle ? ` ${field.unit}` : ''}`;
     })
     .join(', ');
 }
