@@ -60,7 +60,7 @@ def wait_for_depth(stack: Stack) -> None:
     with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
         messages.subscribe(STREAM, take)
         while not depths or depths[-1] < DEEP:
-            assert time.monotonic() < end, depths[-5:]
+            assert time.monotonic() < end, (depths[-5:], stack.api.get("/robot").json())
             time.sleep(0.05)
 
 
