@@ -27,8 +27,8 @@ WAITING := $(addprefix tests/,board/test_bootloader.py server/http/test_poor_net
 	browser/test_bring_up.py browser/test_firmware_upload.py)
 REAL_TIME = $(filter-out $(WAITING),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
 # All other tests, each part by a process of its own, the longest first. A part lacks what is a part by itself.
-PARTS := $(addprefix tests/,proofs server/features runtime/experiments proofs/test_memory.py documents \
-	proofs/test_guards.py server pages runtime) tests
+PARTS := $(addprefix tests/,proofs server/features runtime/experiments server/features/doors proofs/test_memory.py \
+	documents proofs/test_guards.py server pages runtime) tests
 
 # With a number of jobs of its own, not what another make leaves over. A failure does not hide those of what comes after it.
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
