@@ -29,6 +29,7 @@ class DoorSession:
     def __init__(self, client: DoorClient) -> None:
         self.client = client
         self._calls: set[asyncio.Task[None]] = set()
+        self._stops: set[asyncio.Task[None]] = set()
 
     async def listen(
         self,
@@ -55,20 +56,24 @@ class DoorSession:
             await asyncio.gather(*calls, return_exceptions=True)
 
     def cancel_calls(self) -> list[asyncio.Task[None]]:
-        """Give up the calls that still wait; returns them."""
+        """Give up the calls that still wait, but for STOP; returns them."""
         calls = [*self._calls]
         for call in calls:
             call.cancel()
         return calls
 
     def begin(self, call: Coroutine[Any, Any, None], *, always: bool = False) -> None:
-        """Work on a call beside the messages that follow it; STOP always may."""
+        """Work on a call beside the messages that follow it.
+
+        STOP always may, and goes on where the program leaves before it is answered.
+        """
         if not always and len(self._calls) >= CALLS_MAX:
             call.close()
             raise BusyError(f"{CALLS_MAX} calls wait already; try again when one is answered.")
         task = asyncio.create_task(call)
-        self._calls.add(task)
-        task.add_done_callback(self._calls.discard)
+        under_way = self._stops if always else self._calls
+        under_way.add(task)
+        task.add_done_callback(under_way.discard)
 
 
 def text_of(value: object, name: str) -> str:

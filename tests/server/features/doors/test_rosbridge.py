@@ -263,6 +263,32 @@ def test_a_program_drives_with_control_and_not_without(settings: Settings) -> No
     play_open(settings, scenario)
 
 
+@pytest.mark.parametrize(
+    "message",
+    [
+        {"op": "publish", "topic": "/mucat/stop", "msg": {}},
+        {"op": "call_service", "service": "/mucat/stop", "id": "1"},
+    ],
+    ids=["message", "service"],
+)
+def test_stop_goes_on_where_its_program_leaves_at_once(settings: Settings, message: dict[str, Any]) -> None:
+    async def scenario(served: Served) -> None:
+        answered = served.runtime.gates["stop"]
+        answered.clear()
+        async with open_rosbridge(served, await make_token(served)) as socket:
+            await RosbridgeClient(socket).say(**message)
+        await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
+        async with asyncio.timeout(SECONDS):
+            while any(door["clients"] for door in (await served.api.get("/doors")).json()):
+                await asyncio.sleep(0.01)
+        answered.set()
+        async with asyncio.timeout(SECONDS):
+            while ("Program", "STOP", "done") not in await acts_of(served):
+                await asyncio.sleep(0.01)
+
+    play_open(settings, scenario)
+
+
 def test_control_ends_with_the_connection(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await served.api.post("/control/release")
