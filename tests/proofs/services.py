@@ -28,7 +28,7 @@ SEND = """
 send_file(data, "/update/release", Path("/releases/{name}"), 60.0)
 print(ask(data, "POST", "/update")["phase"])
 """
-"""What the System page does: it sends a release, and begins the update."""
+"""Sends a release and begins the update, as the System page does."""
 WATCH = """
 print(ask(data, "GET", "/update")["text"])
 """

@@ -17,7 +17,7 @@ SLOW_SECONDS = 30.0
 CONFIG = "/etc/mucat/robot.toml"
 SERVICES = "mucat-runtime mucat"
 MEMORY_BYTES = 600 * 10**6
-"""What the whole computer has while it lacks memory; the robot with its emulated board needs some 350 MB."""
+"""Memory of the whole computer while it lacks some; the robot with its emulated board needs some 350 MB."""
 EATER = "ate = []\nimport time\nwhile True: ate.append(bytearray(b'x') * 4_000_000); time.sleep(0.02)"
 EATER_SECONDS = 60.0
 SERVER_ADJUSTMENT, RUNTIME_ADJUSTMENT = 500, -900

@@ -13,7 +13,7 @@ from server.features.doors.subscriptions import DoorClient
 
 CHUNK_BYTES = 65_536
 BURST_BYTES, BYTES_PER_SECOND = 524_288, 65_536
-"""What a program may send: a router of ROS 2 first tells of all its nodes."""
+"""Limit of what a program sends: a router of ROS 2 first tells of all its nodes."""
 
 MakeNode = Callable[[Ros2Session], tuple[Ros2Node, Path]]
 """Makes the robot's node for a session, and the path of the socket that leads to it. Raises OSError."""

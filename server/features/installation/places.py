@@ -37,7 +37,7 @@ class InstallPlaces:
         self.requested = self.data / "update/release.zip"
         """The release that the page has sent."""
         self.report = root / "run/mucat-update.json"
-        """How the present or last update goes."""
+        """The report of the present or last update."""
         self.lock = root / "run/mucat-update.lock"
         """Held by what changes the installation."""
         self.units = root / "etc/systemd/system"
