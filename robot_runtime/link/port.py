@@ -1,11 +1,13 @@
 """A serial port, opened for this process alone, with the file descriptor that select needs.
 
-The board's UART and the emulated board's pseudo-terminal are opened alike. Reads are done on the descriptor
-itself: pyserial's own read asks the kernel once a byte.
+The board's UART and the emulated board's pseudo-terminal are opened alike. Reads and writes are done on the
+descriptor itself: pyserial's own read asks the kernel once a byte, and its write calls a line full where the
+process was late, though the kernel has taken all bytes.
 """
 
 import os
 import select
+import time
 from typing import Self
 
 import serial
@@ -21,7 +23,7 @@ class Port:
 
     def __init__(self, path: str, baud: int) -> None:
         try:
-            self._serial = serial.Serial(path, baud, timeout=0, write_timeout=_WRITE_SECONDS, exclusive=True)
+            self._serial = serial.Serial(path, baud, timeout=0, exclusive=True)
         except (OSError, ValueError) as problem:
             raise PortError(_explain(path, problem)) from problem
         self.path = path
@@ -49,10 +51,19 @@ class Port:
 
     def write(self, data: bytes) -> None:
         """Hand all bytes to the line. Raises PortError where it does not take them in time."""
+        left = memoryview(data)
+        end = time.monotonic() + _WRITE_SECONDS
         try:
-            self._serial.write(data)
-        except (OSError, serial.SerialException) as problem:
+            while left:
+                self._wait_for_room(end)
+                left = left[os.write(self._serial.fileno(), left) :]
+        except (OSError, ValueError) as problem:
             raise PortError(f"{self.path} takes no more bytes: {problem}") from problem
+
+    def _wait_for_room(self, end: float) -> None:
+        # Asked once also where the time is over: the process may have been late, not the line.
+        if not select.select([], [self._serial.fileno()], [], max(end - time.monotonic(), 0.0))[1]:
+            raise TimeoutError(f"it stayed full for {_WRITE_SECONDS} s")
 
     def close(self) -> None:
         """Give the port back; closing twice does nothing."""

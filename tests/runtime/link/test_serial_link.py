@@ -3,6 +3,7 @@
 import errno
 import os
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -179,3 +180,35 @@ def test_a_port_without_permission_names_the_group(path: Path, monkeypatch: pyte
     monkeypatch.setattr(os, "open", refuse)
     with pytest.raises(PortError, match="may not be opened: add this user to the group dialout"):
         Port(str(path), 115_200)
+
+
+@pytest.fixture
+def line() -> Iterator[tuple[str, int]]:
+    """Path of a port, and the descriptor of its far end."""
+    far, near = os.openpty()
+    yield os.ttyname(near), far
+    os.close(near)
+    os.close(far)
+
+
+def test_a_late_process_is_not_taken_for_a_full_line(
+    line: tuple[str, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, far = line
+    write = os.write
+
+    def write_and_be_late(descriptor: int, data: bytes) -> int:
+        written = write(descriptor, data)
+        time.sleep(0.3)
+        return written
+
+    monkeypatch.setattr("os.write", write_and_be_late)
+    with Port(path, 115_200) as port:
+        port.write(b"on its way")
+    assert os.read(far, 64) == b"on its way"
+
+
+def test_a_line_that_stays_full_is_named(line: tuple[str, int]) -> None:
+    path, _ = line
+    with Port(path, 115_200) as port, pytest.raises(PortError, match="no more bytes: it stayed full"):
+        port.write(bytes(1_000_000))
