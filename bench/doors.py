@@ -1,60 +1,63 @@
 """Cost and delay of the doors for other programs, and what one that reads nothing does to the others.
 
-Each program subscribes to attitude and depth, 100 samples a second of each.
+Each program subscribes to attitude and depth, 100 samples a second of each. One of ROS 2 subscribes to
+pressure in place of depth, which has no time there.
 """
 
-import json
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
-from statistics import quantiles
-from struct import Struct
-from time import monotonic, sleep, time
+from statistics import median, quantiles
+from time import sleep
 
 import psutil
 
+from bench.connected_programs import ConnectedPrograms, ProgramDoor
 from bench.hub import process
-from bench.hub_viewers import Drain, HealthMonitor, Viewer
 from bench.processes import cpu_seconds
-from server.platform.settings import DataFolder
-from tests.shell import shell_headers
+from bench.ros2_programs import Ros2Door
+from bench.websocket_programs import foxglove_door, rosbridge_door
+from robot_runtime.config import DoorsConfig
+from server.platform.authority import Authority
+from server.platform.settings import DataFolder, Settings
 from tests.stack import free_port
 
-_PROGRAMS = (1, 10)
-_SETTLE = 3.0
-_SECONDS, _STALL_SECONDS = 8.0, 12.0
+_SETTLE = 2.0
+_SECONDS = 4.0
+_ROUNDS = 3
+_WITHOUT_SECONDS, _BESIDE_SECONDS = 3.0, 11.0
 """The latter is enough that the buffers on the way are full and the server has disconnected it."""
-_START_SECONDS = 240.0
-_SOCKET_BYTES = 4096
-_END_SECONDS = 5.0
-_FOXGLOVE = Struct("<BIQ")
-"""Before a message: an opcode, the subscription, the time (ns)."""
-
-Open = Callable[[int | None], Viewer]
+_MANY = 10
 
 
 def measure() -> dict[str, float]:
     """Latency (ms, from the sample to a program that has it) and CPU of each door."""
-    figures: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder:
-        data, port = Path(folder), free_port()
-        DataFolder(data).run.mkdir()
-        with process("doors", folder, str(port), "server/page") as server, process("source", folder):
-            doors: dict[str, Open] = {
-                "rosbridge": lambda size: _rosbridge(data, port, size),
-                "foxglove": lambda size: _foxglove(data, port, size),
-            }
-            for open_one in doors.values():
-                _wait_for_samples(open_one)
+        ros2 = f"tls/127.0.0.1:{free_port()}"
+        settings = Settings(
+            data=DataFolder(Path(folder)),
+            config=Path("robot.toml"),
+            port=free_port(),
+            doors=DoorsConfig(rosbridge=True, foxglove=True, ros2=True, ros2_listen=ros2),
+        )
+        settings.data.run.mkdir()
+        Authority(settings).prepare()
+        with (
+            process("doors", folder, str(settings.port), "server/page", ros2) as server,
+            process("source", folder),
+        ):
+            rosbridge, foxglove = rosbridge_door(settings), foxglove_door(settings)
+            rosbridge.wait()
+            foxglove.wait()
             sleep(_SETTLE)
-            figures["doors.idle_cpu_percent"] = _idle(server)
-            for name, open_one in doors.items():
-                for many in _PROGRAMS:
-                    found = _look(server, open_one, many)
-                    figures |= {f"doors.{name}.{figure}.{many}": value for figure, value in found.items()}
-                without, beside = _look_beside_stalled(open_one)
-                figures[f"doors.{name}.unstalled_latency_ms_p95"] = without
-                figures[f"doors.{name}.stalled_latency_ms_p95"] = beside
+            figures = {"doors.idle_cpu_percent": _idle(server)}
+            doors: dict[str, ProgramDoor] = {
+                "rosbridge": rosbridge,
+                "foxglove": foxglove,
+                "ros2": Ros2Door(settings),
+            }
+            for name, door in doors.items():
+                found = _look_at_one(server, door) | _look_at_many(server, door)
+                figures |= {f"doors.{name}.{figure}": value for figure, value in found.items()}
     return figures
 
 
@@ -64,103 +67,63 @@ def _idle(server: psutil.Process) -> float:
     return 100 * (cpu_seconds(server) - before) / _SECONDS
 
 
-def _look(server: psutil.Process, open_one: Open, many: int) -> dict[str, float]:
-    with HealthMonitor(open_one(None)) as timed, Drain(lambda: open_one(None), many - 1) as drain:
+class _Count:
+    """Sums up times in which programs were measured."""
+
+    def __init__(self, server: psutil.Process, programs: ConnectedPrograms) -> None:
+        self._server, self._programs = server, programs
+        self._latencies: list[float] = []
+        self._spent = self._delivered = self._seconds = 0.0
+
+    def go_on(self, seconds: float) -> float:
+        """Measure for so many s; returns the p95 of the latency in them, ms."""
+        spent = cpu_seconds(self._server)
+        self._programs.begin()
+        sleep(seconds)
+        latencies, delivered = self._programs.end()
+        self._spent += cpu_seconds(self._server) - spent
+        self._seconds += seconds
+        self._latencies += latencies
+        self._delivered += delivered
+        return _p95(latencies)
+
+    def figures(self, many: int) -> dict[str, float]:
+        """The figures of so many programs."""
+        return {
+            f"latency_ms_p50.{many}": 1000 * median(self._latencies),
+            f"latency_ms_p95.{many}": _p95(self._latencies),
+            f"cpu_percent.{many}": 100 * self._spent / self._seconds,
+            f"cpu_ms_per_1000_delivered.{many}": self._spent * 1e6 / self._delivered,
+        }
+
+
+def _look_at_one(server: psutil.Process, door: ProgramDoor) -> dict[str, float]:
+    with door.programs(1) as programs:
         sleep(_SETTLE)
-        timed.begin()
-        spent, drained = cpu_seconds(server), drain.bytes
-        sleep(_SECONDS)
-        samples, size, latencies = timed.end()
-        spent, drained = cpu_seconds(server) - spent, drain.bytes - drained
-        drain.check()
-    percentiles = quantiles(latencies, n=100)
-    return {
-        "latency_ms_p50": 1000 * percentiles[49],
-        "latency_ms_p95": 1000 * percentiles[94],
-        "cpu_percent": 100 * spent / _SECONDS,
-        "cpu_ms_per_1000_delivered": spent * 1e6 / (samples * (1 + drained / size)),
+        count = _Count(server, programs)
+        count.go_on(_SECONDS)
+    return count.figures(1)
+
+
+def _look_at_many(server: psutil.Process, door: ProgramDoor) -> dict[str, float]:
+    """Ten programs, by turns alone and beside an eleventh that reads nothing.
+
+    A busy computer makes both slower; only what the eleventh does is in the ratio.
+    """
+    with door.programs(_MANY) as programs:
+        sleep(_SETTLE)
+        alone, beside = _Count(server, programs), _Count(server, programs)
+        without, stalled = [alone.go_on(_WITHOUT_SECONDS)], []
+        for _ in range(_ROUNDS):
+            with door.stalled():
+                stalled.append(beside.go_on(_BESIDE_SECONDS))
+            without.append(alone.go_on(_WITHOUT_SECONDS))
+    return alone.figures(_MANY) | {
+        "unstalled_latency_ms_p95": median(without),
+        "stalled_latency_ms_p95": median(stalled),
+        "stalled_ratio": median(stalled) / median(without),
     }
 
 
-def _look_beside_stalled(open_one: Open) -> tuple[float, float]:
-    """The p95 of ten programs, and from the moment when an eleventh comes that reads nothing."""
-    with HealthMonitor(open_one(None)) as timed, Drain(lambda: open_one(None), 9) as drain:
-        sleep(_SETTLE)
-        timed.begin()
-        sleep(_STALL_SECONDS)
-        without = timed.end()[2]
-        stalled = open_one(_SOCKET_BYTES)
-        timed.begin()
-        sleep(_STALL_SECONDS)
-        beside = timed.end()[2]
-        drain.check()
-    _require_end(stalled)
-    without_p95, beside_p95 = (1000 * quantiles(found, n=100)[94] for found in (without, beside))
-    return without_p95, beside_p95
-
-
-def _require_end(stalled: Viewer) -> None:
-    """Read what is left of a program that was disconnected. Raises ConnectionError where it was not."""
-    end = monotonic() + _END_SECONDS
-    for _ in stalled.messages():
-        if monotonic() > end:
-            raise ConnectionError("a program that reads nothing is still connected")
-    stalled.close()
-
-
-def _rosbridge(data: Path, port: int, receive_bytes: int | None) -> Viewer:
-    headers = shell_headers(DataFolder(data))
-    viewer = Viewer(f"ws://127.0.0.1:{port}/rosbridge", _stamps, headers, receive_bytes)
-    for topic in ("/imu/data", "/mucat/depth"):
-        viewer.send(json.dumps({"op": "subscribe", "topic": topic}))
-    return viewer
-
-
-def _foxglove(data: Path, port: int, receive_bytes: int | None) -> Viewer:
-    headers = shell_headers(DataFolder(data)) | {"sec-websocket-protocol": "foxglove.websocket.v1"}
-    viewer = Viewer(f"ws://127.0.0.1:{port}/foxglove", _times, headers, receive_bytes)
-    channels = _channels(viewer)
-    wanted = [{"id": place, "channelId": channels[topic]} for place, topic in enumerate(("/imu", "/depth"))]
-    viewer.send(json.dumps({"op": "subscribe", "subscriptions": wanted}))
-    return viewer
-
-
-def _channels(viewer: Viewer) -> dict[str, int]:
-    """The numbers of the channels. Raises OSError where the connection ends before."""
-    for message in viewer.messages():
-        if isinstance(message, str) and (said := json.loads(message))["op"] == "advertise":
-            return {one["topic"]: one["id"] for one in said["channels"]}
-    raise ConnectionError("the door was closed before it listed its channels")
-
-
-def _stamps(message: str | bytes) -> list[float]:
-    said = json.loads(message)
-    if said["op"] != "publish":
-        return []
-    stamp = said["msg"].get("stamp") or said["msg"]["header"]["stamp"]
-    return [_steady(stamp["sec"] + stamp["nanosec"] / 1e9)]
-
-
-def _times(message: str | bytes) -> list[float]:
-    if isinstance(message, str) or message[0] != 1:
-        return []
-    return [_steady(_FOXGLOVE.unpack_from(message)[2] / 1e9)]
-
-
-def _steady(utc: float) -> float:
-    """A moment of UTC on the steady clock, s."""
-    return utc - time() + monotonic()
-
-
-def _wait_for_samples(open_one: Open) -> None:
-    """Wait until a program gets samples. Raises OSError where none does."""
-    end = monotonic() + _START_SECONDS
-    while True:
-        try:
-            viewer = open_one(None)
-            if any(viewer.times(message) for message in viewer.messages()):
-                return viewer.close()
-        except OSError:
-            if monotonic() > end:
-                raise
-            sleep(0.2)
+def _p95(latencies: list[float]) -> float:
+    return 1000 * quantiles(latencies, n=100)[94]

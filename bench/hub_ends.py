@@ -1,8 +1,9 @@
 """`python -m bench.hub_ends ROLE ...`: the processes whose cost and latency `bench.hub` measures.
 
-`server DATA PORT PAGE` is the server alone, `doors` the same with open doors, `source DATA` sends it samples
-over Zenoh as the runtime does, `foxglove PORT` logs the same samples to foxglove-sdk's server in its own
-process. Each runs until its standard input ends.
+`server DATA PORT PAGE` is the server alone, `doors DATA PORT PAGE ENDPOINT` the same with open doors, of
+which that for ROS 2 is at this endpoint. `source DATA` sends it samples over Zenoh as the runtime does;
+`foxglove PORT` logs the same samples to foxglove-sdk's server in its own process. Each runs until its
+standard input ends.
 """
 
 import asyncio
@@ -127,7 +128,11 @@ def main() -> None:
 
     threading.Thread(target=wait, daemon=True).start()
     if role in ("server", "doors"):
-        doors = DoorsConfig(rosbridge=True, foxglove=True) if role == "doors" else None
+        doors = (
+            DoorsConfig(rosbridge=True, foxglove=True, ros2=True, ros2_listen=rest[3])
+            if role == "doors"
+            else None
+        )
         asyncio.run(_serve(Path(rest[0]), int(rest[1]), Path(rest[2]).resolve(), ended, doors))
     elif role == "source":
         _source(Path(rest[0]), ended)

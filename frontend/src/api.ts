@@ -26,6 +26,7 @@ export type Mark = Schemas['Bookmark'];
 export type Storage = Schemas['Storage'];
 export type ExportJob = Schemas['Job'];
 export type ExportFormat = Schemas['ExportOptions']['format'];
+export type ExportCompression = Schemas['ExportOptions']['compression'];
 export type NewExport = Pick<Schemas['NewExport'], 'session' | 'format'> & Partial<Schemas['NewExport']>;
 export type DoorDetails = Schemas['DoorDetails'];
 export type Finding = Schemas['Finding'];

@@ -129,6 +129,12 @@ export const sessions = {
     topics: 'Topics',
     columns: 'Columns',
     every: 'One row every',
+    compression: 'Compression',
+    compressions: {
+      none: { title: 'None', hint: 'Every program reads it.' },
+      lz4: { title: 'LZ4', hint: 'Smaller, and quick to write.' },
+      zstd: { title: 'Zstandard', hint: 'The smallest file.' },
+    },
     create: 'Create file',
     whileRecording: 'The archive is available when the recording has ended.',
     chooseTopic: 'Select at least one topic.',

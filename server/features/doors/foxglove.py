@@ -60,6 +60,8 @@ class FoxgloveSession(DoorSession):
         self._channels: dict[int, DoorChannel] = dict(enumerate(channels, 1))
         self._published: dict[int, str] = {}
         """The topics that the program publishes, by its own numbers."""
+        self._unusable: dict[int, str] = {}
+        """The others that it has advertised: Foxglove does so for three as soon as it shows a 3D panel."""
         self._watched: set[str] = set()
         """The parameters whose changes it wants to know."""
         self._known: dict[str, Any] = {}
@@ -111,7 +113,8 @@ class FoxgloveSession(DoorSession):
             ],
         )
         self._answer(op="advertiseServices", services=advertise_services())
-        self._follow(CLOCK, lambda message: [_TIME.pack(TIME, message.time)])
+        # Now, and not the sample's time: where time goes back, programs empty their charts and logs.
+        self._follow(CLOCK, lambda _: [_TIME.pack(TIME, self._doors.utc_ns())])
         self._follow(PARAMETERS, lambda _: self._parameter_changes())
 
     def _follow(self, name: str, form: Callable[[ChannelMessage], list[bytes | str]]) -> None:
@@ -178,7 +181,8 @@ class FoxgloveSession(DoorSession):
             asked = mapping_of(one, "A channel")
             number, topic = _number(asked, "id"), text_of(asked.get("topic"), "topic")
             if topic not in TAKEN_IN:
-                raise UnusableMessageError(f"Programs may publish {', '.join(TAKEN_IN)}, and not {topic}.")
+                self._unusable[number] = topic
+                continue
             if asked.get("encoding") != "json":
                 raise UnusableMessageError(f"{topic} is taken in as json alone.")
             if type_name(text_of(asked.get("schemaName"), "schemaName")) != TAKEN_IN[topic]:
@@ -189,11 +193,13 @@ class FoxgloveSession(DoorSession):
     def _unadvertise(self, said: dict[str, Any]) -> None:
         for number in _list(said, "channelIds"):
             self._published.pop(_whole(number), None)
+            self._unusable.pop(number, None)
         self._note_published()
 
     def _note_published(self) -> None:
-        if len(self._published) > SUBSCRIPTIONS_MAX:
+        if len(self._published) + len(self._unusable) > SUBSCRIPTIONS_MAX:
             self._published.clear()
+            self._unusable.clear()
             raise UnusableMessageError(f"A program may advertise {SUBSCRIPTIONS_MAX} channels.")
         self._door.published[self.client] = frozenset(self._published.values())
         self._doors.note_change()
@@ -208,6 +214,9 @@ class FoxgloveSession(DoorSession):
                 self._commands.drive(self._pilot, linear, angular)
             except REFUSALS as problem:
                 self._say(ERROR, f"{CMD_VEL}: {problem}", "drive")
+        elif number in self._unusable:
+            refused = self._unusable[number]
+            raise UnusableMessageError(f"Programs may publish {', '.join(TAKEN_IN)}, and not {refused}.")
         else:
             raise UnusableMessageError(f"The channel {number} is not advertised.")
 

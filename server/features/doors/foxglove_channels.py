@@ -20,7 +20,7 @@ from server.features.exports.values import MICRO
 from server.features.sessions.chunks import describe_topics
 
 CLOCK, PARAMETERS = "clock", "changed parameters"
-"""Hidden channels: the time of the robot's computer, ten times a second, and changes of parameters."""
+"""Hidden channels: when to tell the time, ten times a second, and changes of parameters."""
 PICTURES = {"picture": "/camera", "observer": "/observer", "mask": "/mask", "balanced": "/balanced"}
 _TEXT = {"type": "string"}
 _WHOLE = {"type": "integer"}
@@ -106,9 +106,9 @@ def _document(sample: Sample) -> Fields:
     return dict(value)
 
 
-def _tick(sample: Sample) -> Fields:
-    """Nothing but its time."""
-    return {"time": sample.time}
+def _tick(_: Sample) -> Fields:
+    """Nothing: that it comes is enough."""
+    return {}
 
 
 def _picture(sample: Sample) -> Fields:

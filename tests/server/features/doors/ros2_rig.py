@@ -196,3 +196,17 @@ async def doors_of(served: Served) -> Sequence[dict[str, Any]]:
     (found,) = (one for one in (await served.api.get("/doors")).json() if one["name"] == "ros2")
     clients: list[dict[str, Any]] = found["clients"]
     return clients
+
+
+def subscribed(served: Served) -> set[str]:
+    """The topics that programs at the door subscribe to."""
+    return {
+        one.channel.name
+        for client in served.container.doors.doors["ros2"].clients
+        for one in client.subscriptions.values()
+    }
+
+
+def refused(served: Served) -> int:
+    """Messages and calls at the door that were refused."""
+    return sum(client.refused for client in served.container.doors.doors["ros2"].clients)

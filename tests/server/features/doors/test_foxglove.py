@@ -6,6 +6,7 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
+from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Depth
 from server.features.doors.session import INVALID_MAX
 from server.platform.settings import Settings
@@ -123,7 +124,6 @@ INVALID: tuple[str | bytes, ...] = (
     ),
     '{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 99999}]}',
     '{"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 1}]}',
-    '{"op": "advertise", "channels": [{"id": 1, "topic": "/depth", "encoding": "json", "schemaName": "a"}]}',
     '{"op": "advertise", "channels": [{"id": 1, "topic": "/cmd_vel", "encoding": "cdr", "schemaName": "a"}]}',
     '{"op": "setParameters", "parameters": []}',
     '{"op": "fetchAsset", "uri": 7, "requestId": 1}',
@@ -146,6 +146,51 @@ def test_an_invalid_message_is_answered_in_words(settings: Settings) -> None:
                 await socket.send("{")
             with pytest.raises(ConnectionClosed):
                 await next_op(socket, "never")
+
+    play_open(settings, scenario)
+
+
+def test_time_never_goes_back(settings: Settings) -> None:
+    """Samples come later than they were taken, and health between them has the time at which it is sent."""
+
+    async def scenario(served: Served) -> None:
+        async with open_foxglove(served, await make_token(served, "read")) as socket:
+            await subscribe(socket)
+            times: list[int] = []
+            for number in range(3):
+                taken = served.container.clock.now() - 0.2
+                served.container.doors.see_health([])
+                values: dict[str, Any] = dict.fromkeys(Control.wires, 0.0)
+                served.container.doors.see(rows_block("control", number, (taken, Control(**values))))
+                while len(times) < 2 * (number + 1):
+                    message = await socket.recv()
+                    if isinstance(message, bytes) and message[0] == 2:
+                        times.append(unpack_from("<Q", message, 1)[0])
+            assert times == sorted(times)
+            assert abs(times[-1] - served.container.doors.utc_ns()) < 60e9
+
+    play_open(settings, scenario)
+
+
+def test_a_topic_that_programs_may_not_publish_is_refused_with_its_first_message(settings: Settings) -> None:
+    """Foxglove and Lichtblick advertise three such topics for each 3D panel, again and again."""
+
+    async def scenario(served: Served) -> None:
+        async with open_foxglove(served, await make_token(served)) as socket:
+            goal = {"topic": "/move_base_simple/goal", "encoding": "json", "schemaName": "a"}
+            stop = {"topic": "/mucat/stop", "encoding": "json", "schemaName": "std_msgs/Empty"}
+            for number in range(INVALID_MAX + 1):
+                both = [goal | {"id": number}, stop | {"id": 1000 + number}]
+                await socket.send(json.dumps({"op": "advertise", "channels": both}))
+                if number > 0:
+                    gone = [number - 1, 999 + number]
+                    await socket.send(json.dumps({"op": "unadvertise", "channelIds": gone}))
+            await socket.send(pack("<BI", 1, INVALID_MAX) + b"{}")
+            assert "and not /move_base_simple/goal" in (await next_op(socket, "status"))["message"]
+            await socket.send(pack("<BI", 1, 0) + b"{}")
+            assert "is not advertised" in (await next_op(socket, "status"))["message"]
+            await socket.send(pack("<BI", 1, 1000 + INVALID_MAX) + b"{}")
+            await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
 
     play_open(settings, scenario)
 

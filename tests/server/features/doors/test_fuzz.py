@@ -2,24 +2,17 @@
 
 import asyncio
 import json
-from collections.abc import Iterator
 from contextlib import suppress
 from struct import pack
 
-import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_runtime.clock import Clock
 from server.container import Container
-from server.features.doors.commands import DoorCommands, DoorPilot
 from server.features.doors.foxglove import FoxgloveSession
 from server.features.doors.rosbridge import REFUSED_OPS, RosbridgeSession
 from server.features.doors.session import UnusableMessageError
-from server.features.doors.subscriptions import DoorClient
-from server.http.sign_in.identity import SHELL
-from server.platform.settings import Settings
-from tests.server.new_database import place_empty
+from tests.server.features.doors.fuzz_rig import CHECKS, join_door
 
 EXAMPLES = 150
 NAMES = ["/depth", "/cmd_vel", "/mucat/stop", "/rosapi/topics", "/mucat/arm", "rosapi/get_param", "/tf", ""]
@@ -66,35 +59,13 @@ BINARY = st.binary(max_size=40) | st.builds(
 )
 
 
-@pytest.fixture
-def container(settings: Settings) -> Iterator[Container]:
-    place_empty(settings.data)
-    container = Container(settings, (), "mucat_token")
-    yield container
-    container.store.close()
-    container.audit.close()
-
-
 def act(
     container: Container, door: str, kind: type[RosbridgeSession | FoxgloveSession], message: str | bytes
 ) -> None:
     async def run() -> None:
-        async def send(_: str | bytes) -> None:
-            raise AssertionError("nothing is sent")
-
         opened = container.doors.doors[door]
-        commands = DoorCommands(
-            f"/{door}",
-            container.clock,
-            container.access,
-            container.commands,
-            container.bridge,
-            container.arbiter,
-            container.audit,
-        )
-        with container.arbiter.page(SHELL) as owner:
-            client = DoorClient(1, SHELL, "", send, container.services[Clock])  # type: ignore[arg-type]
-            session = kind(client, DoorPilot(owner, ""), container.doors, opened, commands)
+        with join_door(container, door) as (client, pilot, commands):
+            session = kind(client, pilot, container.doors, opened, commands)
             with suppress(UnusableMessageError):
                 session.act(message)
             session.cancel_calls()
@@ -103,9 +74,6 @@ def act(
             opened.published.clear()
 
     asyncio.run(run())
-
-
-CHECKS = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 
 
 @settings(max_examples=EXAMPLES, suppress_health_check=CHECKS)

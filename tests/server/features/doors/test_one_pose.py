@@ -11,6 +11,7 @@ import tempfile
 import zipfile
 from collections.abc import Sequence
 from contextlib import AsyncExitStack
+from dataclasses import asdict, replace
 from functools import partial
 from itertools import count
 from pathlib import Path
@@ -26,11 +27,12 @@ from server.features.exports.formats import KINDS
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.sessions.session import find_row
+from server.platform.authority import Authority
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Reader
 from tests.server.blocks import state_block
+from tests.server.features.doors import ros2_rig
 from tests.server.features.doors.rig import (
-    OPEN,
     RosbridgeClient,
     imu,
     make_token,
@@ -40,7 +42,7 @@ from tests.server.features.doors.rig import (
 )
 from tests.server.features.doors.test_foxglove import next_message, open_foxglove, subscribe
 from tests.server.serving import Served, serve
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 
 Pose = tuple[float, float, float, float]
 """Roll, pitch, yaw (rad; right side down, nose up, to the right) and depth (m, downwards)."""
@@ -52,12 +54,20 @@ TRUTH: tuple[Pose, ...] = (
     (0.0, 0.0, 0.9, 1.0),
     (-0.5, 0.25, -2.5, 1.25),
 )
+ROS_TOPICS = {
+    "/imu/data": "sensor_msgs/msg/Imu",
+    "/depth": "std_msgs/msg/Float64",
+    "/truth/odometry": "nav_msgs/msg/Odometry",
+    "/pose": "geometry_msgs/msg/PoseStamped",
+    "/tf": "tf2_msgs/msg/TFMessage",
+}
+ROS_DOORS = ("rosbridge", "ROS 2")
 WAYS = (
-    "rosbridge: /imu/data and /depth",
-    "rosbridge: /truth/odometry",
-    "rosbridge: /pose",
+    *(f"{door}: /imu/data and /depth" for door in ROS_DOORS),
+    *(f"{door}: {topic}" for door in ROS_DOORS for topic in ("/truth/odometry", "/pose", "/tf")),
     "Foxglove: /imu and /depth",
     "Foxglove: /pose",
+    "Foxglove: /tf",
     "Python: live",
     "Python: session of the server",
     "Python: data folder",
@@ -116,36 +126,65 @@ def foxglove_pose(message: dict[str, Any]) -> Pose:
     return pose_of([pose["orientation"][axis] for axis in "wxyz"], pose["position"]["z"])
 
 
+def foxglove_transform(message: dict[str, Any]) -> Pose:
+    """The pose of a foxglove.FrameTransform from the frame `ned`."""
+    assert (message["parent_frame_id"], message["child_frame_id"]) == ("ned", "turtle")
+    return pose_of([message["rotation"][axis] for axis in "wxyz"], message["translation"]["z"])
+
+
 def frame_poses(imus: pandas.DataFrame, depths: pandas.DataFrame) -> list[Pose]:
     """The poses in two tables."""
     attitudes = imus[[f"attitude_{place}" for place in range(4)]].to_numpy().tolist()
     return [pose_of(one, depth) for one, depth in zip(attitudes, depths["depth"], strict=True)]
 
 
+def ros_poses(door: str, found: dict[str, list[Any]]) -> dict[str, list[Pose]]:
+    """The poses by ROS's messages of these topics."""
+    measured = zip(found["/imu/data"], found["/depth"], strict=True)
+    odometry = [one["pose"]["pose"] for one in found["/truth/odometry"]]
+    poses = [one["pose"] for one in found["/pose"]]
+    transforms = [one["transforms"][0]["transform"] for one in found["/tf"]]
+    return {
+        f"{door}: /imu/data and /depth": [
+            ros_pose(one["orientation"], depth["data"]) for one, depth in measured
+        ],
+        f"{door}: /truth/odometry": [ros_pose(one["orientation"], -one["position"]["z"]) for one in odometry],
+        f"{door}: /pose": [ros_pose(one["orientation"], -one["position"]["z"]) for one in poses],
+        f"{door}: /tf": [ros_pose(one["rotation"], -one["translation"]["z"]) for one in transforms],
+    }
+
+
+def is_whole(found: dict[Any, list[Any]]) -> bool:
+    """True where all messages have come."""
+    return all(len(messages) >= len(TRUTH) for messages in found.values())
+
+
 async def from_rosbridge(client: RosbridgeClient) -> dict[str, list[Pose]]:
-    found: dict[str, list[Any]] = {name: [] for name in ("/imu/data", "/depth", "/truth/odometry", "/pose")}
-    while any(len(one) < len(TRUTH) for one in found.values()):
+    found: dict[str, list[Any]] = {topic: [] for topic in ROS_TOPICS}
+    while not is_whole(found):
         message = await client.next("publish")
         found[message["topic"]].append(message["msg"])
-    measured = zip(found["/imu/data"], found["/depth"], strict=True)
-    whole = [one["pose"]["pose"] for one in found["/truth/odometry"]]
-    poses = [one["pose"] for one in found["/pose"]]
-    return {
-        WAYS[0]: [ros_pose(one["orientation"], depth["data"]) for one, depth in measured],
-        WAYS[1]: [ros_pose(one["orientation"], -one["position"]["z"]) for one in whole],
-        WAYS[2]: [ros_pose(one["orientation"], -one["position"]["z"]) for one in poses],
-    }
+    return ros_poses("rosbridge", found)
+
+
+async def from_ros2(peer: ros2_rig.Ros2Peer) -> dict[str, list[Pose]]:
+    found: dict[str, list[Any]] = {topic: [] for topic in ROS_TOPICS}
+    while not is_whole(found):
+        topic, message = await asyncio.to_thread(peer.received.get, timeout=SECONDS)
+        found[topic].append(asdict(message))
+    return ros_poses("ROS 2", found)
 
 
 async def from_foxglove(socket: Any, numbers: dict[str, int]) -> dict[str, list[Pose]]:
     found: dict[int, list[Any]] = {number: [] for number in numbers.values()}
-    while any(len(one) < len(TRUTH) for one in found.values()):
+    while not is_whole(found):
         number, _, message = await next_message(socket)
         found[number].append(message)
     measured = zip(found[numbers["/imu"]], found[numbers["/depth"]], strict=True)
     return {
-        WAYS[3]: [pose_of(one["attitude"], depth["depth"]) for one, depth in measured],
-        WAYS[4]: [*map(foxglove_pose, found[numbers["/pose"]])],
+        "Foxglove: /imu and /depth": [pose_of(one["attitude"], depth["depth"]) for one, depth in measured],
+        "Foxglove: /pose": [*map(foxglove_pose, found[numbers["/pose"]])],
+        "Foxglove: /tf": [*map(foxglove_transform, found[numbers["/tf"]])],
     }
 
 
@@ -161,7 +200,7 @@ async def from_python(robot: Robot, reading: asyncio.Event) -> dict[str, list[Po
             depths.append(sample["depth"])
         if len(attitudes) == len(depths) == len(TRUTH):
             break
-    return {WAYS[5]: [pose_of(one, depth) for one, depth in zip(attitudes, depths, strict=True)]}
+    return {"Python: live": [pose_of(one, depth) for one, depth in zip(attitudes, depths, strict=True)]}
 
 
 def from_files(served: Served, token: str, session: int, folder: Path) -> dict[str, list[Pose]]:
@@ -169,8 +208,8 @@ def from_files(served: Served, token: str, session: int, folder: Path) -> dict[s
     sessions = Sessions(f"http://127.0.0.1:{served.settings.port}", token)
     found = {}
     for way, tables in (
-        (WAYS[6], sessions.load(session)),
-        (WAYS[7], FolderSessions(served.settings.data.path).load(session)),
+        ("Python: session of the server", sessions.load(session)),
+        ("Python: data folder", FolderSessions(served.settings.data.path).load(session)),
     ):
         found[way] = frame_poses(tables.pandas("imu"), tables.pandas("depth"))
     return found | from_exports(served.settings, session, folder)
@@ -192,9 +231,9 @@ def from_exports(settings: Settings, session: int, folder: Path) -> dict[str, li
             messages[channel.topic].append(json.loads(message.data))
     measured = zip(messages["/imu"], messages["/depth"], strict=True)
     return {
-        WAYS[8]: frame_poses(imus, depths),
-        WAYS[9]: [pose_of(one["attitude"], depth["depth"]) for one, depth in measured],
-        WAYS[10]: [*map(foxglove_pose, messages["/pose"])],
+        "CSV": frame_poses(imus, depths),
+        "MCAP: /imu and /depth": [pose_of(one["attitude"], depth["depth"]) for one, depth in measured],
+        "MCAP: /pose": [*map(foxglove_pose, messages["/pose"])],
     }
 
 
@@ -209,17 +248,22 @@ async def dive(served: Served, folder: Path) -> dict[str, list[Pose]]:
     token = await make_token(served)
     async with AsyncExitStack() as stack:
         client = RosbridgeClient(await stack.enter_async_context(open_rosbridge(served, token)))
-        for topic in ("/imu/data", "/depth", "/truth/odometry", "/pose"):
+        credentials = ros2_rig.tls_settings(served, await ros2_rig.issue(served, "read"))
+        peer = await stack.enter_async_context(ros2_rig.ros2_peer(served, credentials))
+        for topic, kind in ROS_TOPICS.items():
             await client.say(op="subscribe", topic=topic)
+            await asyncio.to_thread(peer.subscribe, topic, kind)
+        await until(lambda: ros2_rig.subscribed(served) == ROS_TOPICS.keys(), "the subscriptions")
         await client.call("/rosapi/get_time")
         socket = await stack.enter_async_context(open_foxglove(served, token))
-        numbers = await subscribe(socket, "/imu", "/depth", "/pose")
+        numbers = await subscribe(socket, "/imu", "/depth", "/pose", "/tf")
         reading = asyncio.Event()
         robot = Robot(f"http://127.0.0.1:{served.settings.port}", token)
         programs = [
             asyncio.create_task(work)
             for work in (
                 from_rosbridge(client),
+                from_ros2(peer),
                 from_foxglove(socket, numbers),
                 from_python(robot, reading),
             )
@@ -260,8 +304,12 @@ def poses() -> dict[str, list[Pose]]:
         config = Path(name) / "robot.toml"
         config.write_text('[robot]\nname = "tested"\n', encoding="utf-8")
 
+        doors = replace(ros2_rig.OPEN, foxglove=True)
+        settings = Settings(data=folder, config=config, robot="tested", doors=doors)
+        Authority(settings).prepare()
+
         async def perform() -> dict[str, list[Pose]]:
-            async with serve(Settings(data=folder, config=config, robot="tested", doors=OPEN)) as served:
+            async with serve(settings) as served:
                 return await dive(served, Path(name))
 
         return asyncio.run(perform())

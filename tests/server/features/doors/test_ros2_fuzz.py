@@ -1,32 +1,27 @@
 """Anything at all as a message or call of a ROS 2 program: it is used, or refused and counted."""
 
 import asyncio
-from collections.abc import Coroutine, Iterator
+from collections.abc import Coroutine
 from contextlib import suppress
 from struct import pack
 from typing import Any
 from unittest.mock import MagicMock
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_runtime.clock import Clock
 from server.container import Container
-from server.features.doors.commands import DoorCommands, DoorPilot
+from server.features.doors.commands import DoorCommands
 from server.features.doors.ros2_messages import TRIGGER, ros2_types
 from server.features.doors.ros2_names import Attachment
 from server.features.doors.ros2_node import Incoming
 from server.features.doors.ros2_session import Ros2Session, ros2_endpoints
 from server.features.doors.ros_channels import standard_channels
 from server.features.doors.session import UnusableMessageError
-from server.features.doors.subscriptions import DoorClient
-from server.http.sign_in.identity import SHELL
-from server.platform.settings import Settings
-from tests.server.new_database import place_empty
+from tests.server.features.doors.fuzz_rig import CHECKS, join_door
 
 EXAMPLES = 200
-CHECKS = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 NUMBERS = st.lists(st.floats() | st.floats(-2, 2), min_size=6, max_size=6)
 PAYLOADS = (
     st.none()
@@ -34,15 +29,6 @@ PAYLOADS = (
     | st.builds(lambda head, rest: head + rest, st.sampled_from([b"\0\1\0\0", b"\0\0\0\0"]), st.binary())
     | NUMBERS.map(lambda six: b"\0\1\0\0" + pack("<6d", *six))
 )
-
-
-@pytest.fixture
-def container(settings: Settings) -> Iterator[Container]:
-    place_empty(settings.data)
-    container = Container(settings, (), "mucat_token")
-    yield container
-    container.store.close()
-    container.audit.close()
 
 
 @settings(max_examples=EXAMPLES, suppress_health_check=CHECKS)
@@ -56,24 +42,11 @@ def test_the_door_uses_or_refuses_anything(
     query: Any = object() if endpoint.kind == "SS" else None
 
     async def run() -> None:
-        async def send(_: str | bytes) -> None:
-            raise AssertionError("nothing is sent")
-
         async def writable() -> None:
             pass
 
-        commands = DoorCommands(
-            "/ros2",
-            container.clock,
-            container.access,
-            container.commands,
-            container.bridge,
-            container.arbiter,
-            container.audit,
-        )
-        with container.arbiter.page(SHELL) as owner:
-            client = DoorClient(1, SHELL, "", send, container.services[Clock])  # type: ignore[arg-type]
-            session = Ros2Session(client, DoorPilot(owner, ""), container.doors, commands, writable)
+        with join_door(container, "ros2") as (client, pilot, commands):
+            session = Ros2Session(client, pilot, container.doors, commands, writable)
             calls: list[Coroutine[Any, Any, None]] = []
             session.begin = lambda call, **_: calls.append(call)  # type: ignore[method-assign]
             session.act(Incoming(endpoint, typed, payload, attachment, query), None)  # type: ignore[arg-type]

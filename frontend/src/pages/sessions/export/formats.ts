@@ -1,5 +1,5 @@
 /** The formats, in the order in which they are offered. */
-import type { ExportFormat } from '../../../api';
+import type { ExportCompression, ExportFormat } from '../../../api';
 import { sessions as texts } from '../../../texts/sessions';
 
 export interface Choice {
@@ -17,6 +17,9 @@ export const CHOICES: readonly Choice[] = [
   { format: 'report', parts: 'whole' },
   { format: 'archive', parts: 'whole' },
 ];
+
+/** Of MCAP, the smallest file last. */
+export const COMPRESSIONS: readonly ExportCompression[] = ['none', 'lz4', 'zstd'];
 
 /** Columns of the joined table where nobody has chosen others; their topics' own clocks are rarely wanted. */
 export const USUAL_COLUMNS = ['depth.depth', 'control.set_point', 'control.output', 'imu.attitude_0', 'imu.attitude_1', 'imu.attitude_2', 'imu.attitude_3', 'status.battery'];

@@ -1,0 +1,39 @@
+"""What the measurement of a door needs of the programs at it."""
+
+from contextlib import AbstractContextManager
+from time import monotonic, time
+from typing import Protocol
+
+END_SECONDS = 5.0
+"""s for what is left in the buffers of a connection that the server has ended."""
+
+
+class ConnectedPrograms(Protocol):
+    """Programs at a door, which read all that comes."""
+
+    def begin(self) -> None:
+        """Count from now on."""
+
+    def end(self) -> tuple[list[float], float]:
+        """How late each message of the first program was since `begin`, s, and the number of those of all.
+
+        Raises ConnectionError where one was disconnected.
+        """
+
+
+class ProgramDoor(Protocol):
+    """A door of a server that runs."""
+
+    def programs(self, many: int) -> AbstractContextManager[ConnectedPrograms]:
+        """So many programs, which subscribe to attitude and depth."""
+
+    def stalled(self) -> AbstractContextManager[None]:
+        """One more program, which subscribes to more and reads nothing.
+
+        Raises ConnectionError where it is not disconnected.
+        """
+
+
+def steady_time(utc: float) -> float:
+    """A moment of UTC on the steady clock, s."""
+    return utc - time() + monotonic()

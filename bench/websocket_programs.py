@@ -1,0 +1,137 @@
+"""Programs at the doors of rosbridge and Foxglove."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from struct import Struct
+from time import monotonic, sleep
+
+from bench.connected_programs import END_SECONDS, steady_time
+from bench.hub_ends import TOPICS
+from bench.hub_viewers import Drain, HealthMonitor, Viewer
+from server.platform.settings import Settings
+from tests.shell import shell_headers
+
+_START_SECONDS = 240.0
+_FOXGLOVE = Struct("<BIQ")
+"""Before a message: an opcode, the subscription, the time (ns)."""
+
+Open = Callable[[bool], Viewer]
+"""Opens a program that subscribes to attitude and depth, or with True to all topics."""
+
+
+class WebSocketDoor:
+    """A door, and how a program is opened there."""
+
+    def __init__(self, open_one: Open) -> None:
+        self._open_one = open_one
+
+    def wait(self) -> None:
+        """Wait until a program gets samples. Raises OSError where none does."""
+        end = monotonic() + _START_SECONDS
+        while True:
+            try:
+                viewer = self._open_one(False)
+                if any(viewer.times(message) for message in viewer.messages()):
+                    return viewer.close()
+            except OSError:
+                if monotonic() > end:
+                    raise
+                sleep(0.2)
+
+    @contextmanager
+    def programs(self, many: int) -> Iterator["WebSocketPrograms"]:
+        """So many programs."""
+        with (
+            HealthMonitor(self._open_one(False)) as timed,
+            Drain(lambda: self._open_one(False), many - 1) as drain,
+        ):
+            yield WebSocketPrograms(timed, drain)
+
+    @contextmanager
+    def stalled(self) -> Iterator[None]:
+        """One more program, which subscribes to more and reads nothing.
+
+        Raises ConnectionError where it is not disconnected.
+        """
+        stalled = self._open_one(True)
+        yield
+        end = monotonic() + END_SECONDS
+        for _ in stalled.messages():
+            if monotonic() > end:
+                raise ConnectionError("a program that reads nothing is still connected")
+        stalled.close()
+
+
+class WebSocketPrograms:
+    """Counts the messages of programs; those of the first are timed, and the bytes of the others counted."""
+
+    def __init__(self, timed: HealthMonitor, drain: Drain) -> None:
+        self._timed, self._drain = timed, drain
+        self._drained = 0
+
+    def begin(self) -> None:
+        """Count from now on."""
+        self._timed.begin()
+        self._drained = self._drain.bytes
+
+    def end(self) -> tuple[list[float], float]:
+        """How late each message of the first was, s, and the number of all. Raises ConnectionError."""
+        samples, size, latencies = self._timed.end()
+        drained = self._drain.bytes - self._drained
+        self._drain.check()
+        return latencies, samples * (1 + drained / size)
+
+
+def rosbridge_door(settings: Settings) -> WebSocketDoor:
+    """The door of rosbridge."""
+
+    def open_one(all_topics: bool) -> Viewer:
+        viewer = Viewer(_address(settings, "rosbridge"), _stamps, shell_headers(settings.data))
+        more = [f"/mucat/{topic}" for topic in TOPICS if topic != "depth"] if all_topics else []
+        for topic in ("/imu/data", "/mucat/depth", *more):
+            viewer.send(json.dumps({"op": "subscribe", "topic": topic}))
+        return viewer
+
+    return WebSocketDoor(open_one)
+
+
+def foxglove_door(settings: Settings) -> WebSocketDoor:
+    """The door of Foxglove."""
+
+    def open_one(all_topics: bool) -> Viewer:
+        headers = shell_headers(settings.data) | {"sec-websocket-protocol": "foxglove.websocket.v1"}
+        viewer = Viewer(_address(settings, "foxglove"), _times, headers)
+        topics = TOPICS if all_topics else ("imu", "depth")
+        channels = _channels(viewer)
+        asked = [{"id": place, "channelId": channels[f"/{one}"]} for place, one in enumerate(topics)]
+        viewer.send(json.dumps({"op": "subscribe", "subscriptions": asked}))
+        return viewer
+
+    return WebSocketDoor(open_one)
+
+
+def _address(settings: Settings, door: str) -> str:
+    return f"ws://127.0.0.1:{settings.port}/{door}"
+
+
+def _channels(viewer: Viewer) -> dict[str, int]:
+    """The numbers of the channels. Raises OSError where the connection ends before."""
+    for message in viewer.messages():
+        if isinstance(message, str) and (said := json.loads(message))["op"] == "advertise":
+            return {one["topic"]: one["id"] for one in said["channels"]}
+    raise ConnectionError("the door was closed before it listed its channels")
+
+
+def _stamps(message: str | bytes) -> list[float]:
+    said = json.loads(message)
+    if said["op"] != "publish":
+        return []
+    stamp = said["msg"].get("stamp") or said["msg"]["header"]["stamp"]
+    return [steady_time(stamp["sec"] + stamp["nanosec"] / 1e9)]
+
+
+def _times(message: str | bytes) -> list[float]:
+    if isinstance(message, str) or message[0] != 1:
+        return []
+    return [steady_time(_FOXGLOVE.unpack_from(message)[2] / 1e9)]

@@ -1,0 +1,32 @@
+"""The form of a session's page that makes files."""
+
+import pytest
+from mcap.reader import make_reader
+from playwright.sync_api import Page, ViewportSize, expect
+
+from tests.browser.opening import DESKTOP, PHONE
+from tests.browser.pages import SESSIONS, fill
+from tests.browser.site import Site
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_a_person_chooses_the_compression_of_mcap_alone(page: Page, site: Site, size: ViewportSize) -> None:
+    fill(site)
+    numbers = {one["name"]: one["id"] for one in site.api.get("/sessions").json()}
+    page.set_viewport_size(size)
+    page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}")
+    form = page.get_by_role("region", name="Export")
+    choice = form.get_by_role("group", name="Compression")
+    expect(form.get_by_role("radio", name="MCAP")).to_be_visible()
+    expect(choice).to_be_hidden()
+    form.get_by_role("radio", name="MCAP").check()
+    expect(choice.get_by_role("button", name="None")).to_have_attribute("aria-pressed", "true")
+    choice.get_by_role("button", name="Zstandard").click()
+    form.get_by_role("button", name="Create file").click()
+    with page.expect_download() as awaited:
+        form.get_by_role("link", name="Download").click()
+    with awaited.value.path().open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    assert {chunk.compression for chunk in summary.chunk_indexes} == {"zstd"}
+    form.get_by_role("button", name="Delete").click()

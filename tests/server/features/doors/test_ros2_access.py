@@ -1,0 +1,102 @@
+"""The certificates with which programs of ROS 2 get in, and how their access ends."""
+
+import asyncio
+import time
+from dataclasses import replace
+from typing import Any
+
+import zenoh
+
+from server.platform.authority import Authority
+from server.platform.settings import Settings
+from tests.server.features.doors.rig import (
+    acts_of,
+)
+from tests.server.features.doors.ros2_rig import (
+    issue,
+    open_zenoh,
+    play_ros2,
+    ros2_peer,
+    subscribed,
+    tls_settings,
+)
+from tests.server.serving import Served, play
+from tests.server.waiting import SECONDS, until
+
+
+def test_the_door_is_closed_unless_the_configuration_opens_it(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        (door,) = (one for one in (await served.api.get("/doors")).json() if one["name"] == "ros2")
+        assert (door["open"], door["clients"]) == (False, [])
+        assert served.container.ros2.address == ("", 0)
+
+    play(settings, scenario)
+
+
+def test_only_a_certificate_that_is_in_force_gets_in(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        folder = await issue(served)
+        base = settings.data.path.parent
+        await asyncio.to_thread(Authority(served.settings).issue, "pool", base / "simulator")
+        other = replace(served.settings, data=type(settings.data)(base / "other"))
+        await asyncio.to_thread(Authority(other).issue_program, "anything", base / "stranger")
+        (base / "stranger" / "authority.pem").write_bytes((folder / "authority.pem").read_bytes())
+        whole = tls_settings(served, folder)
+        plain = {"connect/endpoints": [whole["connect/endpoints"][0].replace("tls", "tcp")]}
+        assert not await gets_something(plain)
+        for name in ("simulator", "stranger"):
+            assert not await gets_something(tls_settings(served, base / name))
+        assert await gets_something(tls_settings(served, folder), SECONDS)
+        assert ("", "Open a door", "refused") in await acts_of(served)
+        devices = (await served.api.get("/access/devices")).json()
+        (device,) = (one["id"] for one in devices if one["name"] == "Lab")
+        (await served.api.delete(f"/access/devices/{device}")).raise_for_status()
+        assert not await gets_something(tls_settings(served, folder))
+
+    play_ros2(settings, scenario)
+
+
+def test_a_revoked_certificate_ends_its_connection_and_control(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await served.api.post("/control/release")
+        folder = await issue(served)
+        async with ros2_peer(served, tls_settings(served, folder)) as peer:
+            assert (await asyncio.to_thread(peer.call, "/mucat/take_control"))[0] is True
+            devices = (await served.api.get("/access/devices")).json()
+            (device,) = (one["id"] for one in devices if one["name"] == "Lab")
+            (await served.api.delete(f"/access/devices/{device}")).raise_for_status()
+            await until(lambda: served.container.arbiter.lease.holder is None, "control to be free")
+            await until(lambda: not served.container.doors.doors["ros2"].clients, "the end")
+            await until(lambda: not [*settings.data.run.glob("ros2-*")], "its socket to be removed")
+
+    play_ros2(settings, scenario)
+
+
+def test_a_certificate_that_ends_ends_its_connection(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        folder = await issue(served, "read")
+        (device,) = (one for one in served.container.access.devices.all() if one.name == "Lab")
+        device.ends = time.time() + 3
+        async with ros2_peer(served, tls_settings(served, folder)) as peer:
+            await asyncio.to_thread(peer.subscribe, "/depth", "std_msgs/msg/Float64")
+            await until(lambda: subscribed(served) == {"/depth"}, "the subscription")
+            await until(lambda: not served.container.doors.doors["ros2"].clients, "the end")
+            assert time.time() >= device.ends
+
+    play_ros2(settings, scenario)
+
+
+async def gets_something(values: dict[str, Any], seconds: float = 2.0) -> bool:
+    """True if a session with these settings sees the robot's node within this time."""
+
+    def look() -> bool:
+        try:
+            session = open_zenoh({"mode": "client", "connect/timeout_ms": int(seconds * 1000)} | values)
+        except zenoh.ZError:
+            return False
+        try:
+            return any(one.ok for one in session.liveliness().get("@ros2_lv/**", timeout=seconds))
+        finally:
+            session.close()  # type: ignore[no-untyped-call]
+
+    return await asyncio.to_thread(look)

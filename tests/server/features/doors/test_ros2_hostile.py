@@ -1,0 +1,163 @@
+"""Programs of ROS 2 that send nonsense or too much, or read nothing: with the real Zenoh."""
+
+import asyncio
+from contextlib import suppress
+
+import pytest
+import zenoh
+
+from server.features.doors.ros2_messages import PAYLOAD_MAX
+from server.features.doors.ros2_node import read_payload
+from server.platform.settings import Settings
+from tests.server.blocks import picture_block
+from tests.server.features.doors.rig import (
+    RosbridgeClient,
+    make_token,
+    open_rosbridge,
+)
+from tests.server.features.doors.ros2_rig import (
+    doors_of,
+    issue,
+    open_zenoh,
+    play_ros2,
+    refused,
+    ros2_peer,
+    subscribed,
+    tls_settings,
+)
+from tests.server.serving import Served
+from tests.server.waiting import until
+
+
+def test_what_is_not_valid_is_refused_and_counted(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        folder = await issue(served)
+        session = await asyncio.to_thread(open_zenoh, {"mode": "client"} | tls_settings(served, folder))
+        try:
+            names = ("%cmd_vel", "%mucat%arm")
+            twist, arm = [await asyncio.to_thread(key_of, session, name) for name in names]
+            cut, filled = b"\0\1\0\0", b"\0\1\0\0" + b"\xff" * 48
+            bad = [b"", b"\0", cut, filled, b"\7\7\0\0" + bytes(48), bytes(5000), bytes(10**6)]
+            for payload in bad:
+                session.put(twist, payload)
+            session.put("0/cmd_vel/geometry_msgs::msg::dds_::TwistStamped_/RIHS01_0", bytes(60))
+            await until(lambda: refused(served) >= len(bad), "the refusals")
+            for payload in bad[:4]:
+                assert not await asyncio.to_thread(answers, session, arm, payload)
+            assert served.runtime.driven == []
+            session.put("0/mucat/stop/std_msgs::msg::dds_::Bool_/RIHS01_0", b"")
+            await until(lambda: ("stop", {}) in served.runtime.asked, "STOP by whatever message")
+            assert [name for name, _ in served.runtime.asked if name != "there"] == ["stop"]
+            await until(lambda: refused(served) >= len(bad) + 4, "the calls to be refused")
+            (client,) = await doors_of(served)
+            assert client["refused"] >= len(bad) + 4
+        finally:
+            await asyncio.to_thread(session.close)
+
+    play_ros2(settings, scenario)
+
+
+def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.features.doors.subscriptions.STALL_SECONDS", 1.0)
+
+    async def scenario(served: Served) -> None:
+        folder, token = await issue(served, "read"), await make_token(served, "read", "Page")
+        values = tls_settings(served, folder)
+        reading = asyncio.Event()
+        reading.set()
+        relay = await asyncio.start_server(
+            lambda reader, writer: pass_on(served, reader, writer, reading), "127.0.0.1", 0
+        )
+        port = relay.sockets[0].getsockname()[1]
+        topic = "/camera/image/compressed"
+        async with (
+            relay,
+            ros2_peer(served, values | {"connect/endpoints": [f"tls/127.0.0.1:{port}"]}) as peer,
+            open_rosbridge(served, token) as socket,
+        ):
+            page = RosbridgeClient(socket)
+            await page.say(op="subscribe", topic=topic)
+            await asyncio.to_thread(peer.subscribe, topic, "sensor_msgs/msg/CompressedImage")
+            await until(lambda: subscribed(served) == {topic}, "the subscription")
+            reading.clear()
+            door, number = served.container.doors.doors["ros2"], 0
+            while door.clients:
+                number += 1
+                served.container.doors.see(picture_block(number, 300_000))
+                assert (await page.next("publish"))["topic"] == topic
+                await asyncio.sleep(0)
+            reading.set()
+
+    play_ros2(settings, scenario)
+
+
+def test_a_flood_of_a_program_is_slowed_down_and_stop_passes(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        folder, token = await issue(served), await make_token(served, "read", "Page")
+        session = await asyncio.to_thread(open_zenoh, {"mode": "client"} | tls_settings(served, folder))
+        flooding = True
+
+        def flood() -> None:
+            publisher = session.declare_publisher("0/cmd_vel/a/b")
+            while flooding:
+                publisher.put(bytes(40))
+
+        try:
+            async with open_rosbridge(served, token) as socket:
+                page = RosbridgeClient(socket)
+                work = asyncio.create_task(asyncio.to_thread(flood))
+                await until(lambda: refused(served) > 1000, "the flood")
+                for _ in range(20):
+                    assert (await page.call("/mucat/stop"))["result"] is True
+                flooding = False
+                await work
+        finally:
+            flooding = False
+            await asyncio.to_thread(session.close)
+
+    play_ros2(settings, scenario)
+
+
+def test_a_message_that_is_too_large_is_not_read() -> None:
+    assert read_payload(zenoh.ZBytes(bytes(PAYLOAD_MAX))) == bytes(PAYLOAD_MAX)
+    assert read_payload(zenoh.ZBytes(bytes(PAYLOAD_MAX + 1))) is None
+    assert read_payload(None) == b""
+
+
+def key_of(session: zenoh.Session, name: str) -> str:
+    """The key of the robot's topic or service with this name, by its token."""
+    pattern = f"@ros2_lv/0/*/*/*/*/%/%/mucat/{name}/*/*/*"
+    (reply,) = session.liveliness().get(pattern)
+    assert reply.ok is not None
+    return "/".join(["0", name.strip("%").replace("%", "/"), *str(reply.ok.key_expr).split("/")[10:12]])
+
+
+def answers(session: zenoh.Session, key: str, payload: bytes) -> list[bytes]:
+    """The answers to a call."""
+    replies = session.get(key, payload=payload, timeout=1.0)
+    return [one.ok.payload.to_bytes() for one in replies if one.ok is not None]
+
+
+async def pass_on(
+    served: Served, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, reading: asyncio.Event
+) -> None:
+    """Pass bytes on between a program and the door, to the program only while `reading` is set."""
+    there, back = await asyncio.open_connection(*served.container.ros2.address)
+
+    async def pump(
+        source: asyncio.StreamReader, sink: asyncio.StreamWriter, gate: asyncio.Event | None
+    ) -> None:
+        with suppress(OSError):
+            while data := await source.read(4096):
+                if gate is not None:
+                    await gate.wait()
+                sink.write(data)
+                await sink.drain()
+
+    try:
+        await asyncio.gather(pump(reader, back, None), pump(there, writer, reading))
+    finally:
+        for one in (back, writer):
+            one.transport.abort()

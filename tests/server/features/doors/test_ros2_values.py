@@ -1,0 +1,200 @@
+"""The values of ROS 2's topics, as zenoh-ros2-sdk reads them."""
+
+import asyncio
+import base64
+from collections.abc import Set
+from dataclasses import fields, is_dataclass, replace
+from math import nan
+from typing import Any
+
+import numpy
+import pytest
+
+from robot_runtime.contract.documents import Control
+from robot_runtime.contract.packets import Beacon, Depth, Motor, Status
+from server.features.doors.ros_channels import standard_channels
+from server.platform.settings import Settings
+from tests.server.blocks import debug_block, picture_block
+from tests.server.features.doors.rig import (
+    RosbridgeClient,
+    imu,
+    make_token,
+    open_rosbridge,
+    rows_block,
+    truth,
+)
+from tests.server.features.doors.ros2_rig import (
+    OPEN,
+    Ros2Peer,
+    doors_of,
+    issue,
+    play_ros2,
+    ros2_peer,
+    subscribed,
+    tls_settings,
+)
+from tests.server.serving import Served
+from tests.server.waiting import SECONDS, until
+
+MARK = "marked"
+TURNED = (0.9, 0.1, -0.2, 0.374)
+
+
+def test_a_program_gets_the_values_of_rosbridge(settings: Settings) -> None:
+    """Every standard topic, through both doors, from the same samples."""
+
+    async def scenario(served: Served) -> None:
+        folder, token = await issue(served, "read"), await make_token(served, "read", "Page")
+        channels = {one.name: one for one in standard_channels()}
+        async with (
+            ros2_peer(served, tls_settings(served, folder)) as peer,
+            open_rosbridge(served, token) as socket,
+        ):
+            page = RosbridgeClient(socket)
+            for name, channel in channels.items():
+                await page.say(op="subscribe", topic=name)
+                await asyncio.to_thread(peer.subscribe, name, channel.type)
+            await until(lambda: len(subscribed(served)) == len(channels), "all subscriptions")
+            for topic in ("picture", "observer", "mask", "balanced"):
+                await served.heard(topic)
+            with_attitude = {"/imu/data", "/pose", "/tf"}
+            for publish, names in (
+                (publish_most, channels.keys() - with_attitude),
+                (publish_attitude, with_attitude),
+            ):
+                publish(served)
+                theirs, ours = await asyncio.gather(by_rosbridge(page, names), by_ros2(peer, names))
+                for name in names:
+                    assert not differences(ours[name], theirs[name]), name
+            assert ours["/imu/data"]["linear_acceleration.z"] == pytest.approx(9.5, abs=1e-3)
+            (client,) = await doors_of(served)
+            assert (client["name"], client["role"], set(client["topics"])) == ("Lab", "viewer", {*channels})
+
+    play_ros2(settings, scenario)
+
+
+def test_domain_and_namespace_are_the_configured_ones(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        folder = await issue(served)
+        async with ros2_peer(served, tls_settings(served, folder), domain=7) as peer:
+            await asyncio.to_thread(peer.subscribe, "/turtle/depth", "std_msgs/msg/Float64")
+            await until(lambda: subscribed(served) == {"/depth"}, "the subscription")
+            served.runtime.publish(depth_block(served, 0.25))
+            assert (await peer.next("/turtle/depth")).data == pytest.approx(0.25)
+            assert (await asyncio.to_thread(peer.call, "/turtle/mucat/stop"))[0] is True
+            nodes = await asyncio.to_thread(peer.tokens, "@ros2_lv/7/*/*/*/NN/**")
+            assert any(one.endswith("/NN/%/%turtle/mucat") for one in nodes)
+
+    play_ros2(settings, scenario, replace(OPEN, ros2_domain=7, ros2_namespace="/turtle"))
+
+
+def test_a_late_subscriber_of_a_latched_topic_gets_the_newest_message(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        folder = await issue(served, "read")
+        kind = "diagnostic_msgs/msg/DiagnosticArray"
+        async with ros2_peer(served, tls_settings(served, folder)) as peer:
+            served.container.doors.see_health([{"name": "board", "state": "failed", "text": "Gone."}])
+            await asyncio.to_thread(peer.subscribe, "/diagnostics", kind)
+            first = await peer.next("/diagnostics")
+            await asyncio.to_thread(peer.subscribe, "/diagnostics", kind, ":1:,1:,:,:,,")
+            assert (await peer.next("/diagnostics")).status[0].name.startswith("mucat: ")
+            assert first.status[0].name.startswith("mucat: ")
+
+    play_ros2(settings, scenario)
+
+
+def depth_block(served: Served, depth: float) -> Any:
+    now = served.container.clock.now()
+    return rows_block("depth", 0, (now, Depth(time=0, depth=depth, pressure=108_000, temperature=18.5)))
+
+
+def publish_attitude(served: Served) -> None:
+    """A sample of the IMU; the pose needs it after the position."""
+    now = served.container.clock.now()
+    served.runtime.publish(
+        rows_block("imu", 0, (now, imu(TURNED, rate=(0.1, 0.2, 0.3), force=(1.0, 2.0, -9.5))))
+    )
+
+
+def publish_most(served: Served) -> None:
+    """A sample of each other topic."""
+    served.container.doors.see_health([{"name": "board", "state": "failed", "text": MARK}])
+    now = served.container.clock.now()
+    flags: dict[str, Any] = dict.fromkeys(Status.wires, 0) | {"battery": 7.4}
+    control = dict.fromkeys(Control.wires, 0.25)
+    motor: dict[str, Any] = {
+        "time": 0,
+        "wanted": (0.0,) * 4,
+        "angle": (0.1, -0.2, 0.3, -0.4),
+        "drive": (0,) * 4,
+    }
+    served.runtime.publish(
+        rows_block("truth", 0, (now, truth((1.0, 2.0, 0.7), TURNED))),
+        depth_block(served, 0.7),
+        rows_block("status", 0, (now, Status(**flags))),
+        rows_block("motor", 0, (now, Motor(**motor))),
+        rows_block("beacon", 0, (now, Beacon(time=0, right=0, left=1))),
+        rows_block("control", 0, (now, Control(**control))),
+        debug_block(0, "hello"),
+        *(picture_block(0, 30_000, topic) for topic in ("picture", "observer", "mask", "balanced")),
+    )
+
+
+async def by_rosbridge(page: RosbridgeClient, topics: Set[str]) -> dict[str, dict[str, Any]]:
+    """The newest message of each topic, flat."""
+    found: dict[str, dict[str, Any]] = {}
+    while found.keys() != topics:
+        message = await page.next("publish")
+        if message["topic"] in topics and is_wanted(message["topic"], flat := flatten(message["msg"])):
+            found[message["topic"]] = flat
+    return found
+
+
+async def by_ros2(peer: Ros2Peer, topics: Set[str]) -> dict[str, dict[str, Any]]:
+    """The same at the other door."""
+    found: dict[str, dict[str, Any]] = {}
+    while found.keys() != topics:
+        topic, message = await asyncio.to_thread(peer.received.get, timeout=SECONDS)
+        if topic in topics and is_wanted(topic, flat := flatten(message)):
+            found[topic] = flat
+    return found
+
+
+def is_wanted(topic: str, message: dict[str, Any]) -> bool:
+    """False for the server's own lines and health, of which each door may send others first."""
+    expected = {"/rosout": ("msg", "hello"), "/diagnostics": ("status.0.message", MARK)}
+    key, value = expected.get(topic, ("", None))
+    return message.get(key) == value
+
+
+def differences(one: dict[str, Any], other: dict[str, Any]) -> dict[str, tuple[Any, Any]]:
+    """The values that are not equal; of 32 bits, or in JSON, a number may be rounded."""
+    pairs = {key: (one.get(key), other.get(key)) for key in one.keys() | other.keys()}
+    return {
+        key: (first, second)
+        for key, (first, second) in pairs.items()
+        if first != (pytest.approx(second, rel=1e-6, nan_ok=True) if isinstance(second, float) else second)
+    }
+
+
+def flatten(value: Any, name: str = "") -> dict[str, Any]:
+    """The plain values of a message by their path; base64, null and arrays of rosbridge as ROS 2 has them."""
+    if is_dataclass(value):
+        # Constants are fields here, too.
+        names = [one.name for one in fields(value) if one.name.islower() and one.name != "__msgtype__"]
+        value = {one: getattr(value, one) for one in names}
+    if isinstance(value, numpy.ndarray):
+        value = bytes(value) if value.dtype == numpy.uint8 else value.tolist()
+    if name == "data" and isinstance(value, str):
+        value = base64.b64decode(value)
+    if isinstance(value, dict):
+        return {
+            path: one for key, inner in value.items() for path, one in flatten(inner, join(name, key)).items()
+        }
+    if isinstance(value, list):
+        return {name: len(value)} | flatten(dict(enumerate(value)), name)
+    return {name: nan if value is None else value}
+
+
+def join(name: str, key: object) -> str:
+    return f"{name}.{key}" if name else str(key)
