@@ -10,6 +10,8 @@ from tests.browser.site import Site
 
 DESKTOP: ViewportSize = {"width": 1440, "height": 900}
 PHONE: ViewportSize = {"width": 390, "height": 844}
+SMALL_PHONE: ViewportSize = {"width": 360, "height": 640}
+LYING_PHONE: ViewportSize = {"width": 844, "height": 390}
 
 
 @contextmanager

@@ -17,13 +17,11 @@ from server.platform.settings import DataFolder
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE
 from tests.browser.conftest import put_to_rest
 from tests.browser.driving import arm_by_hand, expect_surge
-from tests.browser.opening import DESKTOP, PHONE, opened_page
+from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE, SMALL_PHONE, opened_page
 from tests.exports import export_session
 from tests.proofs.watching import Fins
 from tests.stack import Stack
 
-SMALL_PHONE: ViewportSize = {"width": 360, "height": 640}
-LYING_PHONE: ViewportSize = {"width": 844, "height": 390}
 NEUTRAL_SECONDS = 0.5
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 # A browser's data of a gamepad, in place of a real one.

@@ -53,6 +53,8 @@ export const parts = {
   oldHint: 'No newer data has arrived',
   holdTo: (action: string) => `Hold to ${action}`,
   pressAgainTo: (action: string) => `Press again to ${action}`,
+  heldInVain: 'Not now: see below',
+  holdAgain: 'Release, then hold again',
   pressTwice: 'Without a pointer, press twice.',
   range: (minimum: number, maximum: number) => `${minimum} to ${maximum}`,
   changed: ' (changed)',
