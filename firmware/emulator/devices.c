@@ -36,6 +36,11 @@ void devices_set_wiring(struct devices *devices, const struct wiring *wiring) {
   find_addresses(devices);
 }
 
+void devices_set_surroundings(struct devices *devices, const struct surroundings *surroundings) {
+  mpu6050_feel(&devices->imu);
+  devices->surroundings = *surroundings;
+}
+
 void devices_beacons(const struct devices *devices, bool levels[2]) {
   const struct wiring *wiring = &devices->wiring;
   bool heard[2] = {devices->surroundings.beacon_right, devices->surroundings.beacon_left};
