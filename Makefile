@@ -82,7 +82,7 @@ check: setup-test ## style, types, imports, faults of C and C++, and whether gen
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate:check)
 	$(PYTHON) -m server.openapi --reference --check
 	cd frontend && npm run --silent check
-	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!*.gen.h')
+	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!firmware/*.gen.h')
 	$(CPPCHECK) --std=c++11 --language=c++ -D__AVR__ '-DISR(vector)=void vector()' $$(git ls-files 'firmware/src/*.cpp' 'firmware/hil/*.cpp' 'firmware/examples/*.ino')
 	$(CPPCHECK) $$(git ls-files 'firmware/emulator/*.c' 'firmware/emulator/*.cpp' 'firmware/host/board.cpp' 'firmware/host/interface.cpp')
 

@@ -59,16 +59,16 @@ static double now(const struct mpu6050 *imu) { return imu->clock.seconds(imu->cl
 static double pass(double before, double after, double share) { return share * after + (1 - share) * before; }
 
 // A low-pass of first order, for the time in which the surroundings have been as they are.
-void mpu6050_feel(struct mpu6050 *imu) {
+void mpu6050_filter(struct mpu6050 *imu) {
   unsigned config = imu->registers[REGISTER_CONFIG] & FILTER_MASK;
   bool narrow = config >= NARROW_FILTER && config < FILTER_MASK && imu->sample >= 0;
-  double seconds = now(imu) - imu->felt;
+  double seconds = now(imu) - imu->filtered;
   double share = narrow ? 1 - exp(-2 * M_PI * narrow_bandwidth[config - NARROW_FILTER] * seconds) : 1;
   for (unsigned i = 0; i < 3; i++) {
     imu->force[i] = pass(imu->force[i], imu->surroundings->force[i], share);
     imu->rate[i] = pass(imu->rate[i], imu->surroundings->rate[i], share);
   }
-  imu->felt = now(imu);
+  imu->filtered = now(imu);
 }
 
 static void measure(struct mpu6050 *imu) {
@@ -90,7 +90,7 @@ static void sample(struct mpu6050 *imu) {
   double clock = config == 0 || config == FILTER_MASK ? FAST_PERIOD : SLOW_PERIOD;
   double number = floor((now(imu) - imu->woken) / (clock * (1 + imu->registers[REGISTER_RATE_DIVIDER])));
   if (number != imu->sample) {
-    mpu6050_feel(imu);
+    mpu6050_filter(imu);
     imu->sample = number;
     measure(imu);
   }

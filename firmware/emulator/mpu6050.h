@@ -18,7 +18,7 @@ struct mpu6050 {
   const struct wiring *wiring;
   double woken;              // s, end of its sleep
   double sample;             // number since then; -1: none
-  double felt;               // s, the filter's time
+  double filtered;           // s, the filter's time
   double force[3], rate[3];  // behind it, in body axes
   uint8_t registers[MPU6050_REGISTERS];
   uint8_t pointer;
@@ -30,7 +30,7 @@ void mpu6050_create(struct mpu6050 *imu, struct device_clock clock, const struct
 // A dip of the supply: the chip sleeps with its settings lost.
 void mpu6050_dip(struct mpu6050 *imu);
 // Call it before the surroundings change.
-void mpu6050_feel(struct mpu6050 *imu);
+void mpu6050_filter(struct mpu6050 *imu);
 
 bool mpu6050_start(void *imu);
 void mpu6050_write(void *imu, unsigned index, uint8_t byte);

@@ -97,4 +97,4 @@ def movement(rig: Rig, seconds: float) -> float:
     for _ in range(round(seconds / 0.01)):
         rig.board.run(0.01)
         angles.append(rig.board.fins().angles)
-    return max(max(fin) - min(fin) for fin in zip(*angles, strict=True))
+    return max(max(one[fin] for one in angles) - min(one[fin] for one in angles) for fin in range(4))
