@@ -17,6 +17,7 @@ PYTHON := .venv/bin/python
 unexport PYTHONDONTWRITEBYTECODE
 # Compiled once, also for a robot that is started without make.
 INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-bytecode
+CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,portability --inline-suppr -DMUCAT_BAUD=250000 -Ifirmware/src -Ifirmware/emulator
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
@@ -71,7 +72,7 @@ test-rest:
 $(PARTS:%=test-in-%): test-in-%:
 	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))
 
-check: setup-test ## style, types, imports, and whether generated files are current
+check: setup-test ## style, types, imports, faults of C and C++, and whether generated files are current
 	.venv/bin/ruff check
 	.venv/bin/ruff format --check
 	.venv/bin/mypy
@@ -81,7 +82,9 @@ check: setup-test ## style, types, imports, and whether generated files are curr
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate:check)
 	$(PYTHON) -m server.openapi --reference --check
 	cd frontend && npm run --silent check
-	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!*.gen.h')
+	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!firmware/*.gen.h')
+	$(CPPCHECK) --std=c++11 --language=c++ -D__AVR__ '-DISR(vector)=void vector()' $$(git ls-files 'firmware/src/*.cpp' 'firmware/hil/*.cpp' 'firmware/examples/*.ino')
+	$(CPPCHECK) $$(git ls-files 'firmware/emulator/*.c' 'firmware/emulator/*.cpp' 'firmware/host/board.cpp' 'firmware/host/interface.cpp')
 
 guards: setup-test ## take away every guard in turn: a test must miss it (some with ONLY=words of their names)
 	@nice $(PYTHON) -m tests.proofs.guards $(ONLY)

@@ -46,6 +46,7 @@ if [ "${1:-run}" = test ]; then
     need mosquitto /usr/sbin/mosquitto
     need arduino-builder arduino-builder
     need clang-format clang-format
+    need cppcheck cppcheck
     need iproute2 ip
     need clang clang
     ls /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*.a >/dev/null 2>&1 || missing="$missing libclang-rt-dev"

@@ -84,6 +84,7 @@ class FloodHost:
         self.worst = 0
         self.lost = 0
         self.status: Status | None = None
+        self.faults = 0
         self._rig = rig
         self._byte_time = _BITS_PER_BYTE / (_PACE * baud)
         self._session = LinkSession(1, baud)
@@ -137,6 +138,7 @@ class FloodHost:
                 before, self.status = self.status, Status.from_bytes(message.payload)
                 self.lost += (self.status.bytes_lost - (before.bytes_lost if before else 0)) & 0xFFFF
                 self.worst = max(self.worst, self.status.loop_worst)
+                self.faults |= self.status.faults
 
 
 def count_static(elf: Path) -> int:

@@ -57,7 +57,7 @@ bool board_power_cycle(struct board *board) {
 }
 
 void board_set_surroundings(struct board *board, const struct surroundings *surroundings) {
-  board->devices.surroundings = *surroundings;
+  devices_set_surroundings(&board->devices, surroundings);
   pins_update_inputs(&board->pins);
 }
 

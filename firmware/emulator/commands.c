@@ -256,8 +256,7 @@ static void quit(struct service *service, struct client *client, char *nothing) 
 static const struct command commands[] = {
     {"attach", attach}, {"sense", sense}, {"fins", fins},       {"reset", reset},        {"power", power},
     {"load", load},     {"run", run},     {"stats", stats},     {"fault", fault},        {"line", line},
-    {"seed", seed},     {"quit", quit},   {"mistake", mistake}, {"brownout", brown_out},
-    {"turn", turn},
+    {"seed", seed},     {"quit", quit},   {"mistake", mistake}, {"brownout", brown_out}, {"turn", turn},
 };
 
 void commands_run(void *owner, struct client *client, char *line) {

@@ -36,6 +36,11 @@ void devices_set_wiring(struct devices *devices, const struct wiring *wiring) {
   find_addresses(devices);
 }
 
+void devices_set_surroundings(struct devices *devices, const struct surroundings *surroundings) {
+  mpu6050_filter(&devices->imu);
+  devices->surroundings = *surroundings;
+}
+
 void devices_beacons(const struct devices *devices, bool levels[2]) {
   const struct wiring *wiring = &devices->wiring;
   bool heard[2] = {devices->surroundings.beacon_right, devices->surroundings.beacon_left};
@@ -80,6 +85,13 @@ static const struct {
     [FAULT_TRIPPED] = {"tripped", BRIDGE},
 };
 
+// The fin in a name such as `encoder3`, or -1.
+static int numbered(const char *name, const char *kind) {
+  size_t length = strlen(kind);
+  bool matches = !strncmp(name, kind, length) && name[length] >= '0' && name[length] < '0' + FIN_COUNT;
+  return matches && !name[length + 1] ? name[length] - '0' : -1;
+}
+
 static enum fault *fault_of(struct devices *devices, const char *name, enum kind_of_device *kind) {
   *kind = IMU;
   if (!strcmp(name, "imu")) {
@@ -89,19 +101,14 @@ static enum fault *fault_of(struct devices *devices, const char *name, enum kind
   if (!strcmp(name, "pressure")) {
     return &devices->pressure.fault;
   }
-  for (unsigned i = 0; i < FIN_COUNT; i++) {
-    char encoder[] = "encoder0", bridge[] = "bridge0";
-    encoder[sizeof encoder - 2] = bridge[sizeof bridge - 2] = (char)('0' + i);
-    *kind = ENCODER;
-    if (!strcmp(name, encoder)) {
-      return &devices->encoders[i].fault;
-    }
-    *kind = BRIDGE;
-    if (!strcmp(name, bridge)) {
-      return &devices->bridges[i].fault;
-    }
+  *kind = ENCODER;
+  int fin = numbered(name, "encoder");
+  if (fin >= 0) {
+    return &devices->encoders[fin].fault;
   }
-  return NULL;
+  *kind = BRIDGE;
+  fin = numbered(name, "bridge");
+  return fin >= 0 ? &devices->bridges[fin].fault : NULL;
 }
 
 bool devices_set_fault(struct devices *devices, const char *name, const char *fault) {

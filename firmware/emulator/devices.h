@@ -40,6 +40,8 @@ void devices_create(struct devices *devices, struct device_clock clock);
 
 void devices_set_wiring(struct devices *devices, const struct wiring *wiring);
 
+void devices_set_surroundings(struct devices *devices, const struct surroundings *surroundings);
+
 void devices_set_motor_power(struct devices *devices, bool on);
 
 // The byte on the data line of the encoders; 0xff, by the pull-up, if none is selected. `mode_0` as in spi.h.

@@ -24,6 +24,11 @@
 #define FAST_PERIOD 125e-6  // s
 #define SLOW_PERIOD 1e-3    // s
 
+// Hz, bandwidth of the gyroscope by CONFIG; the accelerometer's is the same but for 1 Hz. The wider filters,
+// up to CONFIG 3, are that of the simulated water.
+#define NARROW_FILTER 4
+static const double narrow_bandwidth[] = {20, 10, 5};
+
 #define GRAVITY 9.80665
 #define DEGREE (M_PI / 180)
 
@@ -51,26 +56,41 @@ static double range(const struct mpu6050 *imu, unsigned address) {
 
 static double now(const struct mpu6050 *imu) { return imu->clock.seconds(imu->clock.owner); }
 
+static double pass(double before, double after, double share) { return share * after + (1 - share) * before; }
+
+// A low-pass of first order, for the time in which the surroundings have been as they are.
+void mpu6050_filter(struct mpu6050 *imu) {
+  unsigned config = imu->registers[REGISTER_CONFIG] & FILTER_MASK;
+  bool narrow = config >= NARROW_FILTER && config < FILTER_MASK && imu->sample >= 0;
+  double seconds = now(imu) - imu->filtered;
+  double share = narrow ? 1 - exp(-2 * M_PI * narrow_bandwidth[config - NARROW_FILTER] * seconds) : 1;
+  for (unsigned i = 0; i < 3; i++) {
+    imu->force[i] = pass(imu->force[i], imu->surroundings->force[i], share);
+    imu->rate[i] = pass(imu->rate[i], imu->surroundings->rate[i], share);
+  }
+  imu->filtered = now(imu);
+}
+
 static void measure(struct mpu6050 *imu) {
-  const struct surroundings *around = imu->surroundings;
   bool turning = now(imu) - imu->woken >= GYRO_START;
   double force_counts = FORCE_COUNTS / range(imu, REGISTER_ACCEL_CONFIG) / GRAVITY;
   double rate_counts = RATE_COUNTS / range(imu, REGISTER_GYRO_CONFIG) / DEGREE;
   for (unsigned i = 0; i < 3; i++) {
     struct chip_axis axis = imu->wiring->imu_axes[i];
-    double rate = axis.sign * around->rate[axis.body] + imu->wiring->gyro_offset[i];
-    put(imu, REGISTER_FORCE + 2 * i, axis.sign * around->force[axis.body] * force_counts);
+    double rate = axis.sign * imu->rate[axis.body] + imu->wiring->gyro_offset[i];
+    put(imu, REGISTER_FORCE + 2 * i, axis.sign * imu->force[axis.body] * force_counts);
     put(imu, REGISTER_RATE + 2 * i, turning ? rate * rate_counts : 0);
   }
-  put(imu, REGISTER_TEMPERATURE, (around->temperature - TEMPERATURE_ZERO) * TEMPERATURE_COUNTS);
+  put(imu, REGISTER_TEMPERATURE, (imu->surroundings->temperature - TEMPERATURE_ZERO) * TEMPERATURE_COUNTS);
 }
 
 // Measures if a sample is due since the last transfer.
 static void sample(struct mpu6050 *imu) {
-  unsigned filter = imu->registers[REGISTER_CONFIG] & FILTER_MASK;
-  double clock = filter == 0 || filter == FILTER_MASK ? FAST_PERIOD : SLOW_PERIOD;
+  unsigned config = imu->registers[REGISTER_CONFIG] & FILTER_MASK;
+  double clock = config == 0 || config == FILTER_MASK ? FAST_PERIOD : SLOW_PERIOD;
   double number = floor((now(imu) - imu->woken) / (clock * (1 + imu->registers[REGISTER_RATE_DIVIDER])));
   if (number != imu->sample) {
+    mpu6050_filter(imu);
     imu->sample = number;
     measure(imu);
   }

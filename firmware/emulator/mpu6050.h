@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// InvenSense MPU-6050: turn rate and specific force, on I2C. It measures at its own
-// rate. The filter that CONFIG sets is that of the simulated water.
+// InvenSense MPU-6050: turn rate and specific force, on I2C. It measures at its own rate. The simulated water
+// has the filter of 44 Hz; a narrower one that CONFIG sets comes on top.
 #ifndef MPU6050_H
 #define MPU6050_H
 
@@ -16,8 +16,10 @@ struct mpu6050 {
   struct device_clock clock;
   const struct surroundings *surroundings;
   const struct wiring *wiring;
-  double woken;   // s, end of its sleep
-  double sample;  // number since then; -1: none
+  double woken;              // s, end of its sleep
+  double sample;             // number since then; -1: none
+  double filtered;           // s, the filter's time
+  double force[3], rate[3];  // behind it, in body axes
   uint8_t registers[MPU6050_REGISTERS];
   uint8_t pointer;
   enum fault fault;
@@ -27,6 +29,8 @@ void mpu6050_create(struct mpu6050 *imu, struct device_clock clock, const struct
                     const struct wiring *wiring);
 // A dip of the supply: the chip sleeps with its settings lost.
 void mpu6050_dip(struct mpu6050 *imu);
+// Call it before the surroundings change.
+void mpu6050_filter(struct mpu6050 *imu);
 
 bool mpu6050_start(void *imu);
 void mpu6050_write(void *imu, unsigned index, uint8_t byte);

@@ -141,9 +141,9 @@ uint8_t ms5837_read(void *device) {
     sensor->conversion = index == 2 ? 0 : sensor->conversion;  // a conversion is read once
     return byte;
   }
-  unsigned word = (sensor->command - COMMAND_PROM) / 2u;
-  if (sensor->was_reset && sensor->command >= COMMAND_PROM && word < MS5837_PROM_WORDS && index < 2) {
-    return (uint8_t)(sensor->prom[word] >> (8 - 8 * index));
+  if (!sensor->was_reset || sensor->command < COMMAND_PROM || index >= 2) {
+    return 0;
   }
-  return 0;
+  unsigned word = (sensor->command - COMMAND_PROM) / 2u;
+  return word < MS5837_PROM_WORDS ? (uint8_t)(sensor->prom[word] >> (8 - 8 * index)) : 0;
 }

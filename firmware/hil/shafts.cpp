@@ -3,9 +3,9 @@
 // constant.
 #include <math.h>
 
+#include "fins/drv8830.h"
 #include "fins/fin_law.h"
 #include "sensors/as5040.h"
-#include "sensors/drv8830.h"
 
 namespace mucat {
 namespace {

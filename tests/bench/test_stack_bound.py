@@ -5,10 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from bench.firmware import RAM_BYTES, count_static
+from bench.firmware import RAM_BYTES, count_flash, count_static
 from bench.stack_bound import StackBoundError, stack_bound
 from tests.board.host import Robot, start
 from tests.board.rig import ROOT, build
+from tests.firmware.test_build import FLASH_BYTES
 
 START = "#include <avr/interrupt.h>\n#include <stdint.h>\n#include <stdlib.h>\n"
 MAIN = "int main(void) { DEEP; for (;;) {} }\n"
@@ -88,3 +89,12 @@ def test_the_firmware_s_stack_fits_and_is_not_deeper_than_its_bound(tmp_path: Pa
         robot.converse(1.0)
         measured = room - robot.status().stack_free
     assert 200 < measured <= bound <= room
+
+
+@pytest.mark.parametrize(("name", "options"), [("hil/robot", ["HIL=1", "robot"]), ("bring_up", ["bring_up"])])
+def test_the_other_programs_fit_the_chip_too(name: str, options: list[str]) -> None:
+    """That of a board in the loop has less memory left than the robot's, and needs less."""
+    build(ROOT / "firmware", *options)
+    elf = ROOT / f"build/firmware/{name}.elf"
+    assert count_flash(elf) <= FLASH_BYTES
+    assert stack_bound(elf) <= RAM_BYTES - count_static(elf)

@@ -126,6 +126,28 @@ def test_the_imu_repeats_a_reading_until_its_next_sample(rig: Rig, monitor: Moni
     assert imu_counts(monitor)[2] > 0
 
 
+@pytest.mark.parametrize(("config", "bandwidth"), [(3, None), (4, 20), (5, 10), (6, 5)])
+def test_the_imu_filters_as_narrowly_as_it_is_set(
+    rig: Rig, monitor: Monitor, config: int, bandwidth: float | None
+) -> None:
+    """A wider filter than that of the simulated water, 44 Hz, has no effect."""
+    monitor.transfer(IMU, bytes([0x6B, 0]))
+    monitor.transfer(IMU, bytes([0x1A, config]))
+    rig.board.run(GYRO_START)
+    imu_counts(monitor)
+    rig.board.sense(STILL_WATER._replace(force=(5.0, 0.0, -GRAVITY), rate=(0.0, 1.0, 0.0)))
+    began = rig.board.stats()["time"]
+    rig.board.run(0.01)
+    imu_counts(monitor)
+    passed = rig.board.run(0.005) - began
+    force, _, _, _, _, rate, _ = imu_counts(monitor)
+    share = 1 - math.exp(-2 * math.pi * bandwidth * passed) if bandwidth else 1
+    # It samples each ms.
+    step = 2 * math.pi * bandwidth * 1e-3 if bandwidth else 1e-4
+    assert force / 16384 * GRAVITY / 5 == pytest.approx(share, abs=step)
+    assert rate / 131.072 * math.pi / 180 == pytest.approx(share, abs=step)
+
+
 # The pressure sensor
 
 

@@ -6,13 +6,19 @@ from pathlib import Path
 import pytest
 
 from bench.firmware import BAUD, FloodHost
-from robot_runtime.contract.packets import StatusFlag
+from robot_runtime.contract.packets import DeviceFault, StatusFlag
 from tests.board.host import start
 from tests.board.rig import ROOT, Rig, build
 
 TICK_US = 10_000
 CAPACITY = BAUD / 10
 """Bytes a second, each way."""
+REST, DISARMED = 0.5, 1.2
+"""s after the last command, in which the fins rest, and the motors have no power."""
+AT_REST = 0.02 + 0.05
+"""rad that a fin at rest may move: as without faults, and through the backlash of its gear."""
+BUS = DeviceFault.IMU | DeviceFault.PRESSURE
+BUS |= DeviceFault(sum(DeviceFault.BRIDGE_FRONT_RIGHT << fin for fin in range(4)))
 
 
 @pytest.fixture
@@ -23,27 +29,47 @@ def rig(built: None, tmp_path: Path) -> Iterator[Rig]:  # noqa: ARG001 - built f
 
 
 @pytest.mark.parametrize(
-    "commands",
+    ("commands", "faults", "bus"),
     [
-        ["fault imu absent"],
-        ["fault imu dip"],
-        ["fault pressure absent"],
-        ["fault encoder0 absent", "fault encoder1 weak"],
-        ["fault bridge0 absent", "fault bridge1 tripped"],
-        ["fault i2c stuck"],
-        ["fault i2c refused"],
-        ["fault i2c stretched"],
-        ["fault i2c contested"],
-        ["mistake motors-swapped:front-right,back-right", "mistake encoder-noise:2"],
+        (["fault imu absent"], DeviceFault.IMU, True),
+        (["fault imu dip"], 0, True),
+        (["fault pressure absent"], DeviceFault.PRESSURE, True),
+        (
+            ["fault encoder0 absent", "fault encoder1 weak"],
+            DeviceFault.ENCODER_FRONT_RIGHT | DeviceFault.MAGNET,
+            True,
+        ),
+        (
+            ["fault bridge2 absent", "fault bridge1 tripped"],
+            DeviceFault.BRIDGE_BACK_LEFT | DeviceFault.BRIDGE_BACK_RIGHT,
+            False,
+        ),
+        (["fault i2c stuck"], 0, True),
+        (["fault i2c refused"], BUS, False),
+        (["fault i2c stretched"], BUS, False),
+        (["fault i2c contested"], BUS, False),
+        (
+            ["mistake motors-swapped:front-right,back-right", "mistake encoder-noise:2"],
+            DeviceFault.TRACKING_FRONT_RIGHT | DeviceFault.TRACKING_BACK_RIGHT,
+            True,
+        ),
+        (
+            ["mistake gyro-offset:20,-20,20", "mistake backlash:0.05", "mistake pack-resistance:0.5"],
+            0,
+            True,
+        ),
     ],
-    ids=lambda commands: " ".join(commands),
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
-def test_no_device_delays_a_tick_while_the_line_is_full(rig: Rig, commands: list[str]) -> None:
+def test_no_device_delays_a_tick_while_the_line_is_full(
+    rig: Rig, commands: list[str], faults: DeviceFault, bus: bool
+) -> None:
     host = FloodHost(rig, BAUD)
     host.arm()
     host.flood(0.3)
-    sent, heard, began, host.worst = host.sent, host.heard, host.now, 0
-    for _ in range(2):  # a fault that mends itself comes again
+    sent, heard, began = host.sent, host.heard, host.now
+    host.worst = host.faults = 0
+    for _ in range(3):  # a fault that mends itself comes again
         for command in commands:
             rig.board.command(command)
         host.flood(0.3)
@@ -55,4 +81,20 @@ def test_no_device_delays_a_tick_while_the_line_is_full(rig: Rig, commands: list
     assert host.status.flags & StatusFlag.ARMED
     assert host.status.missed_ticks == 0
     assert 0 < host.worst < TICK_US
+    assert host.faults == faults
+    # Now the host falls silent. A bridge that hears nothing stops when the robot is disarmed: by its power.
+    rig.board.run(REST if bus else DISARMED)
+    assert rig.board.fins().powered == bus
+    assert movement(rig, 0.4) < AT_REST
+    rig.board.run(DISARMED - REST)
+    assert not rig.board.fins().powered
     assert rig.board.stats()["watchdog_resets"] == 0
+
+
+def movement(rig: Rig, seconds: float) -> float:
+    """rad between the ends of the fin's way that moves farthest."""
+    angles: list[tuple[float, ...]] = []
+    for _ in range(round(seconds / 0.01)):
+        rig.board.run(0.01)
+        angles.append(rig.board.fins().angles)
+    return max(max(one[fin] for one in angles) - min(one[fin] for one in angles) for fin in range(4))

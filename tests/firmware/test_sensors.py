@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot_runtime.experiments.bring_up.checks import OF_02BA
 from tests.firmware.devices import PressureSensor, compensate, encoder_word
 
 PROM = PressureSensor().prom
@@ -47,9 +48,9 @@ def words(prom: list[int]) -> ctypes.Array[ctypes.c_uint16]:
     return (ctypes.c_uint16 * 7)(*prom)
 
 
-def pressure_of(firmware: ctypes.CDLL, d1: int, d2: int) -> tuple[int, int]:
+def pressure_of(firmware: ctypes.CDLL, d1: int, d2: int, prom: list[int] = PROM) -> tuple[int, int]:
     pressure, temperature = ctypes.c_int32(), ctypes.c_int16()
-    firmware.firmware_compensate(words(PROM), d1, d2, ctypes.byref(pressure), ctypes.byref(temperature))
+    firmware.firmware_compensate(words(prom), d1, d2, ctypes.byref(pressure), ctypes.byref(temperature))
     return pressure.value, temperature.value
 
 
@@ -58,6 +59,14 @@ def test_pressure_of_the_data_sheets_example(firmware: ctypes.CDLL) -> None:
     pressure, temperature = pressure_of(firmware, 4958179, 6815414)
     assert temperature == 1981
     assert pressure // 10 == 39998
+
+
+def test_a_sensor_for_2_bar_seems_to_feel_20_times_the_pressure(firmware: ctypes.CDLL) -> None:
+    """The example of the MS5837-02BA's data sheet: 1100.02 mbar, 20.00 °C. The bring-up knows it by that."""
+    prom = [0, 46372, 43981, 29059, 27842, 31553, 28165]
+    pressure, temperature = pressure_of(firmware, 6465444, 8077636, prom)
+    assert pressure == pytest.approx(OF_02BA * 110_002, rel=1e-4)
+    assert temperature == 2000
 
 
 @given(d1=st.integers(3_000_000, 9_000_000), celsius=st.floats(-30, 80))

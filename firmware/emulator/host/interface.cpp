@@ -60,7 +60,10 @@ void board_fins(const Board* board, double* numbers) {
 
 // Sets the numbers of the emulated board's line `sense`; false if they are impossible.
 bool board_sense(Board* board, const double* numbers) {
-  return surroundings_read(&board->parts.surroundings, numbers);
+  surroundings reading;
+  const bool possible = surroundings_read(&reading, numbers);
+  if (possible) devices_set_surroundings(&board->parts, &reading);
+  return possible;
 }
 
 bool board_fault(Board* board, const char* device, const char* kind) {

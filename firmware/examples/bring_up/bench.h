@@ -7,6 +7,7 @@
 #include "calibration.h"
 #include "link/link.h"
 #include "motor_jog.h"
+#include "sensors/as5040.h"
 #include "sensors/mpu6050.h"
 #include "sensors/ms5837.h"
 
@@ -109,9 +110,7 @@ class Bench {
     mucat::Raw raw = {};
     raw.time = mucat::board::microseconds();
     for (uint8_t fin = 0; fin < mucat::kFinCount; ++fin) {
-      uint8_t bytes[mucat::board::kEncoderBytes];
-      mucat::board::read_encoder(fin, bytes);
-      raw.encoders[fin] = (uint16_t)bytes[0] << 9 | (uint16_t)bytes[1] << 1 | bytes[2] >> 7;
+      raw.encoders[fin] = mucat::read_encoder_word(fin);
     }
     raw.identity = imu_.identity();
     if (imu_known_) {

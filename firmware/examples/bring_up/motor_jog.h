@@ -4,7 +4,7 @@
 #include <mucat.h>
 
 #include "board/board.h"
-#include "sensors/drv8830.h"
+#include "fins/drv8830.h"
 
 class MotorJog {
  public:

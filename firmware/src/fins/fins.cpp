@@ -3,8 +3,8 @@
 #include <math.h>
 
 #include "board/board.h"
+#include "fins/drv8830.h"
 #include "sensors/as5040.h"
-#include "sensors/drv8830.h"
 
 namespace mucat {
 namespace {

@@ -19,7 +19,8 @@ void mix(const Navigation& command, float amplitude, FinDemand (&demands)[kFinCo
   for (uint8_t i = 0; i < kFinCount; ++i) {
     const bool front = at_front(i);
     const bool right = on_right(i);
-    // Along its mount a fin pushes inwards; a front right or a back left one turns the robot to the left by it.
+    // Along its mount a fin pushes inwards; a front right or a back left one turns the robot to the left by
+    // it.
     const int16_t forwards = front ? command.x : -command.x;
     const int16_t inwards = right ? -command.y : command.y;
     const int16_t turn = front == right ? -command.yaw : command.yaw;

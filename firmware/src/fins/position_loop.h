@@ -15,9 +15,9 @@ inline int16_t gain_from_thousandths(uint16_t gain) { return gain * 32 / 125; }
 
 // A fin's part of the calibration.
 struct FinCalibration {
-  int16_t zero;        // encoder counts when the fin points along its mount
-  int8_t angle_sign;   // of the fin's angle per count
-  int8_t drive_sign;   // of counts per drive
+  int16_t zero;       // encoder counts when the fin points along its mount
+  int8_t angle_sign;  // of the fin's angle per count
+  int8_t drive_sign;  // of counts per drive
 };
 FinCalibration fin_calibration(const Calibration& calibration, uint8_t fin);
 

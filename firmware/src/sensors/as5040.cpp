@@ -5,7 +5,7 @@
 namespace mucat {
 namespace {
 
-// The word after the leading 1: D9 to D0, then these bits, then even parity over all sixteen.
+// The status bits of the word.
 constexpr uint16_t kOffsetDone = 1 << 5;
 constexpr uint16_t kCordicOverflow = 1 << 4;
 constexpr uint16_t kLinearityAlarm = 1 << 3;
@@ -21,11 +21,14 @@ bool odd(uint16_t word) {
 
 }  // namespace
 
-MagneticField read_encoder_counts(uint8_t fin, int16_t* counts) {
+uint16_t read_encoder_word(uint8_t fin) {
   uint8_t bytes[board::kEncoderBytes];
   board::read_encoder(fin, bytes);
-  const uint16_t word =
-      static_cast<uint16_t>(bytes[0]) << 9 | static_cast<uint16_t>(bytes[1]) << 1 | bytes[2] >> 7;
+  return static_cast<uint16_t>(bytes[0]) << 9 | static_cast<uint16_t>(bytes[1]) << 1 | bytes[2] >> 7;
+}
+
+MagneticField read_encoder_counts(uint8_t fin, int16_t* counts) {
+  const uint16_t word = read_encoder_word(fin);
   if (odd(word) || !(word & kOffsetDone) || word & kCordicOverflow) return MagneticField::kUnusable;
   const bool far_off = (word & kBothMagBits) == kBothMagBits;
   // With the alarm the data sheet calls the field red, without it yellow: usable, less exact.

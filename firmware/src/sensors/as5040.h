@@ -11,6 +11,9 @@ enum class MagneticField : uint8_t {
   kGreen,
 };
 
+// Reads the chip's word, after its leading 1: D9 to D0, five status bits, even parity over all sixteen.
+uint16_t read_encoder_word(uint8_t fin);
+
 // Reads the fin's position, 0 to 1023; `counts` is unchanged if it is unusable.
 MagneticField read_encoder_counts(uint8_t fin, int16_t* counts);
 

@@ -11,8 +11,9 @@ namespace {
 constexpr float kUnitCounts = 16384.0f;
 constexpr uint8_t kBatteryTicks = 10;
 
-// The chip's reading along one of its axes, as the calibration numbers them.
+// The chip's reading along one of its axes, as the calibration numbers them: -3 to 3 without 0.
 int32_t along(int8_t axis, const int16_t (&chip)[3]) {
+  // cppcheck-suppress negativeIndex
   return axis < 0 ? -static_cast<int32_t>(chip[-axis - 1]) : chip[axis - 1];
 }
 

@@ -46,6 +46,8 @@ AIR = (80_000, 110_000)
 """Pa, from a high mountain to a strong high."""
 SENSOR_TOLERANCE = 5_000
 """Pa; the MS5837-30BA is off by 50 hPa at most between 0 and 40 °C."""
+OF_02BA = 20
+"""Times the true pressure that the 30BA's formulas make of an MS5837-02BA's counts (data sheets)."""
 DEPTH_TOLERANCE = 0.02
 """m, and as much as a twentieth of the depth."""
 PRESSURE_PER_METRE = 9_810
@@ -91,7 +93,7 @@ def _missing(address: int, strangers: Sequence[int], found: Collection[int]) -> 
         return "Check the IMU's supply and its two wires."
     if address == PRESSURE_ADDRESS:
         if 0x77 in strangers:
-            return "A sensor answers at 0x77: it is an MS5837-02BA or of another make; the robot needs 0x76."
+            return "Another sensor answers at 0x77, such as an MS5611. The robot needs an MS5837-30BA."
         return "Check the pressure sensor's supply and its two wires."
     bridges = [one for one in strangers if one in _BRIDGE_RANGE]
     if bridges:
@@ -268,6 +270,8 @@ def check_air(raws: Sequence[Raw], barometer: float | None) -> Result:
     advice = "A sound sensor is off by 50 hPa at most. Is it wet, or pressed by its potting?"
     if not pressure:
         advice = "The sensor says nothing: its PROM could not be read, or it does not answer."
+    elif AIR[0] <= pressure / OF_02BA <= AIR[1]:
+        advice = "It counts as an MS5837-02BA does. The robot needs the 30BA, which bears more than 10 m."
     return Result(
         what="pressure in air",
         expected=expected,

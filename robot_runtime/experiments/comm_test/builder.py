@@ -34,11 +34,8 @@ COMMON = (
     *("-Os", "-g", "-flto", "-ffunction-sections", "-fdata-sections"),
     *(f"-I{ARDUINO}/cores/arduino", f"-I{ARDUINO}/variants/eightanaloginputs"),
 )
-CXX = (
-    *COMMON,
-    *("-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics", "-fpermissive"),
-    "-DDECIMAL_DIG=__DECIMAL_DIG__",
-)
+CXX = (*COMMON, "-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
+CORE = (*CXX, "-fpermissive", "-DDECIMAL_DIG=__DECIMAL_DIG__", "-w")
 OWN = ("-Wall", "-Wextra", "-Werror")
 LINK = (*MCU, "-Os", "-g", "-flto", "-fuse-linker-plugin", "-Wl,--gc-sections")
 DIRECTIONS = {"to_board": "COMM_TEST_TO_BOARD", "to_host": "COMM_TEST_TO_HOST", "both": "COMM_TEST_BOTH"}
@@ -76,7 +73,7 @@ class Builder:
                 f"the Arduino core is not in {ARDUINO}; install the package arduino-core-avr"
             )
         self._sketch = SKETCHES / SKETCH
-        self._core_hash = self._hash(self._core_files(), [*COMMON, *CXX])
+        self._core_hash = self._hash(self._core_files(), CORE)
         library_files = [*_library_sources(), *sorted(LIBRARY.rglob("*.h"))]
         self._library_hash = self._hash(library_files, [*CXX, *OWN])
         words = [self._core_hash, self._library_hash, *CXX, *OWN, *LINK]
@@ -121,7 +118,7 @@ class Builder:
     def _compile_core(self, folder: Path) -> None:
         commands = {
             ".c": ["avr-gcc", *COMMON, "-std=gnu11", "-w"],
-            ".cpp": ["avr-g++", *CXX, "-w"],
+            ".cpp": ["avr-g++", *CORE],
             ".S": ["avr-gcc", *COMMON, "-x", "assembler-with-cpp"],
         }
         _archive(folder / "core.a", {source: commands[source.suffix] for source in self._core_sources})

@@ -1,4 +1,4 @@
-#include "sensors/drv8830.h"
+#include "fins/drv8830.h"
 
 #include "board/board.h"
 
