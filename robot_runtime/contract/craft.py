@@ -295,7 +295,9 @@ def load_craft(path: Path) -> CraftDocument:
     except (OSError, UnicodeDecodeError) as problem:
         raise ConfigError(f"the craft file {path} cannot be read: {problem}") from problem
     except ConfigError as problem:
-        raise ConfigError(*(one.within(DocumentEntry(path.name)) for one in problem.problems)) from problem
+        file = DocumentEntry(path.name)
+        named = [one.within(file) if one.path else file.sentence(one.text) for one in problem.problems]
+        raise ConfigError(*named) from problem
 
 
 def complete_sensors(plain: Craft, table: Mapping[str, Any]) -> dict[str, Any]:

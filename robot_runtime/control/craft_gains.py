@@ -8,15 +8,20 @@ from robot_runtime.control.controllers.predictive import Predictive
 
 
 def craft_gains(craft: Craft) -> dict[str, float]:
-    """Returns thrust (m/s²) and drag (1/m) of the heave model of this craft, within the gains' limits.
+    """Returns the gains of the heave model for this craft, in the gains' units and within their limits.
 
-    Drag is the quadratic damping over the moving mass. Thrust is the default's, times the ratio of the two
-    crafts' C_T·S·r_c² over the moving mass: strokes are the same.
+    A force over the moving mass, and the noise, is the default gain times the ratio of this craft's to the
+    default craft's. A delay is the default gain and what this craft has more.
     """
-    limits = Predictive.limits
-    gains = {
-        "thrust": limits["thrust"].default * _push(craft) / _push(Craft()),
-        "drag": craft.damping_quadratic[2] / craft.total_mass[2],
+    limits, plain = Predictive.limits, Craft()
+    of_plain = _scales(plain)
+    gains = {name: limits[name].default * value / of_plain[name] for name, value in _scales(craft).items()}
+    gains |= {
+        "lag": limits["lag"].default + craft.fin_delay - plain.fin_delay,
+        "depth_age": limits["depth_age"].default + craft.pressure.latency - plain.pressure.latency,
+        "acceleration_age": limits["acceleration_age"].default
+        + craft.accelerometer.latency
+        - plain.accelerometer.latency,
     }
     return {
         name: min(max(value, limits[name].minimum), limits[name].maximum) for name, value in gains.items()
@@ -34,5 +39,15 @@ def tune_to_craft(config: ControlConfig, craft: Craft) -> ControlConfig:
     return replace(config, gains=config.gains | {Predictive.name: craft_gains(craft) | given})
 
 
-def _push(craft: Craft) -> float:
-    return craft.thrust_coefficient * craft.fin_area * craft.fin_centre**2 / craft.total_mass[2]
+def _scales(craft: Craft) -> dict[str, float]:
+    """Numbers to which the gains of these names are proportional."""
+    mass = craft.total_mass[2]
+    return {
+        "thrust": craft.thrust_coefficient * craft.fin_area * craft.fin_centre**2 / mass,
+        "drag": craft.damping_quadratic[2] / mass,
+        "linear": craft.damping_linear[2] / mass,
+        "blade": craft.fin_normal * craft.fin_area / mass,
+        "centre": craft.fin_centre,
+        "drift": (1 - craft.buoyancy) * craft.mass / mass,
+        "noise": craft.pressure.noise,
+    }

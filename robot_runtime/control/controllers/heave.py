@@ -21,19 +21,12 @@ _TURN_RATE = 80 / 1024 * 2 * pi / 0.1
 TURNING_ROUND = 2 * DOWN / _TURN_RATE
 """s that the fins take to turn round."""
 _FULL = 1 - cos(_AMPLITUDE)
-_BLADE = 2.9
-"""1/m: 4 · ½ρ·C_N·S over the mass, of the blades across their motion."""
-_CENTRE = 0.045
-"""m from the shaft to the middle of a blade."""
-_SWEEP = _CENTRE * _TURN_RATE
-"""m/s of the blades' middles while the fins turn round."""
-_SWEEP_THRUST = 0.306
-"""m/s²: 4 · ½ρ·C_T·S·(r_c·θ̇)² over the mass, of fins that turn round."""
-_FLAPPING = 2 * _BLADE * _CENTRE * 1.3
-"""1/s: blades that flap by A from peak to peak, f times a second, resist the hull by this times A - sin A, as
-the mean of 2 · _BLADE · |r_c·θ̇| · cos²θ over a stroke about ±DOWN is 2 · _BLADE · r_c · f · (A - sin A)."""
-_LINEAR = 0.25
-"""1/s: linear damping over the mass."""
+_STROKES = 1.3
+"""Hz."""
+_SWEEP_THRUST = 0.306 / 0.268
+"""Thrust of fins that turn round, 4 · ½ρ·C_T·S·(r_c·θ̇)², over that of the full command."""
+LINEAR, BLADE, CENTRE = 0.25, 2.9, 0.045
+"""Defaults of the model's numbers."""
 
 
 class Motion(NamedTuple):
@@ -57,6 +50,12 @@ class Heave:
     """Acceleration by all fins at full command."""
     drag: float
     """1/m: quadratic drag over the mass."""
+    linear: float = LINEAR
+    """1/s: linear damping over the mass."""
+    blade: float = BLADE
+    """1/m: 4 · ½ρ·C_N·S over the mass, of the blades across their motion."""
+    centre: float = CENTRE
+    """m from the shaft to the middle of a blade."""
     strength: float = 1.0
     """The fins' thrust as a share of the model's; likewise the next two."""
     blades: float = 1.0
@@ -75,22 +74,25 @@ class Heave:
         step = seconds / count
         goal, goal_amplitude = copysign(DOWN, command) if command else direction, _AMPLITUDE * abs(command)
         pushed = across_blades = resisted = steepness = 0.0
+        # The mean of 2 · blade · |r_c·θ̇| · cos²θ over a stroke about ±DOWN is this times A - sin A.
+        flapping = 2 * self.blade * self.centre * _STROKES
+        sweep, sweep_thrust = self.centre * _TURN_RATE, self.thrust * _SWEEP_THRUST
         for _ in range(count):
             push = self.thrust * (1 - cos(amplitude)) / _FULL
-            blades = -_FLAPPING * (amplitude - sin(amplitude)) * speed
+            blades = -flapping * (amplitude - sin(amplitude)) * speed
             if direction != goal or abs(direction) < DOWN:
                 turn = _limit(goal - direction, _TURN_RATE * step)
                 middle, share = direction + turn / 2, turn / (_TURN_RATE * step)
                 across = cos(middle)
-                flow = share * _SWEEP - speed * across
-                blades += _BLADE * across * flow * abs(flow)
-                push = (push + _SWEEP_THRUST * abs(share)) * sin(middle)
+                flow = share * sweep - speed * across
+                blades += self.blade * across * flow * abs(flow)
+                push = (push + sweep_thrust * abs(share)) * sin(middle)
                 direction += turn
             elif direction < 0:
                 push = -push
-            resistance = (_LINEAR + self.drag * abs(speed)) * speed
+            resistance = (self.linear + self.drag * abs(speed)) * speed
             pushed, across_blades, resisted = pushed + push, across_blades + blades, resisted + resistance
-            steepness += _LINEAR + 2 * self.drag * abs(speed)
+            steepness += self.linear + 2 * self.drag * abs(speed)
             amplitude += _limit(goal_amplitude - amplitude, _AMPLITUDE_RATE * step)
             before = speed
             speed += (
@@ -102,7 +104,7 @@ class Heave:
 
     def resistance(self, speed: float) -> float:
         """Returns the hull's deceleration by drag at this speed, m/s², with resting fins."""
-        return self.hull * (_LINEAR + self.drag * abs(speed)) * speed
+        return self.hull * (self.linear + self.drag * abs(speed)) * speed
 
     def coast(self, speed: float, drift: float) -> float:
         """Returns the distance, m, of coasting for 3 s from this speed (m/s, above 0), fins at rest."""

@@ -1,6 +1,7 @@
 """Two Kalman filters of depth and speed: one learns the `Heave` model, one uses the accelerometer."""
 
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Iterator, Sequence
 from operator import mul
 
 from robot_runtime.control.controllers.heave import Heave, Motion
@@ -8,7 +9,7 @@ from robot_runtime.control.controllers.heave import Heave, Motion
 Matrix = list[list[float]]
 
 LAG = 0.05
-"""s from a command until the fins have followed it."""
+"""s from a command until the water has answered the fins; likewise the next two, by default."""
 AGE = 0.033
 """s by which a reading of the depth is older than the tick that uses it."""
 ACCELERATION_AGE = 0.012
@@ -27,8 +28,8 @@ _CHANGE = (0.002, 0.002, 0.002, 0.0002)
 """Change of the parameters in a step."""
 _RANGE = (0.5, 1.6)
 """Limits of the three shares."""
-_DRIFT_MAX = 0.03
-"""m/s²."""
+_DRIFT_MAX, _DRIFT_SHARE, _DRIFT_TIMES = 0.03, 0.6, 3.0
+"""m/s²; and the drift's standard deviation and limit as shares of the first one, where they are larger."""
 _BIAS = 0.1
 """m/s²: standard deviation of the accelerometer's offset at the start."""
 _NOISE, _WANDER = 0.012, 0.0005
@@ -66,7 +67,12 @@ class HeaveObserver:
 
     def __init__(self, heave: Heave) -> None:
         self.heave = heave
-        self._earlier = 0.0
+        self.lag, self.age = LAG, AGE
+        self._acting = 0.0
+        self._pending: deque[tuple[float, float]] = deque()
+        """Commands that do not act yet: s until they do, and the command."""
+        drift = max(_DRIFT, _DRIFT_SHARE * abs(heave.drift))
+        self._drift_max = max(_DRIFT_MAX, _DRIFT_TIMES * abs(heave.drift))
         common = _MASS**2
         self._covariance: Matrix = [
             [_DEPTH**2, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -74,7 +80,7 @@ class HeaveObserver:
             [0.0, 0.0, common + _STRENGTH**2, common, common, 0.0],
             [0.0, 0.0, common, common + _BLADES**2, common, 0.0],
             [0.0, 0.0, common, common, common + _HULL**2, 0.0],
-            [0.0, 0.0, 0.0, 0.0, 0.0, _DRIFT**2],
+            [0.0, 0.0, 0.0, 0.0, 0.0, drift**2],
         ]
 
     def observe(
@@ -86,7 +92,7 @@ class HeaveObserver:
         """
         motion = self._predict(motion, command, seconds)
         # The mean belongs to the middle of the time, and arrives late.
-        age = seconds / 2 + AGE
+        age = seconds / 2 + self.age
         innovation = measured - (motion.depth - motion.speed * age)
         gains, self._covariance = update(self._covariance, [1.0, -age, 0.0, 0.0, 0.0, 0.0], noise**2)
         depth, speed, strength, blades, hull, drift = gains
@@ -95,20 +101,24 @@ class HeaveObserver:
             heave.strength = _clamp(heave.strength + strength * innovation, *_RANGE)
             heave.blades = _clamp(heave.blades + blades * innovation, *_RANGE)
             heave.hull = _clamp(heave.hull + hull * innovation, *_RANGE)
-            heave.drift = _clamp(heave.drift + drift * innovation, -_DRIFT_MAX, _DRIFT_MAX)
+            heave.drift = _clamp(heave.drift + drift * innovation, -self._drift_max, self._drift_max)
         return motion._replace(
             depth=motion.depth + depth * innovation, speed=motion.speed + speed * innovation
         )
 
     def _predict(self, motion: Motion, command: float, seconds: float) -> Motion:
         heave = self.heave
-        lag = min(LAG, seconds / 2)
-        motion = heave.advance(motion, self._earlier, lag, _STEP)
-        first = heave.slopes
-        motion = heave.advance(motion, command, seconds - lag, _STEP)
-        pushed, paddled, resisted = (a + b for a, b in zip(first[:3], heave.slopes[:3], strict=True))
-        retained = first[3] * heave.slopes[3]
-        self._earlier = command
+        pushed = paddled = resisted = 0.0
+        retained = 1.0
+        self._pending.append((self.lag, command))
+        for acting, duration in self._acting_for(seconds):
+            motion = heave.advance(motion, acting, duration, _STEP)
+            push, paddle, resistance, kept = heave.slopes
+            pushed, paddled, resisted = pushed + push, paddled + paddle, resisted + resistance
+            retained *= kept
+        while self._pending and self._pending[0][0] <= seconds:
+            self._acting = self._pending.popleft()[1]
+        self._pending = deque((until - seconds, one) for until, one in self._pending)
         to_speed = [0.0, retained, pushed, paddled, resisted, seconds]
         to_depth = [1.0, seconds * (1 + retained) / 2, *(seconds / 2 * slope for slope in to_speed[2:])]
         speed_noise = _CALM + _PUSHED * abs(pushed) / seconds + _PADDLED * abs(paddled)
@@ -117,6 +127,24 @@ class HeaveObserver:
         for place, deviation in enumerate((0.0, speed_noise, *_CHANGE)):
             self._covariance[place][place] += deviation**2
         return motion
+
+    def lead(self, motion: Motion, step: float) -> Motion:
+        """Returns the motion at which a command of now will act; `motion` is that of now, `step` in s."""
+        for acting, duration in self._acting_for(self.lag):
+            motion = self.heave.advance(motion, acting, duration, step)
+        return motion
+
+    def _acting_for(self, seconds: float) -> Iterator[tuple[float, float]]:
+        """The commands that act during the next `seconds`, and for how long."""
+        acting, since = self._acting, 0.0
+        for until, command in self._pending:
+            if until >= seconds:
+                break
+            if until > since:
+                yield acting, until - since
+            acting, since = command, until
+        if seconds > since:
+            yield acting, seconds - since
 
     def _propagate(self, shares: list[float]) -> list[float]:
         return [dot(shares, column) for column in zip(*self._covariance, strict=True)]
@@ -135,6 +163,7 @@ class InertialHeave:
     """
 
     def __init__(self, depth: float, speed: float) -> None:
+        self.age, self.acceleration_age = AGE, ACCELERATION_AGE
         self._depth, self._speed, self._bias = depth, speed, 0.0
         self._covariance: Matrix = [[_DEPTH**2, 0.0, 0.0], [0.0, _SPEED**2, 0.0], [0.0, 0.0, _BIAS**2]]
 
@@ -147,14 +176,14 @@ class InertialHeave:
         """
         self._predict(acceleration, seconds)
         # The mean belongs to the middle of the time.
-        row = [1.0, -(seconds / 2 + AGE - ACCELERATION_AGE), 0.0]
+        row = [1.0, -(seconds / 2 + self.age - self.acceleration_age), 0.0]
         innovation = measured - dot(row, [self._depth, self._speed, self._bias])
         (depth, speed, bias), self._covariance = update(self._covariance, row, noise**2)
         self._depth += depth * innovation
         self._speed += speed * innovation
         self._bias += bias * innovation
-        now = self._speed + (acceleration - self._bias) * ACCELERATION_AGE
-        return self._depth + now * ACCELERATION_AGE, now
+        now = self._speed + (acceleration - self._bias) * self.acceleration_age
+        return self._depth + now * self.acceleration_age, now
 
     def _predict(self, acceleration: float, seconds: float) -> None:
         gained = (acceleration - self._bias) * seconds

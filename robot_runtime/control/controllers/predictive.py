@@ -5,13 +5,17 @@ from math import copysign, exp, inf, sqrt
 from typing import ClassVar
 
 from robot_runtime.control.controllers.base import Controller, GainLimits, braking_speed
-from robot_runtime.control.controllers.heave import TINY, Heave, Motion
-from robot_runtime.control.controllers.heave_observer import LAG, HeaveObserver, InertialHeave
+from robot_runtime.control.controllers.heave import BLADE, CENTRE, LINEAR, TINY, Heave, Motion
+from robot_runtime.control.controllers.heave_observer import (
+    ACCELERATION_AGE,
+    AGE,
+    LAG,
+    HeaveObserver,
+    InertialHeave,
+)
 
 _LOST = 1.0
 """s without a step after which the estimate of the motion is discarded."""
-_DRIFT = -0.01
-"""m/s²: the drift assumed at first; the hull floats up."""
 _DRIFT_SURE = 0.006
 """m/s² that a drift the other way must exceed before home changes sides."""
 _TICK = 0.1
@@ -70,6 +74,15 @@ class Predictive(Controller):
         "overshoot": GainLimits(4.0, 1.0, 20.0, "", "weight of a metre past the set point"),
         "thrust": GainLimits(0.268, 0.05, 2.0, "m/s²", "acceleration by all fins at full command"),
         "drag": GainLimits(5.65, 0.5, 50.0, "1/m", "deceleration by drag for each (m/s)²"),
+        "linear": GainLimits(LINEAR, 0.0, 5.0, "1/s", "deceleration by drag for each m/s"),
+        "blade": GainLimits(BLADE, 0.1, 50.0, "1/m", "deceleration by all blades across, for each (m/s)²"),
+        "centre": GainLimits(CENTRE, 0.011, 0.18, "m", "from a fin's shaft to the middle of its blade"),
+        "drift": GainLimits(-0.01, -0.5, 0.5, "m/s²", "drift downwards that is assumed at first"),
+        "lag": GainLimits(LAG, 0.0, 0.3, "s", "from a command to the water's answer to the fins"),
+        "depth_age": GainLimits(AGE, 0.0, 0.5, "s", "age of a depth when it is used"),
+        "acceleration_age": GainLimits(
+            ACCELERATION_AGE, 0.0, 0.1, "s", "age of an acceleration when it is used"
+        ),
     }
 
     def __init__(self) -> None:
@@ -78,7 +91,7 @@ class Predictive(Controller):
 
     def start(self) -> None:
         """Resets the motion and the learnt model."""
-        self._heave = Heave(self.gains["thrust"], self.gains["drag"], drift=_DRIFT)
+        self._heave = Heave(self.gains["thrust"], self.gains["drag"], drift=self.gains["drift"])
         self._observer = HeaveObserver(self._heave)
         self._motion: Motion | None = None
         self._inertial: InertialHeave | None = None
@@ -93,27 +106,35 @@ class Predictive(Controller):
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
         """Estimates the motion and decides; `measured` is the mean since the last step."""
-        self._heave.thrust, self._heave.drag = self.gains["thrust"], self.gains["drag"]
+        self._take_gains()
         if self._motion is None or seconds > _LOST:
             self._motion, self._side, self._inertial = Motion(measured, 0.0), 0.0, None
         elif seconds > 0:
             noise = self.gains["noise"]
             self._motion = self._observer.observe(self._motion, self._command, measured, noise, seconds)
-        # The decision takes effect only after LAG.
-        motion = self._heave.advance(self._refine(measured, seconds), self._command, LAG, _FINE)
+        # The decision takes effect only after the lag.
+        motion = self._observer.lead(self._refine(measured, seconds), _FINE)
         self._command = self._decide(self._find_goal(set_point, motion), motion)
         return self._command
+
+    def _take_gains(self) -> None:
+        heave, observer, gains = self._heave, self._observer, self.gains
+        heave.thrust, heave.drag, heave.linear = gains["thrust"], gains["drag"], gains["linear"]
+        heave.blade, heave.centre = gains["blade"], gains["centre"]
+        observer.lag, observer.age = gains["lag"], gains["depth_age"]
 
     def _refine(self, measured: float, seconds: float) -> Motion:
         """Returns the motion, corrected by the measured acceleration if there is one."""
         assert self._motion is not None
+        gains = self.gains
         if self.heave_acceleration is None or seconds <= 0:
             self._inertial = None
             return self._motion
         if self._inertial is None:
             self._inertial = InertialHeave(self._motion.depth, self._motion.speed)
             return self._motion
-        depth, speed = self._inertial.observe(self.heave_acceleration, measured, self.gains["noise"], seconds)
+        self._inertial.age, self._inertial.acceleration_age = gains["depth_age"], gains["acceleration_age"]
+        depth, speed = self._inertial.observe(self.heave_acceleration, measured, gains["noise"], seconds)
         return self._motion._replace(depth=depth, speed=speed)
 
     def _find_goal(self, set_point: float, motion: Motion) -> float:

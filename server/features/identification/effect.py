@@ -3,6 +3,7 @@
 from dataclasses import fields
 
 from robot_runtime.contract.craft import Craft
+from robot_runtime.control.controllers.predictive import Predictive
 from robot_runtime.control.craft_gains import craft_gains
 
 
@@ -15,10 +16,24 @@ def describe_effect(before: Craft, after: Craft) -> list[str]:
         for one in fields(Craft)
         if getattr(before, one.name) != getattr(after, one.name)
     ]
-    old, new = craft_gains(before), craft_gains(after)
     return [
         f"The simulated robot swims with other numbers: {', '.join(changed)}.",
         'Scenarios with craft = "robot" take them.',
-        f"The model-based controller's thrust is {new['thrust']:.3g} m/s² instead of {old['thrust']:.3g}, "
-        f"its drag {new['drag']:.3g} 1/m instead of {old['drag']:.3g}, unless robot.toml sets them.",
+        _describe_controller(craft_gains(before), craft_gains(after)),
     ]
+
+
+def _describe_controller(before: dict[str, float], after: dict[str, float]) -> str:
+    numbers = {name: (_words(before[name]), _words(value)) for name, value in after.items()}
+    changed = [
+        f"{name.replace('_', ' ')} {new} instead of {old} {Predictive.limits[name].unit}"
+        for name, (old, new) in numbers.items()
+        if new != old
+    ]
+    if not changed:
+        return "The model-based controller stays as it is."
+    return f"The model-based controller has {', '.join(changed)}, unless robot.toml sets them."
+
+
+def _words(value: float) -> str:
+    return f"{value:.3g}"

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import click
 
+from robot_runtime.contract.craft import load_craft
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.transport.network import connect_settings
-from server.platform.command_line import CommandError
+from server.platform.command_line import FILE, CommandError
 
 
 @click.command()
@@ -27,10 +28,17 @@ from server.platform.command_line import CommandError
 )
 @click.option("--robot", default="turtle", help="The robot's name.")
 @click.option("--seed", type=int, default=1, help="Seed of the sensors' noise.")
-def simulator(connect: str, certificate: Path, robot: str, seed: int) -> None:
+@click.option(
+    "--craft",
+    type=FILE,
+    help="The craft file of that robot, such as its craft.toml.  [default: the default craft]",
+)
+def simulator(connect: str, certificate: Path, robot: str, seed: int, craft: Path | None) -> None:
     """Simulate the water for a robot on another computer."""
     try:
         connect_settings(certificate)
+        if craft is not None:
+            load_craft(craft)
     except ConfigError as problem:
         raise CommandError(str(problem)) from problem
     there = ["--connect", connect, "--certificate", str(certificate), "--robot", robot]
@@ -38,4 +46,5 @@ def simulator(connect: str, certificate: Path, robot: str, seed: int) -> None:
     subprocess.Popen(scene)
     # This process becomes the simulator; the scene ends with it.
     water = [sys.executable, "-m", "robot_runtime.simulation", "--in-the-loop", *there]
-    os.execv(sys.executable, [*water, "--seed", str(seed)])
+    own = ["--craft", str(craft)] if craft is not None else []
+    os.execv(sys.executable, [*water, "--seed", str(seed), *own])

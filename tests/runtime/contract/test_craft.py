@@ -9,6 +9,7 @@ import tomli_w
 from robot_runtime.config import Config, ControlConfig, CraftConfig, craft_in, craft_path
 from robot_runtime.contract.craft import Craft, SensorQuality, craft_table, load_craft, read_craft
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.control.controllers.predictive import Predictive
 from robot_runtime.control.craft_gains import craft_gains, tune_to_craft
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.simulation.water.parameters import SimulationParameters
@@ -76,12 +77,49 @@ def test_a_scenario_takes_the_robot_s_craft_only_where_it_names_it() -> None:
     assert changed.robot == replace(SimulationParameters.of(HEAVY), buoyancy=1.01)
 
 
-def test_the_model_based_controller_gets_the_craft_s_thrust_and_drag() -> None:
+def test_the_model_based_controller_gets_the_craft_s_numbers() -> None:
     gains = craft_gains(HEAVY)
-    # Less thrust by 0.2 of 0.31, on 6.8 kg of moving mass instead of 6.2 kg.
-    assert gains == pytest.approx({"thrust": 0.268 * 0.2 / 0.31 * 6.2 / 6.8, "drag": 35 / 6.8})
+    # Less thrust by 0.2 of 0.31; 6.8 kg of moving mass instead of 6.2 kg, of which 3.6 kg float instead of 3.
+    lighter = 6.2 / 6.8
+    assert gains == pytest.approx(
+        {
+            "thrust": 0.268 * 0.2 / 0.31 * lighter,
+            "drag": 5.65 * lighter,
+            "linear": 0.25 * lighter,
+            "blade": 2.9 * lighter,
+            "centre": 0.045,
+            "drift": -0.01 * 1.2 * lighter,
+            "noise": 0.0022,
+            "lag": 0.05 + 0.02,
+            "depth_age": 0.033,
+            "acceleration_age": 0.012,
+        }
+    )
     named = read_scenario(SCENARIO + 'craft = "robot"\n', HEAVY)
     assert named.control.gains["predictive"] == gains
-    mine = ControlConfig(gains={"predictive": {"thrust": 0.3}})
-    assert tune_to_craft(mine, HEAVY).gains["predictive"] == {"thrust": 0.3, "drag": gains["drag"]}
+
+
+def test_slow_and_noisy_sensors_are_told_to_the_model_based_controller() -> None:
+    plain = Craft()
+    slow = Craft(
+        pressure=replace(plain.pressure, latency=0.1, noise=84.0),
+        accelerometer=replace(plain.accelerometer, latency=0.02),
+    )
+    expected = craft_gains(plain) | {"noise": 0.0044, "depth_age": 0.133, "acceleration_age": 0.027}
+    assert craft_gains(slow) == pytest.approx(expected)
+
+
+def test_gains_of_robot_toml_go_before_those_of_the_craft() -> None:
+    mine = ControlConfig(gains={"predictive": {"thrust": 0.3, "noise": 0.004}})
+    expected = craft_gains(HEAVY) | {"thrust": 0.3, "noise": 0.004}
+    assert tune_to_craft(mine, HEAVY).gains["predictive"] == expected
     assert tune_to_craft(mine, Craft()) == mine
+
+
+def test_a_craft_at_the_ends_of_its_ranges_gives_gains_within_theirs() -> None:
+    still = replace(Craft().pressure, noise=0.0, latency=3.0)
+    for extreme in (
+        Craft(mass=0.75, fin_drag=1.24, fin_area=0.02, fin_centre=0.18, buoyancy=1.1, pressure=still),
+        Craft(mass=12.0, fin_drag=0.03, fin_area=0.001, fin_normal=0.5, buoyancy=0.9),
+    ):
+        Predictive.check(craft_gains(extreme))

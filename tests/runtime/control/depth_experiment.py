@@ -1,6 +1,6 @@
 """An experiment with the depth controllers in simulated time: three steps and a sine, with its figures."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import pi, sin
@@ -60,6 +60,28 @@ def variants() -> dict[str, SimulationParameters]:
     return made
 
 
+def known_crafts() -> dict[str, SimulationParameters]:
+    """Crafts that differ in more than one number, or in what no motion reveals to the controller."""
+    plain = SimulationParameters()
+
+    def weighing(factor: float) -> SimulationParameters:
+        x, y, z = plain.inertia
+        return replace(plain, mass=plain.mass * factor, inertia=(x * factor, y * factor, z * factor))
+
+    heavy = replace(weighing(1.3), buoyancy=1.0021)
+    late = replace(plain.pressure, latency=plain.pressure.latency + 0.1)
+    return {
+        "mass +30 %, buoyancy -30 %": heavy,
+        "the same, fins act 0.05 s later": replace(heavy, fin_delay=0.05),
+        "mass -30 %, thrust and buoyancy +30 %, fins act 0.05 s later": replace(
+            weighing(0.7), buoyancy=1.0039, fin_drag=plain.fin_drag * 1.3, fin_delay=0.05
+        ),
+        "depth 0.1 s later": replace(plain, pressure=late),
+        "blades' drag doubled": replace(plain, fin_normal=2 * plain.fin_normal),
+        "sinks: buoyancy 0.3 % below the weight": replace(plain, buoyancy=0.997),
+    }
+
+
 @dataclass(frozen=True)
 class Figures:
     """Figures of one controller on one robot: the worst of the three steps, unless stated otherwise."""
@@ -108,9 +130,14 @@ class _TruthRecorder:
 
 
 def experiment(
-    controller: str, robot: SimulationParameters, *, sine: bool = True, seed: int = SEEDS[0]
+    controller: str,
+    robot: SimulationParameters,
+    *,
+    sine: bool = True,
+    seed: int = SEEDS[0],
+    gains: Mapping[str, float] | None = None,
 ) -> Scenario:
-    """The scenario: three steps, and a sine."""
+    """The scenario: three steps, and a sine. `gains` are those that differ from the controller's defaults."""
     steps_end = ARMED + STEP * len(SET_POINTS)
     duration = steps_end + (SINE_PERIOD if sine else 0.0)
     events = [(ARMED + STEP * number, depth) for number, depth in enumerate(SET_POINTS) if number]
@@ -123,17 +150,23 @@ def experiment(
         f'[[events]]\nat = {ARMED}\ndo = "arm"\n'
     )
     text += "".join(f'[[events]]\nat = {at}\ndo = "set_points"\ndefault = {depth}\n' for at, depth in events)
-    return replace(read_scenario(text), robot=robot)
+    scenario = read_scenario(text)
+    control = replace(scenario.control, gains={controller: dict(gains or {})})
+    return replace(scenario, robot=robot, control=control)
 
 
 def perform(
-    controller: str, robot: SimulationParameters, *, sine: bool = True, seed: int = SEEDS[0]
+    controller: str,
+    robot: SimulationParameters,
+    *,
+    sine: bool = True,
+    seed: int = SEEDS[0],
+    gains: Mapping[str, float] | None = None,
 ) -> Figures:
     """Runs the scenario and returns its figures."""
     taken = _TruthRecorder(robot.pressure_position)
-    ScenarioRun(experiment(controller, robot, sine=sine, seed=seed), boards()["host"], taken).perform(
-        lambda _: {}
-    )
+    scenario = experiment(controller, robot, sine=sine, seed=seed, gains=gains)
+    ScenarioRun(scenario, boards()["host"], taken).perform(lambda _: {})
     return judge(taken.samples)
 
 

@@ -14,7 +14,15 @@ from robot_runtime.control.controllers.heave_observer import (
     InertialHeave,
 )
 from robot_runtime.control.controllers.predictive import Predictive
-from tests.runtime.control.depth_experiment import BEST, THESIS, crossing_ratio, perform, variants
+from robot_runtime.control.craft_gains import craft_gains
+from tests.runtime.control.depth_experiment import (
+    BEST,
+    THESIS,
+    crossing_ratio,
+    known_crafts,
+    perform,
+    variants,
+)
 
 SECONDS = 0.1
 
@@ -134,6 +142,28 @@ def test_it_rests_at_the_set_point_in_the_water_of_its_model(drift: float, withi
     assert turns == 0
 
 
+@pytest.mark.parametrize("lag", [0.0, 0.02, 0.05, 0.1, 0.17, 0.25])
+def test_commands_act_after_the_lag(lag: float) -> None:
+    """Also where several are under way: the observer's motion is that of a hull whose commands come late."""
+    commands = [0.4, 0.0, 1.0, 1.0, -0.5, -1.0, 0.3] * 4
+    observer = HeaveObserver(heave())
+    observer.lag = lag
+    seen = Motion(1.0, 0.0, DOWN)
+    for command in commands:
+        seen = observer.observe(seen, command, 0.0, 1e3, SECONDS)  # a depth that says nothing
+    water, step = heave(), 0.01
+    late = round(lag / step)
+    acting = [0.0] * late + [one for one in commands for _ in range(round(SECONDS / step))]
+    really = Motion(1.0, 0.0, DOWN)
+    for command in acting[: len(acting) - late]:
+        really = water.advance(really, command, step, step)
+    assert (seen.depth, seen.speed) == pytest.approx((really.depth, really.speed), abs=0.003)
+    for command in acting[len(acting) - late :]:
+        really = water.advance(really, command, step, step)
+    ahead = observer.lead(seen, step)
+    assert (ahead.depth, ahead.speed) == pytest.approx((really.depth, really.speed), abs=0.003)
+
+
 def test_after_a_pause_the_controller_starts_anew() -> None:
     used, fresh = Predictive(), Predictive()
     for _ in range(50):
@@ -153,3 +183,15 @@ def test_in_simulated_water_it_rests_where_the_thesis_controller_oscillates(craf
         thesis = perform(THESIS, robot, sine=False)
         assert thesis.steady > 0.14
         assert crossing_ratio([found], [thesis]) <= 1.2
+
+
+@pytest.mark.parametrize(
+    "craft", ["the same, fins act 0.05 s later", "sinks: buoyancy 0.3 % below the weight"]
+)
+def test_with_its_craft_s_numbers_it_overshoots_much_less(craft: str) -> None:
+    robot = known_crafts()[craft]
+    knowing, usual = (perform(BEST, robot, sine=False, gains=gains) for gains in (craft_gains(robot), {}))
+    assert usual.overshoot > 0.05
+    assert knowing.overshoot < 0.55 * usual.overshoot
+    assert knowing.steady <= 0.02
+    assert sum(knowing.crossings) < 1.05 * sum(usual.crossings)

@@ -7,6 +7,8 @@ import pytest
 
 from robot_runtime.transport.network import connect_settings
 from server.cli import main
+from server.features.simulator import command
+from server.platform.authority import Authority
 from server.platform.pidfile import PidFile
 from server.platform.settings import Settings
 
@@ -43,3 +45,41 @@ def test_a_simulator_without_its_files_is_refused_in_words(
     there = ["--connect", "tls/192.0.2.7:7447", "--certificate", str(tmp_path)]
     assert main(["simulator", *there]) == 1
     assert "lacks authority.pem, certificate.pem, key.pem" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (None, "the craft file {file} cannot be read: [Errno 2] No such file or directory"),
+        ("title = 'Two'\n[craft]\nmas = 2.5\n", "two.toml: craft: 'mas' is not known here; known are mass"),
+        ("title = 'Two'\n[craft]\nmass = 99\n", "two.toml: craft: mass is 99; it must lie between 0.75 and 12"),
+        ("[craft\n", "two.toml: the craft file is not TOML"),
+    ],
+)
+def test_a_simulator_refuses_a_craft_file_in_words(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str | None, why: str
+) -> None:
+    Authority(settings).issue("lab", tmp_path / "lab")
+    file = tmp_path / "two.toml"
+    if text is not None:
+        file.write_text(text)
+    there = ["--connect", "tls/192.0.2.7:7447", "--certificate", str(tmp_path / "lab")]
+    assert main(["simulator", *there, "--craft", str(file)]) == 1
+    assert why.format(file=file) in capsys.readouterr().err
+
+
+def test_the_simulator_swims_the_craft_of_the_file(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Authority(settings).issue("lab", tmp_path / "lab")
+    file = tmp_path / "two.toml"
+    file.write_text("title = 'Two'\n[craft]\nmass = 2.5\n")
+    started: list[list[str]] = []
+    monkeypatch.setattr(command.subprocess, "Popen", started.append)
+    monkeypatch.setattr(command.os, "execv", lambda _, words: started.append(words))
+    there = ["--connect", "tls/192.0.2.7:7447", "--certificate", str(tmp_path / "lab")]
+    main(["simulator", *there, "--craft", str(file)])
+    main(["simulator", *there])
+    _, water, _, default = started
+    assert water[water.index("--craft") + 1] == str(file)
+    assert "--craft" not in default
