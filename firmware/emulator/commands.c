@@ -55,9 +55,10 @@ static void sense(struct service *service, struct client *client, char *numbers)
   if (service->water.client && service->water.client != client) {
     refuse(service, client, "another connection is the water");
   } else if (!water_sense(&service->water, numbers)) {
-    refuse(service, client,
-           "sense takes eleven finite numbers, pressure and battery not negative, and perhaps four more, up "
-           "to pi or nan");
+    refuse(
+        service, client,
+        "sense takes eleven finite numbers, pressure and battery not negative; perhaps four more, up to pi "
+        "or nan; and perhaps one more, not negative");
   }
 }
 

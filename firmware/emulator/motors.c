@@ -14,7 +14,8 @@
 #define INERTIA (TORQUE_SLOPE * 30e-3)
 // The water resists each strip of a fin with half * rho * C_N * chord * (r * speed)^2 at its distance r from
 // the shaft. Over the fin's length R, with chord = S / R, the torque is half * rho * C_N * S * R^3 / 4 *
-// speed^2. S and R are published, C_N is that of a flat plate, as in the simulated water.
+// speed^2. S and R are published, C_N is that of a flat plate, as in the simulated water; other fins come
+// as a load of their own.
 #define FIN_AREA 0.0045   // m^2
 #define FIN_LENGTH 0.088  // m
 #define FIN_NORMAL 2.0
@@ -38,7 +39,7 @@ static double ideal_speed(double drive) {
 
 // The speed after a step: implicit where torque grows with the speed, so that no step is too long. Friction
 // only ever stops.
-static double speed_after(double speed, double fin_speed, double drive, bool coasts) {
+static double speed_after(double speed, double fin_speed, double load, double drive, bool coasts) {
   double step = MOTORS_PERIOD / INERTIA;
   double slope = coasts ? 0 : TORQUE_SLOPE;
   double pushed = speed + step * slope * ideal_speed(drive);
@@ -46,7 +47,7 @@ static double speed_after(double speed, double fin_speed, double drive, bool coa
   if (fabs(pushed) <= stopped) {
     return 0;
   }
-  return (pushed - copysign(stopped, pushed)) / (1 + step * (slope + WATER_DRAG * fabs(fin_speed)));
+  return (pushed - copysign(stopped, pushed)) / (1 + step * (slope + WATER_DRAG * load * fabs(fin_speed)));
 }
 
 // A, from the battery. An H-bridge is a converter: it draws the motor's power. What a motor gives back is
@@ -78,7 +79,7 @@ static double turn(struct motors *motors, unsigned fin, double drive_max) {
   bool coasts = number == NOT_CONNECTED || drv8830_coasts(bridge);
   double drive = coasts ? 0 : wiring->leads[fin] * fmax(fmin(drv8830_drive(bridge), drive_max), -drive_max);
   double before = motors->rotor_speed[fin];
-  double after = speed_after(before, motors->speed[fin], drive, coasts);
+  double after = speed_after(before, motors->speed[fin], motors->surroundings->fin_load, drive, coasts);
   motors->rotor_speed[fin] = after;
   motors->rotor[fin] += MOTORS_PERIOD * (before + after) / 2;
   turn_fin(motors, fin);

@@ -4,7 +4,7 @@
 #include <math.h>
 
 static bool possible(const struct surroundings *reading) {
-  double sum = reading->pressure + reading->temperature + reading->battery;
+  double sum = reading->pressure + reading->temperature + reading->battery + reading->fin_load;
   for (unsigned axis = 0; axis < 3; axis++) {
     sum += reading->force[axis] + reading->rate[axis];
   }
@@ -13,7 +13,7 @@ static bool possible(const struct surroundings *reading) {
       return false;
     }
   }
-  return isfinite(sum) && reading->pressure >= 0 && reading->battery >= 0;
+  return isfinite(sum) && reading->pressure >= 0 && reading->battery >= 0 && reading->fin_load >= 0;
 }
 
 bool surroundings_read(struct surroundings *surroundings, const double n[SURROUNDINGS_NUMBERS]) {
@@ -29,6 +29,7 @@ bool surroundings_read(struct surroundings *surroundings, const double n[SURROUN
       .beacon_left = n[9] != 0,
       .battery = n[10],
       .encoder_error = {n[11], n[12], n[13], n[14]},
+      .fin_load = n[15],
   };
   bool can_be = possible(&reading);
   if (can_be) {

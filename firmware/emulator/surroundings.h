@@ -13,14 +13,15 @@ struct surroundings {
   bool beacon_right, beacon_left;
   double battery;           // V
   double encoder_error[4];  // rad, error of each fin's encoder; NAN: it repeats its last reading
+  double fin_load;          // of the water on each fin's motor, as a share of that on the published fin
 };
 
 // At the surface of still water, level and at rest, with a charged battery.
 #define STILL_WATER \
-  { .pressure = 101325, .temperature = 20, .force = {0, 0, -9.80665}, .battery = 7.4 }
+  { .pressure = 101325, .temperature = 20, .force = {0, 0, -9.80665}, .battery = 7.4, .fin_load = 1 }
 
-// PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3
-#define SURROUNDINGS_NUMBERS 15
+// PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3 FIN_LOAD
+#define SURROUNDINGS_NUMBERS 16
 
 // Sets the surroundings to these numbers; false, without a change, if they are impossible.
 bool surroundings_read(struct surroundings *surroundings, const double numbers[SURROUNDINGS_NUMBERS]);

@@ -7,6 +7,7 @@
 #define PERIOD_MIN 0.5e-3
 #define PERIOD_MAX 1.0
 #define NUMBERS_WITHOUT_ENCODERS 11
+#define FIN_LOAD (SURROUNDINGS_NUMBERS - 1)
 
 static void on_period(void *owner) {
   struct water *water = owner;
@@ -89,11 +90,10 @@ static int read_numbers(const char *text, double *numbers, int most) {
 }
 
 bool water_sense(struct water *water, const char *text) {
-  double n[SURROUNDINGS_NUMBERS] = {0};
+  double n[SURROUNDINGS_NUMBERS] = {[FIN_LOAD] = 1};
   struct surroundings reading;
   int count = read_numbers(text, n, SURROUNDINGS_NUMBERS);
-  if ((count != NUMBERS_WITHOUT_ENCODERS && count != SURROUNDINGS_NUMBERS) ||
-      !surroundings_read(&reading, n)) {
+  if ((count != NUMBERS_WITHOUT_ENCODERS && count < FIN_LOAD) || !surroundings_read(&reading, n)) {
     return false;
   }
   board_set_surroundings(water->board, &reading);

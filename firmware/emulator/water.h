@@ -35,8 +35,8 @@ void water_send_fins(struct water *water, struct client *client, const char *wor
 void water_request(struct water *water, double now);
 bool water_waiting(struct water *water, double now);
 
-// Sets the numbers of a `sense` line, with or without the encoders' errors. False if they are not eleven or
-// fifteen possible numbers.
+// Sets the numbers of a `sense` line, with or without the encoders' errors and the load of the fins. False if
+// they are not eleven, fifteen or sixteen possible numbers.
 bool water_sense(struct water *water, const char *text);
 
 #endif

@@ -93,7 +93,7 @@ def test_the_firmware_s_stack_fits_and_is_not_deeper_than_its_bound(tmp_path: Pa
 
 @pytest.mark.parametrize(("name", "options"), [("hil/robot", ["HIL=1", "robot"]), ("bring_up", ["bring_up"])])
 def test_the_other_programs_fit_the_chip_too(name: str, options: list[str]) -> None:
-    """That of a board in the loop has less memory left than the robot's, and needs less."""
+    """The program of a board in the loop has less memory left than the robot's, and needs less."""
     build(ROOT / "firmware", *options)
     elf = ROOT / f"build/firmware/{name}.elf"
     assert count_flash(elf) <= FLASH_BYTES

@@ -308,9 +308,10 @@ def drive(monitor: Monitor, fin: int, steps: int) -> int:
     return monitor.transfer(BRIDGES[fin], bytes([0, abs(steps) << 2 | direction]))[0]
 
 
-def steady_speed(steps: float) -> float:
+def steady_speed(steps: float, load: float = 1.0) -> float:
     """rad/s at which the water takes all the torque that a motor has at this drive."""
-    return (math.sqrt(SLOPE**2 + 4 * DRAG * SLOPE * NO_LOAD * steps) - SLOPE) / (2 * DRAG)
+    drag = load * DRAG
+    return (math.sqrt(SLOPE**2 + 4 * drag * SLOPE * NO_LOAD * steps) - SLOPE) / (2 * drag)
 
 
 def test_a_motor_turns_its_fin_in_the_water_as_it_is_driven(rig: Rig, monitor: Monitor) -> None:
@@ -327,6 +328,15 @@ def test_a_motor_turns_its_fin_in_the_water_as_it_is_driven(rig: Rig, monitor: M
     after = rig.board.fins()
     turned = [math.remainder(b - a, math.tau) for a, b in zip(before.angles, after.angles, strict=True)]
     assert turned == pytest.approx((0.1 * full, -0.1 * full, -0.1 * half, 0), abs=0.01)
+
+
+@pytest.mark.parametrize("load", [0.5, 2.0])
+def test_other_fins_load_their_motors_more_or_less(rig: Rig, monitor: Monitor, load: float) -> None:
+    rig.board.sense(STILL_WATER._replace(fin_load=load))
+    monitor.outputs(MOTOR_POWER)
+    drive(monitor, 0, 40)
+    rig.board.run(0.3)
+    assert rig.board.fins().speeds[0] == pytest.approx(steady_speed(40, load), rel=0.001)
 
 
 def test_a_motor_speeds_up_against_inertia_and_water(rig: Rig, monitor: Monitor) -> None:

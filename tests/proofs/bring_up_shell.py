@@ -16,7 +16,7 @@ from robot_runtime.simulation.boards.workbench import ALONG, BAROMETER, BATTERY,
 from tests.board.rig import OPTIBOOT, PROGRAM, ROOT
 
 PATIENCE = 60.0
-"""s until the next question."""
+"""s without a word, at most: the longest is the upload of a sketch."""
 BEATS = 10
 """Changes of the surroundings, 40 ms each, that a person waits before pressing Enter."""
 TURNED = 0.1
@@ -89,9 +89,9 @@ class ShellPerson:
     def _hear(self) -> str | None:
         """The next question, once it is whole; None where there is none any more."""
         assert self._process.stdout is not None
-        heard, end = "", time.monotonic() + PATIENCE
+        heard = ""
         while not heard.endswith(": "):
-            assert select.select([self._process.stdout], [], [], max(0.0, end - time.monotonic()))[0], heard
+            assert select.select([self._process.stdout], [], [], PATIENCE)[0], heard
             data = os.read(self._process.stdout.fileno(), 65536).decode()
             if not data:
                 self._said += heard

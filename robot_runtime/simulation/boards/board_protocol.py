@@ -1,7 +1,7 @@
 """The text protocol between the water and the emulated board, without I/O.
 
 The board sends its fins, `fins TIME A0..A3 S0..S3 D0..D3 POWER LED`, and waits for the answer
-`sense PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3`.
+`sense PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3 FIN_LOAD`.
 """
 
 from collections.abc import Iterator
@@ -56,5 +56,6 @@ def write_sense(reading: Reading) -> str:
     encoders = " ".join(f"{error:.5f}" for error in reading.encoders)
     return (
         f"sense {reading.pressure:.1f} {reading.temperature:.2f} {motion} "
-        f"{reading.beacon_right:d} {reading.beacon_left:d} {reading.battery:.4f} {encoders}\n"
+        f"{reading.beacon_right:d} {reading.beacon_left:d} {reading.battery:.4f} {encoders} "
+        f"{reading.fin_load:.4f}\n"
     )

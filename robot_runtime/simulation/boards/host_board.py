@@ -110,7 +110,7 @@ class HostBoard(SteppedBoard):
             self._board = None
 
     def _sense(self, reading: Reading) -> None:
-        numbers = (c_double * 15)(
+        numbers = (c_double * 16)(
             reading.pressure,
             reading.temperature,
             *reading.force,
@@ -119,6 +119,7 @@ class HostBoard(SteppedBoard):
             reading.beacon_left,
             reading.battery,
             *reading.encoders,
+            reading.fin_load,
         )
         if not self._library.board_sense(self._board, numbers):
             raise BoardError(f"the board refused this reading of its sensors: {reading}")

@@ -67,6 +67,18 @@ class SimulationParameters(Craft):
         return cls(**{one.name: getattr(craft, one.name) for one in fields(Craft)})
 
     @property
+    def fin_load(self) -> float:
+        """The torque by which the water resists a turning fin, over that of the published fin in fresh water.
+
+        By strips of a blade of the same shape: ½ρ·C_N·S·R³/4, with R in proportion to the fin's centre.
+        """
+        published = SimulationParameters()
+        own, usual = (
+            one.density * one.fin_normal * one.fin_area * one.fin_centre**3 for one in (self, published)
+        )
+        return own / usual
+
+    @property
     def weight(self) -> float:
         """N."""
         return self.mass * self.gravity

@@ -110,6 +110,8 @@ class Reading(NamedTuple):
     """V."""
     encoders: Four = (0.0, 0.0, 0.0, 0.0)
     """rad, error of each fin's encoder; nan while it repeats its last reading."""
+    fin_load: float = 1.0
+    """The water's torque on each fin's motor, over that on the published fin; for the emulated board."""
 
 
 class Sensors:
@@ -117,6 +119,7 @@ class Sensors:
 
     def __init__(self, parameters: SimulationParameters, world: World, seed: int) -> None:
         self._parameters = parameters
+        self._fin_load = parameters.fin_load
         self._world = world
         self.seed = seed
         """Seed of all noise, from the next start on."""
@@ -175,6 +178,7 @@ class Sensors:
             beacon_left=sensors["beacon_left"].read(time, (left,))[0] > 0,
             battery=max(sensors["battery"].read(time, (battery,))[0], 0.0),
             encoders=(first, second, third, fourth),
+            fin_load=self._fin_load,
         )
 
     def _pressure(self, time: float, state: BodyState, matrix: Matrix) -> float:

@@ -52,7 +52,7 @@ def test_an_invalid_fins_line_is_refused(line: str) -> None:
 def test_a_sense_line_holds_the_reading() -> None:
     assert write_sense(SENSE) == (
         "sense 106230.0 15.00 0.100000 -0.200000 -9.810000 0.001000 0.002000 -0.003000 1 0 7.8900 "
-        "0.01000 -0.02000 nan 0.00000\n"
+        "0.01000 -0.02000 nan 0.00000 1.0000\n"
     )
 
 

@@ -104,3 +104,10 @@ def test_a_craft_s_fixed_offsets_are_added() -> None:
     reading = read(at_rest(1.0), parameters=offset)
     assert reading.rate == pytest.approx((0.1, 0.0, -0.1))
     assert reading.force == pytest.approx((0.0, 0.2, -9.31))
+
+
+def test_larger_and_blunter_fins_load_their_motors_more() -> None:
+    """By strips: with the area, the coefficient, and the cube of the length."""
+    assert read(at_rest(1.0)).fin_load == 1
+    larger = replace(QUIET, fin_area=2 * QUIET.fin_area, fin_centre=2 * QUIET.fin_centre, fin_normal=1.0)
+    assert read(at_rest(1.0), parameters=larger).fin_load == pytest.approx(2 * 8 / 2)
