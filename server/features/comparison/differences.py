@@ -1,4 +1,4 @@
-"""Differences between sessions: configuration, gains in force, versions, scenario."""
+"""Differences between sessions: configuration, gains in force, versions, craft, scenario."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -35,7 +35,7 @@ CHANGED = "changed while armed: "
 class Difference(BaseModel):
     """A property that differs between sessions."""
 
-    group: str = Field(description="In force, Parameters, Session, robot.toml or Scenario")
+    group: str = Field(description="In force, Parameters, Session, Craft, robot.toml or Scenario")
     name: str
     values: list[str] = Field(description="one for each session; empty if it lacks the property")
 
@@ -46,10 +46,12 @@ def find_differences(sessions: Sequence[tuple[SessionRow, ControlHistory]]) -> l
     groups = [
         ("In force", [dict(_in_force(history)) for _, history in sessions]),
         ("Parameters", [dict(_parameters(history)) for _, history in sessions]),
-        ("Session", [_of_row(row) for row, _ in sessions]),
+        ("Session", [_of_row(row) | {"Craft": _craft(history)} for row, history in sessions]),
     ]
     if not alone:
+        known = all(history.crafts for _, history in sessions)
         groups += [
+            ("Craft", [dict(_numbers(history)) if known else {} for _, history in sessions]),
             ("robot.toml", [dict(flatten(row.configuration)) for row, _ in sessions]),
             ("Scenario", [dict(flatten(row.scenario)) for row, _ in sessions]),
         ]
@@ -108,6 +110,24 @@ def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
                 values.setdefault(name, []).append(_words(value))
     for name, seen in values.items():
         yield name, _sequence(list(dict.fromkeys(seen)))
+
+
+def _craft(history: ControlHistory) -> str:
+    """The crafts' titles, or the reason why there is none; empty where it is not known."""
+    if history.crafts:
+        return ", then ".join(one.title for one in history.crafts)
+    return {"real": "real robot", "simulated": "not recorded", "unknown": ""}[history.water]
+
+
+def _numbers(history: ControlHistory) -> Iterator[tuple[str, str]]:
+    """Every number of the craft, with those of later ones."""
+    values: dict[str, list[str]] = {}
+    for one in history.crafts:
+        for name, value in flatten(one.file):
+            if name not in ("title", "origin"):
+                values.setdefault(name.removeprefix("craft."), []).append(value)
+    for name, seen in values.items():
+        yield name, ", then ".join(dict.fromkeys(seen))
 
 
 def _rules(time: float, times: Sequence[float], armed: Sequence[Span]) -> bool:

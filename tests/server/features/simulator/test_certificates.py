@@ -52,7 +52,10 @@ def test_a_simulator_without_its_files_is_refused_in_words(
     [
         (None, "the craft file {file} cannot be read: [Errno 2] No such file or directory"),
         ("title = 'Two'\n[craft]\nmas = 2.5\n", "two.toml: craft: 'mas' is not known here; known are mass"),
-        ("title = 'Two'\n[craft]\nmass = 99\n", "two.toml: craft: mass is 99; it must lie between 0.75 and 12"),
+        (
+            "title = 'Two'\n[craft]\nmass = 99\n",
+            "two.toml: craft: mass is 99; it must lie between 0.75 and 12",
+        ),
         ("[craft\n", "two.toml: the craft file is not TOML"),
     ],
 )

@@ -1,0 +1,51 @@
+"""The crafts with which a session was swum, as the simulator has sent them."""
+
+from typing import Literal
+
+import tomli_w
+from pydantic import BaseModel, Field
+
+from robot_runtime.contract.craft import ORIGIN_MAX, TITLE_MAX
+from server.features.sessions.recording import Recording, reading_content
+
+Water = Literal["simulated", "real", "unknown"]
+
+
+class RecordedCraft(BaseModel):
+    """A craft that the simulator swam from `time` on."""
+
+    time: float = Field(description="s since the session's start")
+    title: str
+    origin: str
+    file: str = Field(description="the craft file, with all its numbers")
+
+
+def read_crafts(recording: Recording) -> list[RecordedCraft]:
+    """The crafts in the order of time; recordings of older versions have none.
+
+    Raises StoreError, RecordingError.
+    """
+    if "craft" not in recording.topics:
+        return []
+    with reading_content(recording.row):
+        return [
+            RecordedCraft(
+                time=document["time"] - recording.row.started_steady,
+                title=str(document["title"]),
+                origin=str(document["origin"]),
+                file=_file(document),
+            )
+            for document in recording.changes("craft")
+        ]
+
+
+def which_water(topics: set[str]) -> Water:
+    """The water of a session with samples of these topics: without a simulator's it is real."""
+    if topics & {"craft", "truth"}:
+        return "simulated"
+    return "real" if "status" in topics else "unknown"
+
+
+def _file(document: dict[str, object]) -> str:
+    title, origin = str(document["title"])[:TITLE_MAX], str(document["origin"])[:ORIGIN_MAX]
+    return tomli_w.dumps({"title": title, "origin": origin, "craft": document["craft"]})
