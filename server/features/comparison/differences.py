@@ -7,6 +7,7 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.contract.toml_text import TomlError, read_toml
 from server.features.comparison.moments import ControlHistory, Span
+from server.features.sessions.crafts import describe_crafts
 from server.platform.models import SessionRow
 
 _ROW: Mapping[str, str] = {
@@ -46,7 +47,7 @@ def find_differences(sessions: Sequence[tuple[SessionRow, ControlHistory]]) -> l
     groups = [
         ("In force", [dict(_in_force(history)) for _, history in sessions]),
         ("Parameters", [dict(_parameters(history)) for _, history in sessions]),
-        ("Session", [_of_row(row) | {"Craft": _craft(history)} for row, history in sessions]),
+        ("Session", [_of_session(row, history) for row, history in sessions]),
     ]
     if not alone:
         known = all(history.crafts for _, history in sessions)
@@ -112,13 +113,6 @@ def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
         yield name, _sequence(list(dict.fromkeys(seen)))
 
 
-def _craft(history: ControlHistory) -> str:
-    """The crafts' titles, or the reason why there is none; empty where it is not known."""
-    if history.crafts:
-        return ", then ".join(one.title for one in history.crafts)
-    return {"real": "real robot", "simulated": "not recorded", "unknown": ""}[history.water]
-
-
 def _numbers(history: ControlHistory) -> Iterator[tuple[str, str]]:
     """Every number of the craft, with those of later ones."""
     values: dict[str, list[str]] = {}
@@ -142,8 +136,9 @@ def _sequence(values: Sequence[str]) -> str:
     return values[0] if len(values) == 1 else CHANGED + ", ".join(values)
 
 
-def _of_row(row: SessionRow) -> dict[str, str]:
-    return {title: _words(getattr(row, key)) for key, title in _ROW.items()}
+def _of_session(row: SessionRow, history: ControlHistory) -> dict[str, str]:
+    values = {title: _words(getattr(row, key)) for key, title in _ROW.items()}
+    return values | {"Craft": describe_crafts(history.water, history.crafts)}
 
 
 def _words(value: Any) -> str:

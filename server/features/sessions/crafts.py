@@ -1,5 +1,6 @@
 """The crafts with which a session was swum, as the simulator has sent them."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 import tomli_w
@@ -44,6 +45,13 @@ def which_water(topics: set[str]) -> Water:
     if topics & {"craft", "truth"}:
         return "simulated"
     return "real" if "status" in topics else "unknown"
+
+
+def describe_crafts(water: Water, crafts: Sequence[RecordedCraft]) -> str:
+    """The crafts' titles, or the reason why there is none; empty where it is not known."""
+    if crafts:
+        return ", then ".join(one.title for one in crafts)
+    return {"real": "real robot", "simulated": "not recorded", "unknown": ""}[water]
 
 
 def _file(document: dict[str, object]) -> str:
