@@ -1,7 +1,8 @@
 """The crafts with which a session was swum, as the simulator has sent them."""
 
-from collections.abc import Sequence
-from typing import Literal
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
 
 import tomli_w
 from pydantic import BaseModel, Field
@@ -9,6 +10,7 @@ from pydantic import BaseModel, Field
 from robot_runtime.contract.craft import ORIGIN_MAX, TITLE_MAX
 from server.features.sessions.recording import Recording, reading_content
 
+_LIST = re.compile(r"\[\n([^\[\]]*),\n\s*\]")
 Water = Literal["simulated", "real", "unknown"]
 
 
@@ -54,6 +56,8 @@ def describe_crafts(water: Water, crafts: Sequence[RecordedCraft]) -> str:
     return {"real": "real robot", "simulated": "not recorded", "unknown": ""}[water]
 
 
-def _file(document: dict[str, object]) -> str:
-    title, origin = str(document["title"])[:TITLE_MAX], str(document["origin"])[:ORIGIN_MAX]
-    return tomli_w.dumps({"title": title, "origin": origin, "craft": document["craft"]})
+def _file(document: Mapping[str, Any]) -> str:
+    origin = {"origin": str(document["origin"])[:ORIGIN_MAX]} if document["origin"] else {}
+    text = tomli_w.dumps({"title": str(document["title"])[:TITLE_MAX], **origin, "craft": document["craft"]})
+    # A list of numbers on one line; its texts have no line breaks.
+    return _LIST.sub(lambda found: f"[{' '.join(found[1].split())}]", text)
