@@ -127,8 +127,9 @@ notebooks: setup-test host-firmware ## run the notebooks of docs/use/notebooks, 
 screenshots: setup-test ## every page at both sizes and in both themes, into build/screenshots
 	$(PYTHON) -m tests.browser.screenshots build/screenshots
 
-control: setup-test host-firmware ## remake the table of docs/develop/proofs/control.md: each depth controller on each craft
+control: setup-test host-firmware ## remake the tables of docs/develop/proofs/control.md; those of heading, pitch and roll are printed
 	$(PYTHON) -m bench.control
+	$(PYTHON) -m bench.turns
 
 samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
 	$(PYTHON) -m bench.samples

@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.documents import (
     Box,
     ControllerChoice,
@@ -23,6 +24,7 @@ from robot_runtime.contract.documents import (
     Loop,
     Pace,
     State,
+    SwimmingCraft,
 )
 from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import BY_NAME, Kind
@@ -48,6 +50,7 @@ RATES = {
 }
 STATE_PERIOD = 1.0
 VISION_PERIOD = 0.25
+CRAFT_PERIOD = 10.0
 ARMED_AT = 5.0
 """s after the start; until then the robot floats."""
 CARD_EVERY, CARD_FIRST, CARD_SECONDS = 240.0, 60.0, 60.0
@@ -261,6 +264,10 @@ def _make_documents(start: float, seconds: float, armed_at: float) -> dict[str, 
             Event(time=start + since, kind="set_point", severity="info", text=f"Set point {depth:.2f} m.")
             for since, depth in steps
             if since < seconds
+        ],
+        "craft": [
+            SwimmingCraft(time=start + since, title="Default craft", origin="", craft=Craft())
+            for since in np.arange(0.0, seconds, CRAFT_PERIOD).tolist()
         ],
     }
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 from urllib.parse import SplitResult, urlsplit
 
-from robot_runtime.contract.craft import Craft, load_craft
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT, Craft, CraftDocument, load_craft
 from robot_runtime.contract.limits import SET_POINT, ConfigError, Range
 from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.contract.parsing import parse
@@ -267,6 +267,11 @@ def craft_path(config: Config, path: Path, data: Path) -> Path:
     return named
 
 
+def craft_document_in(path: Path) -> CraftDocument:
+    """Returns this craft file, that of the default craft where there is none. Raises ConfigError."""
+    return load_craft(path) if path.exists() else DEFAULT_DOCUMENT
+
+
 def craft_in(path: Path) -> Craft:
     """Returns the craft in this file, the default one where there is no file. Raises ConfigError."""
-    return load_craft(path).craft if path.exists() else Craft()
+    return craft_document_in(path).craft

@@ -276,6 +276,9 @@ class CraftDocument:
             raise ConfigError(TOP.field("origin").problem(f"has more than {ORIGIN_MAX} characters"))
 
 
+DEFAULT_DOCUMENT = CraftDocument(title="Default craft")
+
+
 def read_craft(text: str) -> CraftDocument:
     """The craft that a TOML text says; missing entries are the default's. Raises ConfigError."""
     try:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from robot_runtime.contract.calibration import CalibrationValues
+from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.missions import MissionPhase, MissionStatus
 from robot_runtime.contract.packets.layout import Record, Wire, record
 from robot_runtime.contract.vision_settings import VisionSettings
@@ -155,6 +156,15 @@ class CalibrationKept(Document):
 
     values: CalibrationValues | None = field(metadata={"meaning": "null until the board has told it"})
     missing: list[str] = field(metadata={"meaning": "the steps that are not done, in words"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwimmingCraft(Document):
+    """The craft that the simulator swims; sent at its start, at every change and every ten seconds."""
+
+    title: str = field(metadata={"meaning": "of its file; says if a number was changed since"})
+    origin: str = field(metadata={"meaning": "where its numbers come from"})
+    craft: Craft = field(metadata={"meaning": "all its numbers, with the trim as it is now"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

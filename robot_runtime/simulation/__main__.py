@@ -11,8 +11,8 @@ import sys
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.config import craft_in
-from robot_runtime.contract.craft import Craft
+from robot_runtime.config import craft_document_in
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import keep_private
 from robot_runtime.simulation.water.hil import HilSimulator
@@ -45,7 +45,7 @@ def main() -> int:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: sys.exit())
     try:
-        craft = craft_in(arguments.craft) if arguments.craft else Craft()
+        file = craft_document_in(arguments.craft) if arguments.craft else DEFAULT_DOCUMENT
     except ConfigError as problem:
         log.error("%s", problem)
         return 2
@@ -56,12 +56,12 @@ def main() -> int:
         else ZenohTransport(arguments.robot, connect=arguments.connect)
     )
     with joined as messages:
-        simulator = Simulator(SimulationParameters.of(craft), arguments.seed)
+        simulator = Simulator(SimulationParameters.of(file.craft), arguments.seed)
         process: WaterProcess | HilSimulator
         if arguments.in_the_loop:
-            process = HilSimulator(simulator, messages)
+            process = HilSimulator(simulator, messages, file)
         else:
-            process = WaterProcess(simulator, arguments.board, messages, SteadyClock())
+            process = WaterProcess(simulator, arguments.board, messages, SteadyClock(), file)
         end_on_request(arguments, process.end)
         process.run()
     return 0

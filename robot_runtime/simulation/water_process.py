@@ -7,8 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.simulation.boards.board_protocol import BoardLineError, LineBuffer, read_fins, write_sense
 from robot_runtime.simulation.boards.stepped_board import PERIOD
+from robot_runtime.simulation.water.craft_report import CraftReport
 from robot_runtime.simulation.water.requests import TRUTH_PERIOD, changes, serve_requests
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -24,8 +26,16 @@ PATIENCE = 0.1
 class WaterProcess:
     """Joins the simulator, the emulated board's socket and the other processes."""
 
-    def __init__(self, simulator: Simulator, board: Path, messages: ZenohTransport, clock: Clock) -> None:
+    def __init__(
+        self,
+        simulator: Simulator,
+        board: Path,
+        messages: ZenohTransport,
+        clock: Clock,
+        craft: CraftDocument = DEFAULT_DOCUMENT,
+    ) -> None:
         self._simulator = simulator
+        self._craft = CraftReport(simulator, craft)
         self._board = board
         self._outbox = serve_requests(messages, changes(simulator), clock)
         self._clock = clock
@@ -89,6 +99,8 @@ class WaterProcess:
         if self._truth_due <= now:
             # The board was away, so that there is nothing to publish for that time.
             self._truth_due = now + TRUTH_PERIOD
+        if (craft := self._craft.due(now)) is not None:
+            self._outbox.add_document("craft", craft)
         self._outbox.add_row("truth", now, self._simulator.truth().to_bytes())
         self._outbox.flush()
 

@@ -17,7 +17,7 @@ SIMULATORS = "simulators"
 LOCAL_ONLY: Mapping[str, Any] = {"transport/link/protocols": ["unixsock-stream"]}
 """Zenoh's settings for a process that neither listens on the network nor connects through it."""
 
-_SENDS = ("sense", "simulator/stream", "truth", "observer")
+_SENDS = ("sense", "simulator/stream", "truth", "craft", "observer")
 _RECEIVES = ("motor", "truth")
 _ANSWERS = ("simulator/**", "scene/**")
 _EVERY_MESSAGE = (

@@ -3570,7 +3570,7 @@ export interface components {
         Difference: {
             /**
              * Group
-             * @description In force, Parameters, Session, robot.toml or Scenario
+             * @description In force, Parameters, Session, Craft, robot.toml or Scenario
              */
             group: string;
             /** Name */
@@ -5322,6 +5322,26 @@ export interface components {
             unit: string;
         };
         /**
+         * RecordedCraft
+         * @description A craft that the simulator swam from `time` on.
+         */
+        RecordedCraft: {
+            /**
+             * File
+             * @description the craft file, with all its numbers
+             */
+            file: string;
+            /** Origin */
+            origin: string;
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number;
+            /** Title */
+            title: string;
+        };
+        /**
          * RecordedMission
          * @description A mission of a session. Times are s since the session's start.
          */
@@ -5786,6 +5806,11 @@ export interface components {
              */
             configuration: string;
             /**
+             * Crafts
+             * @description the simulated ones, in order of time; none of real water, and of older versions
+             */
+            crafts: components["schemas"]["RecordedCraft"][];
+            /**
              * Definitions
              * @description hash of the packet definitions, 8 hexadecimal digits
              */
@@ -5898,6 +5923,12 @@ export interface components {
              * @description of the server that recorded it
              */
             version: string;
+            /**
+             * Water
+             * @description simulated, or real: no simulator has sent anything
+             * @enum {string}
+             */
+            water: "simulated" | "real" | "unknown";
         };
         /**
          * SessionGap

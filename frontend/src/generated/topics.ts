@@ -424,6 +424,7 @@ export const OTHER_TOPICS = {
   vision: 23,
   calibration: 24,
   mission: 25,
+  craft: 26,
   picture: 32,
   observer: 33,
   thumbnail: 34,
@@ -691,6 +692,55 @@ export interface Mission {
   document: string;
 }
 
+/** The error model of a sensor, in the units of its reading. Raises ValueError below 0. */
+export interface SensorQuality {
+  rate: number;
+  latency: number;
+  noise: number;
+  bias: number;
+  walk: number;
+  step: number;
+}
+
+/** The numbers of one robot; the defaults are those of µ-CAT. Raises ValueError for a mass of 0. */
+export interface Craft {
+  mass: number;
+  size: [number, number, number];
+  inertia: [number, number, number];
+  buoyancy: number;
+  buoyancy_forward: number;
+  buoyancy_right: number;
+  buoyancy_height: number;
+  restitution: number;
+  friction: number;
+  added_mass: [number, number, number, number, number, number];
+  damping_linear: [number, number, number, number, number, number];
+  damping_quadratic: [number, number, number, number, number, number];
+  fin_positions: [[number, number], [number, number], [number, number], [number, number]];
+  fin_mount: number;
+  fin_area: number;
+  fin_centre: number;
+  fin_drag: number;
+  fin_thrust_per_drag: number;
+  fin_normal: number;
+  fin_delay: number;
+  pressure_position: [number, number, number];
+  gyroscope_offset: [number, number, number];
+  accelerometer_offset: [number, number, number];
+  pressure: SensorQuality;
+  gyroscope: SensorQuality;
+  accelerometer: SensorQuality;
+  encoder: SensorQuality;
+}
+
+/** The craft that the simulator swims; sent at its start, at every change and every ten seconds. */
+export interface SwimmingCraft {
+  time: number;
+  title: string;
+  origin: string;
+  craft: Craft;
+}
+
 export interface Documents {
   state: State;
   detection: Detection;
@@ -702,4 +752,5 @@ export interface Documents {
   vision: VisionInForce;
   calibration: CalibrationKept;
   mission: Mission;
+  craft: SwimmingCraft;
 }

@@ -113,9 +113,9 @@ class HeaveObserver:
         self._pending.append((self.lag, command))
         for acting, duration in self._acting_for(seconds):
             motion = heave.advance(motion, acting, duration, _STEP)
-            push, paddle, resistance, kept = heave.slopes
+            push, paddle, resistance, share = heave.slopes
             pushed, paddled, resisted = pushed + push, paddled + paddle, resisted + resistance
-            retained *= kept
+            retained *= share
         while self._pending and self._pending[0][0] <= seconds:
             self._acting = self._pending.popleft()[1]
         self._pending = deque((until - seconds, one) for until, one in self._pending)

@@ -20,8 +20,8 @@ from typing import IO, Any
 
 import cv2
 
-from robot_runtime.config import craft_in
-from robot_runtime.contract.craft import Craft
+from robot_runtime.config import craft_document_in
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
@@ -72,12 +72,12 @@ def main() -> int:
         stream = opened.enter_context(options.out.open("wb")) if options.out else sys.stdout.buffer
         messages = RunOutput(stream)
         try:
-            craft = craft_in(options.craft) if options.craft else Craft()
-            scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"), craft)
+            file = craft_document_in(options.craft) if options.craft else DEFAULT_DOCUMENT
+            scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"), file.craft)
         except ConfigError as problem:
             messages.event("refused", problems=problem.texts)
             return REFUSED
-        run = ScenarioRun(scenario, made[options.board], messages)
+        run = ScenarioRun(scenario, made[options.board], messages, file)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: run.cancel())
         try:

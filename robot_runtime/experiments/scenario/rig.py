@@ -7,6 +7,7 @@ from typing import Protocol, Self
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config, LinkConfig, VisionConfig
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.contract.documents import Event
 from robot_runtime.core import Core
 from robot_runtime.experiments.scenario.cameras import RenderedSceneCamera
@@ -15,6 +16,7 @@ from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Water
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.scene.availability import missing
+from robot_runtime.simulation.water.craft_report import CraftReport
 from robot_runtime.simulation.water.requests import TRUTH_PERIOD
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
@@ -88,11 +90,17 @@ class ScenarioRig:
     """
 
     def __init__(
-        self, scenario: Scenario, make_board: MakeBoard, send: Callable[[bytes], None], prelude: float
+        self,
+        scenario: Scenario,
+        make_board: MakeBoard,
+        send: Callable[[bytes], None],
+        prelude: float,
+        craft: CraftDocument = DEFAULT_DOCUMENT,
     ) -> None:
         self.scenario = scenario
         self.clock = SimulatedClock(-prelude)
         self.simulator = _fill(scenario)
+        self._craft = CraftReport(self.simulator, craft)
         self._period = -round(prelude / PERIOD)
         self._swum = 0
         self._at_surface = STILL_WATER._replace(
@@ -144,6 +152,8 @@ class ScenarioRig:
         reading = self.simulator.advance(PERIOD, fins)
         self._swum += 1
         if self._swum % _TRUTH_EVERY == 0:
+            if (craft := self._craft.due(self._swum * PERIOD)) is not None:
+                self.robot.bus.publish_document("craft", craft)
             self.robot.bus.publish_row("truth", self._swum * PERIOD, self.simulator.truth().to_bytes())
         return reading
 

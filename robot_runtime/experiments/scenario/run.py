@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 from robot_runtime.commands import Commands
 from robot_runtime.contract.commands import ArmCommand, MissionCommand
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.contract.documents import MISSION_MARK, Document, Event
 from robot_runtime.control.supervisor import ARM_WAIT, Arming
 from robot_runtime.core import PUBLISH_EVERY
@@ -61,9 +62,16 @@ class _PeriodicTask:
 
 
 class ScenarioRun:
-    """One run of a scenario on this kind of board; `perform` does it all."""
+    """One run of a scenario on this kind of board; `perform` does it all. `craft` is the robot's."""
 
-    def __init__(self, scenario: Scenario, make_board: MakeBoard, listener: RunListener) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        make_board: MakeBoard,
+        listener: RunListener,
+        craft: CraftDocument = DEFAULT_DOCUMENT,
+    ) -> None:
+        self._craft = craft if scenario.craft == "robot" else DEFAULT_DOCUMENT
         self._scenario = scenario
         self._make_board = make_board
         self._listener = listener
@@ -79,7 +87,7 @@ class ScenarioRun:
 
         Raises BoardError where there is no board, or it goes away.
         """
-        with ScenarioRig(self._scenario, self._make_board, self._send, PRELUDE) as rig:
+        with ScenarioRig(self._scenario, self._make_board, self._send, PRELUDE, self._craft) as rig:
             run_loop = _RunLoop(rig, self._listener, lambda: self._cancelled)
             run_loop.wait_for_start()
             self._listener.event("started", time=0.0, **describe(rig.board.firmware))

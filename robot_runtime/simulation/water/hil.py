@@ -13,9 +13,11 @@ from math import pi, remainder
 from typing import Any
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.errors import RefusedError
+from robot_runtime.simulation.water.craft_report import CraftReport
 from robot_runtime.simulation.water.fins import Four
 from robot_runtime.simulation.water.requests import TRUTH_PERIOD, Change, changes, serve_requests
 from robot_runtime.simulation.water.sensors import Reading
@@ -38,8 +40,11 @@ QUIET = 2.0
 class HilSimulator:
     """Joins the simulator and a robot elsewhere. `run` returns after `end`."""
 
-    def __init__(self, simulator: Simulator, messages: ZenohTransport) -> None:
+    def __init__(
+        self, simulator: Simulator, messages: ZenohTransport, craft: CraftDocument = DEFAULT_DOCUMENT
+    ) -> None:
         self._simulator = simulator
+        self._craft = CraftReport(simulator, craft)
         self._messages = messages
         requests = changes(simulator)
         requests["fault"] = _no_bus_errors(requests["fault"])
@@ -115,6 +120,8 @@ class HilSimulator:
         )
         if time >= self._truth_due:
             self._truth_due = time + TRUTH_PERIOD
+            if (craft := self._craft.due(time)) is not None:
+                self._outbox.add_document("craft", craft)
             self._outbox.add_row("truth", time, self._simulator.truth().to_bytes())
         return reading
 

@@ -79,6 +79,11 @@ class SimulationParameters(Craft):
         return own / usual
 
     @property
+    def craft(self) -> Craft:
+        """The numbers of the craft alone."""
+        return Craft(**{one.name: getattr(self, one.name) for one in fields(Craft)})
+
+    @property
     def weight(self) -> float:
         """N."""
         return self.mass * self.gravity

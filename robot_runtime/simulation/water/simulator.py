@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from math import ceil
 from typing import NamedTuple
 
+from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.documents import Truth
 from robot_runtime.simulation.water.body import Body
 from robot_runtime.simulation.water.faults import SimulatedFault
@@ -65,6 +66,7 @@ class Simulator:
 
     def __init__(self, parameters: SimulationParameters, seed: int) -> None:
         self._parameters = parameters
+        self._craft = parameters.craft
         self._world = World(parameters)
         self._body = Body(parameters, Fins(parameters), self._world)
         self._sensors = Sensors(parameters, self._world, seed)
@@ -154,6 +156,14 @@ class Simulator:
                 sensors.beacons,
                 dict(sensors.faults),
             )
+
+    def craft(self) -> Craft:
+        """Returns the numbers of the hull, with its present trim."""
+        with self._lock:
+            trim = self._body.trim
+            if trim != Trim.of(self._craft):
+                self._craft = trim.on(self._craft)
+            return self._craft
 
     @property
     def broken_devices(self) -> frozenset[str]:

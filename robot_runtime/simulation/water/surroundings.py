@@ -1,6 +1,6 @@
 """Settings of water and hull that may change while it swims; each is checked at construction."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 from typing import Self
 
@@ -81,6 +81,16 @@ class Trim:
     def of(cls, craft: Craft) -> Self:
         """The craft's own trim."""
         return cls(craft.buoyancy, craft.buoyancy_forward, craft.buoyancy_right, craft.buoyancy_height)
+
+    def on(self, craft: Craft) -> Craft:
+        """The craft with this trim."""
+        return replace(
+            craft,
+            buoyancy=self.buoyancy,
+            buoyancy_forward=self.forward,
+            buoyancy_right=self.right,
+            buoyancy_height=self.above,
+        )
 
     def __post_init__(self) -> None:
         _limit("buoyancy", self.buoyancy, BUOYANCY_MIN, BUOYANCY_MAX, "times the weight")

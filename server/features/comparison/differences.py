@@ -1,4 +1,4 @@
-"""Differences between sessions: configuration, gains in force, versions, scenario."""
+"""Differences between sessions: configuration, gains in force, versions, craft, scenario."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -7,6 +7,7 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.contract.toml_text import TomlError, read_toml
 from server.features.comparison.moments import ControlHistory, Span
+from server.features.sessions.crafts import describe_crafts
 from server.platform.models import SessionRow
 
 _ROW: Mapping[str, str] = {
@@ -35,7 +36,7 @@ CHANGED = "changed while armed: "
 class Difference(BaseModel):
     """A property that differs between sessions."""
 
-    group: str = Field(description="In force, Parameters, Session, robot.toml or Scenario")
+    group: str = Field(description="In force, Parameters, Session, Craft, robot.toml or Scenario")
     name: str
     values: list[str] = Field(description="one for each session; empty if it lacks the property")
 
@@ -46,10 +47,12 @@ def find_differences(sessions: Sequence[tuple[SessionRow, ControlHistory]]) -> l
     groups = [
         ("In force", [dict(_in_force(history)) for _, history in sessions]),
         ("Parameters", [dict(_parameters(history)) for _, history in sessions]),
-        ("Session", [_of_row(row) for row, _ in sessions]),
+        ("Session", [_of_session(row, history) for row, history in sessions]),
     ]
     if not alone:
+        known = all(history.crafts for _, history in sessions)
         groups += [
+            ("Craft", [dict(_numbers(history)) if known else {} for _, history in sessions]),
             ("robot.toml", [dict(flatten(row.configuration)) for row, _ in sessions]),
             ("Scenario", [dict(flatten(row.scenario)) for row, _ in sessions]),
         ]
@@ -110,6 +113,17 @@ def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
         yield name, _sequence(list(dict.fromkeys(seen)))
 
 
+def _numbers(history: ControlHistory) -> Iterator[tuple[str, str]]:
+    """Every number of the craft, with those of later ones."""
+    values: dict[str, list[str]] = {}
+    for one in history.crafts:
+        for name, value in flatten(one.file):
+            if name not in ("title", "origin"):
+                values.setdefault(name.removeprefix("craft."), []).append(value)
+    for name, seen in values.items():
+        yield name, ", then ".join(dict.fromkeys(seen))
+
+
 def _rules(time: float, times: Sequence[float], armed: Sequence[Span]) -> bool:
     """True if the choice made at `time`, one of `times`, is in force at any time while armed."""
     if not armed:
@@ -122,8 +136,9 @@ def _sequence(values: Sequence[str]) -> str:
     return values[0] if len(values) == 1 else CHANGED + ", ".join(values)
 
 
-def _of_row(row: SessionRow) -> dict[str, str]:
-    return {title: _words(getattr(row, key)) for key, title in _ROW.items()}
+def _of_session(row: SessionRow, history: ControlHistory) -> dict[str, str]:
+    values = {title: _words(getattr(row, key)) for key, title in _ROW.items()}
+    return values | {"Craft": describe_crafts(history.water, history.crafts)}
 
 
 def _words(value: Any) -> str:

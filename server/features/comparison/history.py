@@ -9,6 +9,7 @@ from sqlmodel import col, select
 from server.features.comparison.moments import ControlHistory, ControlPeriod, ParameterValues, Span
 from server.features.comparison.samples import Samples
 from server.features.metrics.series import Series
+from server.features.sessions.crafts import read_crafts, which_water
 from server.features.sessions.recording import Recording, depth_loop
 from server.features.sessions.timeline import Moment
 from server.platform.models import BookmarkRow, Gap
@@ -26,11 +27,13 @@ def read_history(recording: Recording, samples: Samples) -> ControlHistory:
     Raises StoreError, RecordingError.
     """
     origin, end = recording.row.started_steady, recording.row.duration
+    water, crafts = which_water(set(recording.counts())), tuple(read_crafts(recording))
     changes = list(recording.changes("state")) if "state" in recording.topics else []
     if not changes:
         flags = samples.read(recording, ["status.flags"]).get("status.flags")
         armed = _spans_of_flags(flags) if flags is not None else ()
-        return ControlHistory(armed, bool(armed) and _began_armed(armed, flags), (), {})
+        began = bool(armed) and _began_armed(armed, flags)
+        return ControlHistory(armed, began, (), {}, water=water, crafts=crafts)
     armed = tuple(_spans_of_states(changes, origin, end))
     before = [one for one in changes if not armed or one["time"] - origin <= armed[0].start]
     return ControlHistory(
@@ -39,6 +42,8 @@ def read_history(recording: Recording, samples: Samples) -> ControlHistory:
         controls=tuple(_controls(changes, origin)),
         state=(before or changes[:1])[-1],
         parameters=tuple(_parameter_values(recording, origin)),
+        water=water,
+        crafts=crafts,
     )
 
 

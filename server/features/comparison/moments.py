@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
+from server.features.sessions.crafts import RecordedCraft, Water
+
 
 @dataclass(frozen=True, slots=True)
 class Span:
@@ -42,3 +44,6 @@ class ControlHistory:
     """The newest state document at the first arming, or the first one; empty without any."""
     parameters: tuple[ParameterValues, ...] = ()
     """Empty in recordings of versions without parameters."""
+    water: Water = "unknown"
+    crafts: tuple[RecordedCraft, ...] = ()
+    """The simulated ones; empty in real water, and in recordings of versions without them."""

@@ -2,11 +2,14 @@
 
 import json
 import re
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
 from sqlmodel import col, select
 
+from server.features.exports.zip_stream import ZipWriter
+from server.features.sessions.crafts import RecordedCraft, read_crafts
 from server.features.sessions.recording import Recording
 from server.platform.models import BookmarkRow, Gap, SessionTag
 from server.platform.store import Reader
@@ -50,6 +53,19 @@ def describe_session(store: Reader, recording: Recording) -> dict[str, Any]:
 def dump_readable(described: dict[str, Any]) -> str:
     """The object as indented JSON."""
     return json.dumps(described, indent=2, ensure_ascii=False) + "\n"
+
+
+def craft_files(crafts: Sequence[RecordedCraft]) -> list[tuple[str, str]]:
+    """Names and texts of craft files."""
+    names = ["craft.toml", *(f"craft-{number}.toml" for number in range(2, len(crafts) + 1))]
+    return [(name, craft.file) for name, craft in zip(names, crafts, strict=False)]
+
+
+def write_about(store: Reader, recording: Recording, packing: ZipWriter) -> None:
+    """Write `session.json` and the session's craft files. Raises StoreError, RecordingError."""
+    packing.text("session.json", dump_readable(describe_session(store, recording)))
+    for name, text in craft_files(read_crafts(recording)):
+        packing.text(name, text)
 
 
 def file_name(recording: Recording, ending: str) -> str:

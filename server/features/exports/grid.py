@@ -5,7 +5,7 @@ from itertools import pairwise
 from math import floor
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from server.features.exports.description import describe_session, dump_readable
+from server.features.exports.description import write_about
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import csv_text
 from server.features.exports.zip_stream import ZipWriter
@@ -54,7 +54,7 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
         name=source.row.name, period=period, first=first, last=last, gaps=GAPS, limits=document
     )
     packing.text("README.txt", readme)
-    packing.text("session.json", dump_readable(describe_session(store, source)))
+    write_about(store, source, packing)
     with packing.member("grid.csv") as file:
         titles = [title for columns in chosen.values() for title in columns.values()]
         file.write(csv_text([["time [s]", "utc", *titles]]).encode())

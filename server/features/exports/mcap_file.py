@@ -14,12 +14,13 @@ from typing import Any, BinaryIO
 from sqlmodel import col, select
 
 from robot_runtime.contract.topics import LINES
-from server.features.exports.description import describe_session, dump_readable
+from server.features.exports.description import craft_files, describe_session, dump_readable
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
 from server.features.exports.pose import Pose, dump, level, stamp
 from server.features.exports.schemas import Compression
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
+from server.features.sessions.crafts import read_crafts, which_water
 from server.features.sessions.recording import depth_loop
 from server.platform.models import BookmarkRow
 from server.platform.store import Reader
@@ -132,12 +133,18 @@ def _write_about(store: Reader, source: ExportSelection, writer: Any) -> None:
     )
     writer.add_metadata("session", {name: str(described[name] or "") for name in about})
     writer.add_metadata("configuration", {"robot.toml": row.configuration, "scenario": row.scenario})
+    crafts = read_crafts(source)
+    writer.add_metadata(
+        "craft",
+        {"water": which_water(set(source.counts())), "title": ", then ".join(one.title for one in crafts)},
+    )
     writer.add_metadata("gains", _gains(described["robot_state"]))
     first = source.utc_ns(row.started_steady)
     attached = [("session.json", "application/json", dump_readable(described))]
     attached.append(("robot.toml", "application/toml", row.configuration))
     if row.scenario:
         attached.append(("scenario.toml", "application/toml", row.scenario))
+    attached += [(name, "application/toml", text) for name, text in craft_files(crafts)]
     for name, kind, text in attached:
         writer.add_attachment(first, first, name, kind, text.encode())
 

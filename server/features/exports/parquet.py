@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator
 from typing import Any, BinaryIO
 
-from server.features.exports.description import describe_session, dump_readable
+from server.features.exports.description import write_about
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
 from server.features.exports.zip_stream import ZipWriter
@@ -34,7 +34,7 @@ def write_parquet(store: Reader, source: ExportSelection, output: BinaryIO) -> N
     """
     check_parquet()
     packing = ZipWriter(output, packed=False)
-    packing.text("session.json", dump_readable(describe_session(store, source)))
+    write_about(store, source, packing)
     for name in source.names:
         with packing.member(f"{name}.parquet") as file:
             _write_topic(source, name, file)

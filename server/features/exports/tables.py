@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 from typing import Any, BinaryIO
 
-from server.features.exports.description import describe_session, dump_readable
+from server.features.exports.description import write_about
 from server.features.exports.selection import ExportSelection
 from server.features.exports.zip_stream import ZipWriter
 from server.features.sessions.chunks import row_layout
@@ -21,7 +21,7 @@ def write_tables(store: Reader, source: ExportSelection, output: BinaryIO) -> No
     Raises StoreError, RecordingError.
     """
     packing = ZipWriter(output)
-    packing.text("session.json", dump_readable(describe_session(store, source)))
+    write_about(store, source, packing)
     for name in source.names:
         if source.topics[name]["kind"] == "picture":
             for time, jpeg in source.pictures(name, source.start, source.end):

@@ -12,8 +12,9 @@ from sqlmodel import col, desc, func, select
 
 from server.features.sessions.bookmarks import describe_bookmarks
 from server.features.sessions.chunks import row_layout
+from server.features.sessions.crafts import read_crafts, which_water
 from server.features.sessions.recorder import Recorder
-from server.features.sessions.recording import reading_content
+from server.features.sessions.recording import Recording, reading_content
 from server.features.sessions.schemas import RecordedColumn, RecordedTopic, Session, SessionDetail, SessionGap
 from server.features.sessions.session import (
     HIDDEN,
@@ -99,6 +100,8 @@ class Listing:
                 identifier=row.identifier,
                 scenario=row.scenario,
                 configuration=row.configuration,
+                water=which_water({name for name, *_ in spans}),
+                crafts=read_crafts(Recording(self._reader, row)),
                 robot_state=json.loads(row.robot_state or "null"),
                 marks=describe_bookmarks(marks, start),
                 gaps=[

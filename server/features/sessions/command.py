@@ -167,6 +167,8 @@ def _tabulate(found: "list[Session]") -> str:
 
 
 def _describe(session: "SessionDetail") -> str:
+    from server.features.sessions.crafts import describe_crafts
+
     lines = [
         f"{session.id}  {session.name}",
         *([session.note] if session.note else []),
@@ -175,6 +177,7 @@ def _describe(session: "SessionDetail") -> str:
         f"tags: {', '.join(session.tags) or '-'}",
         f"robot {session.robot}, version {session.version}, firmware {session.firmware or '-'}, "
         f"software {session.software or '-'}",
+        f"craft: {describe_crafts(session.water, session.crafts) or '-'}",
     ]
     lines += [f"  mark  {mark.time:10.1f} s  {mark.text}" for mark in session.marks]
     lines += [f"  gap   {gap.time:10.1f} s  {gap.topic}: {gap.kind}, {gap.missed}" for gap in session.gaps]

@@ -44,7 +44,10 @@ BACKLOG_BYTES = 8_000_000
 SPAN_BYTES_MAX = 4_000_000
 """Payloads in one chunk while writing takes long; readers accept `chunks.CHUNK_BYTES_MAX`."""
 
-_PARAMETERS = BY_NAME["parameters"]
+_STANDING = {BY_NAME["parameters"], BY_NAME["craft"]}
+"""Topics that are sent at changes and every ten seconds, and hold until then."""
+STANDING_SECONDS = 30.0
+"""s after which what is no longer sent counts as no longer in force."""
 _UPDATE_SESSION = update(SessionRow).where(col(SessionRow.id) == bindparam("session"))
 """The values come with each execution: building the statement anew costs more than executing it."""
 
@@ -106,7 +109,8 @@ class Recorder:
         self._busy = asyncio.Lock()
         self._accepts = False
         self._started_steady = 0.0
-        self._standing: Block | None = None
+        self._standing: dict[int, tuple[float, Block]] = {}
+        """By the topic's number: when it arrived (s, steady clock), and what."""
         self._reset()
 
     async def recover(self) -> InterruptedSession | None:
@@ -186,9 +190,11 @@ class Recorder:
             self._started_steady = row.started_steady
             self._reset()
             self._accepts = True
-            if self._standing is not None:
+            now = self._clock.now()
+            for arrived, block in list(self._standing.values()):
                 # They are sent rarely: the session begins with the values in force.
-                self.add(_as_of(self._standing, self._clock.now()))
+                if now - arrived < STANDING_SECONDS:
+                    self._record(_as_of(block, now))
         self._notices.notify("recording", "info", f"Recording of “{row.name}” has begun.")
         self._changed()
         return self.session
@@ -225,9 +231,12 @@ class Recorder:
 
     def add(self, block: Block) -> None:
         """Record a block; without a session it is ignored."""
+        if block.topic in _STANDING:
+            self._standing[block.topic.id] = self._clock.now(), block
+        self._record(block)
+
+    def _record(self, block: Block) -> None:
         topic = block.topic
-        if topic is _PARAMETERS:
-            self._standing = block
         if not self._accepts or not topic.recorded or (self._skip and self._is_stored(block)):
             return
         span = self._spans.get(topic.id)

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, StringConstraints
 
+from server.features.sessions.crafts import RecordedCraft, Water
 from server.http.request_body import RequestBody
 
 State = Literal["recording", "complete", "interrupted"]
@@ -91,6 +92,10 @@ class SessionDetail(Session):
     identifier: str = Field(description="the same wherever it is imported, 32 hexadecimal digits")
     scenario: str = Field(description="TOML; empty without one")
     configuration: str = Field(description="robot.toml as it was at the start")
+    water: Water = Field(description="simulated, or real: no simulator has sent anything")
+    crafts: list[RecordedCraft] = Field(
+        description="the simulated ones, in order of time; none of real water, and of older versions"
+    )
     robot_state: dict[str, Any] | None = Field(description="the `state` document at the start")
     marks: list[Bookmark] = Field(description="in the order of their times")
     gaps: list[SessionGap]

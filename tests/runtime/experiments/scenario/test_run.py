@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.contract.craft import Craft, CraftDocument
 from robot_runtime.contract.packets import DeviceFault
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
@@ -248,3 +249,24 @@ def test_a_missing_build_of_the_board_is_reported(tmp_path: Path) -> None:
     )
     assert (done.returncode, done.stdout) == (1, "")
     assert "`make firmware` builds it" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("more", "title", "mass"),
+    [
+        ("", "Default craft", 3.0),
+        ("[robot]\nmass = 3.5\n", "Default craft, changed", 3.5),
+        ("[trim]\nbuoyancy = 1.01\nforward = 0\nright = 0\nabove = 0.01\n", "Default craft, changed", 3.0),
+        ('craft = "robot"\n', "Turtle 2", 2.5),
+    ],
+)
+def test_a_run_says_which_craft_swims(more: str, title: str, mass: float) -> None:
+    robot = CraftDocument(title="Turtle 2", craft=Craft(mass=2.5))
+    told = Told()
+    own = more.startswith("craft")
+    text = more + document(1) if own else document(1, more=more)
+    scenario = read_scenario(text, robot.craft)
+    ScenarioRun(scenario, boards()["host"], told, robot).perform(lambda _: {})
+    (craft,) = told.documents["craft"]
+    assert (craft["title"], craft["craft"]["mass"]) == (title, mass)
+    assert 0 <= craft["time"] < 0.1

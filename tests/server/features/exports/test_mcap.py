@@ -110,7 +110,7 @@ def test_every_record_index_and_number_of_a_file_is_true(
     assert statistics.chunk_count == len(chunks)
     kinds = Counter(type(one).__name__ for one in found)
     assert statistics.attachment_count == kinds["Attachment"] == kinds["AttachmentIndex"] == 2
-    assert statistics.metadata_count == kinds["Metadata"] == kinds["MetadataIndex"] == 3
+    assert statistics.metadata_count == kinds["Metadata"] == kinds["MetadataIndex"] == 4
     groups = {one.group_opcode for one in found if isinstance(one, records.SummaryOffset)}
     assert len(groups) == kinds["SummaryOffset"] == 6
 

@@ -1,13 +1,13 @@
 """`mucat certificate` and `mucat simulator`, as somebody types them."""
 
 import os
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from robot_runtime.transport.network import connect_settings
 from server.cli import main
-from server.features.simulator import command
 from server.platform.authority import Authority
 from server.platform.pidfile import PidFile
 from server.platform.settings import Settings
@@ -52,7 +52,10 @@ def test_a_simulator_without_its_files_is_refused_in_words(
     [
         (None, "the craft file {file} cannot be read: [Errno 2] No such file or directory"),
         ("title = 'Two'\n[craft]\nmas = 2.5\n", "two.toml: craft: 'mas' is not known here; known are mass"),
-        ("title = 'Two'\n[craft]\nmass = 99\n", "two.toml: craft: mass is 99; it must lie between 0.75 and 12"),
+        (
+            "title = 'Two'\n[craft]\nmass = 99\n",
+            "two.toml: craft: mass is 99; it must lie between 0.75 and 12",
+        ),
         ("[craft\n", "two.toml: the craft file is not TOML"),
     ],
 )
@@ -75,8 +78,8 @@ def test_the_simulator_swims_the_craft_of_the_file(
     file = tmp_path / "two.toml"
     file.write_text("title = 'Two'\n[craft]\nmass = 2.5\n")
     started: list[list[str]] = []
-    monkeypatch.setattr(command.subprocess, "Popen", started.append)
-    monkeypatch.setattr(command.os, "execv", lambda _, words: started.append(words))
+    monkeypatch.setattr(subprocess, "Popen", started.append)
+    monkeypatch.setattr(os, "execv", lambda _, words: started.append(words))
     there = ["--connect", "tls/192.0.2.7:7447", "--certificate", str(tmp_path / "lab")]
     main(["simulator", *there, "--craft", str(file)])
     main(["simulator", *there])

@@ -1,0 +1,63 @@
+"""The crafts with which a session was swum, as the simulator has sent them."""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+import tomli_w
+from pydantic import BaseModel, Field
+
+from robot_runtime.contract.craft import ORIGIN_MAX, TITLE_MAX
+from server.features.sessions.recording import Recording, reading_content
+
+_LIST = re.compile(r"\[\n([^\[\]]*),\n\s*\]")
+Water = Literal["simulated", "real", "unknown"]
+
+
+class RecordedCraft(BaseModel):
+    """A craft that the simulator swam from `time` on."""
+
+    time: float = Field(description="s since the session's start")
+    title: str
+    origin: str
+    file: str = Field(description="the craft file, with all its numbers")
+
+
+def read_crafts(recording: Recording) -> list[RecordedCraft]:
+    """The crafts in the order of time; recordings of older versions have none.
+
+    Raises StoreError, RecordingError.
+    """
+    if "craft" not in recording.topics:
+        return []
+    with reading_content(recording.row):
+        return [
+            RecordedCraft(
+                time=document["time"] - recording.row.started_steady,
+                title=str(document["title"]),
+                origin=str(document["origin"]),
+                file=_file(document),
+            )
+            for document in recording.changes("craft")
+        ]
+
+
+def which_water(topics: set[str]) -> Water:
+    """The water of a session with samples of these topics: without a simulator's it is real."""
+    if topics & {"craft", "truth"}:
+        return "simulated"
+    return "real" if "status" in topics else "unknown"
+
+
+def describe_crafts(water: Water, crafts: Sequence[RecordedCraft]) -> str:
+    """The crafts' titles, or the reason why there is none; empty where it is not known."""
+    if crafts:
+        return ", then ".join(one.title for one in crafts)
+    return {"real": "real robot", "simulated": "not recorded", "unknown": ""}[water]
+
+
+def _file(document: Mapping[str, Any]) -> str:
+    origin = {"origin": str(document["origin"])[:ORIGIN_MAX]} if document["origin"] else {}
+    text = tomli_w.dumps({"title": str(document["title"])[:TITLE_MAX], **origin, "craft": document["craft"]})
+    # A list of numbers on one line; its texts have no line breaks.
+    return _LIST.sub(lambda found: f"[{' '.join(found[1].split())}]", text)
