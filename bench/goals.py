@@ -80,6 +80,8 @@ GOALS = {
     # the line to the viewer, each of which costs mostly its waking up. Fewer of them make the controllers
     # swing wider, and by an estimate would miss `latency.sample_to_page_ms_p95`.
     "cpu.robot_stack_percent": _most(2.5, "python"),
+    **{f"doors.{door}.latency_ms_p95.10": _most(80) for door in ("rosbridge", "foxglove", "ros2")},
+    **{f"doors.{door}.stalled_ratio": _most(1.5) for door in ("rosbridge", "foxglove", "ros2")},
     "export.csv_1h_ratio": _most(1.3),
     "export.mcap_1h_ratio": _most(1.3),
     **_fault("pilot_quiet", 0.5, rest=0.5),

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from bench.dive import Dive
 from robot_runtime.clock import Clock, SteadyClock
+from robot_runtime.config import DoorsConfig
 from server.http.sign_in.access import Access
 from server.http.sign_in.confirmation import Confirmations
 from server.platform.settings import DataFolder, Settings, make_folders
@@ -26,8 +27,9 @@ PERIOD = 0.1
 class DiveSite:
     """A server with its page, on a port of the system's choice; leaving the context ends it."""
 
-    def __init__(self, data: Path) -> None:
+    def __init__(self, data: Path, doors: DoorsConfig | None = None) -> None:
         self.data = data
+        self._doors = doors or DoorsConfig()
         self.port = 0
         self._started = threading.Event()
         self._end = threading.Event()
@@ -84,7 +86,8 @@ class DiveSite:
     async def _serve(self) -> None:
         folder, clock = DataFolder(self.data), SteadyClock()
         make_folders(folder)
-        async with serve(Settings(data=folder, config=ROOT / "robot.toml")) as served:
+        settings = Settings(data=folder, config=ROOT / "robot.toml", doors=self._doors)
+        async with serve(settings) as served:
             self._runtime = served.runtime
             self._access = served.container.access
             (await served.api.post("/control/release")).raise_for_status()

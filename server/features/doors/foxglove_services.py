@@ -6,6 +6,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from server.features.doors.commands import COMMANDS, TAKE
+from server.features.doors.plain_schema import simplify
 from server.features.doors.rosapi import NODE, command_services
 
 _TYPES = command_services()
@@ -23,8 +24,8 @@ def advertise_services() -> list[dict[str, Any]]:
             "id": number,
             "name": f"{NODE}/{name}",
             "type": _TYPES[f"{NODE}/{name}"],
-            "request": _definition(f"{name}_request", _request_schema(name)),
-            "response": _definition("answer", ANSWER),
+            **_definitions("request", f"{name}_request", _request_schema(name)),
+            **_definitions("response", "answer", ANSWER),
         }
         for number, name in SERVICES.items()
     ]
@@ -32,14 +33,17 @@ def advertise_services() -> list[dict[str, Any]]:
 
 def _request_schema(name: str) -> dict[str, Any]:
     if name in COMMANDS:
-        return TypeAdapter(COMMANDS[name]).json_schema()
+        return simplify(TypeAdapter(COMMANDS[name]).json_schema())
     return TAKE_SCHEMA if name == TAKE else EMPTY
 
 
-def _definition(name: str, schema: dict[str, Any]) -> dict[str, str]:
-    return {
+def _definitions(of: str, name: str, schema: dict[str, Any]) -> dict[str, Any]:
+    """The schema, and the same as programs read it that are older than the protocol's `request`."""
+    text = json.dumps(schema)
+    whole = {
         "encoding": "json",
         "schemaName": f"mucat.{name}",
         "schemaEncoding": "jsonschema",
-        "schema": json.dumps(schema),
+        "schema": text,
     }
+    return {of: whole, f"{of}Schema": text}

@@ -8,6 +8,7 @@ from websockets.exceptions import ConnectionClosed
 
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Depth
+from server.features.doors.foxglove_services import advertise_services
 from server.features.doors.session import INVALID_MAX
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block
@@ -215,3 +216,31 @@ def test_a_twist_drives_with_control_alone(settings: Settings) -> None:
             assert served.runtime.driven[0]["axes"] == [0.5, -0.25, 0.0, 0.0, 0.0, -1.0]
 
     play_open(settings, scenario)
+
+
+SIMPLE = ("boolean", "integer", "number", "string")
+
+
+def is_plain(schema: dict[str, Any]) -> bool:
+    """True where Foxglove's parser reads this schema of a field."""
+    if schema["type"] == "object":
+        return all(is_plain(one) for one in schema["properties"].values())
+    if schema["type"] == "array":
+        return schema["items"]["type"] != "array" and is_plain(schema["items"])
+    return schema["type"] in SIMPLE
+
+
+@pytest.mark.parametrize("service", advertise_services(), ids=lambda one: one["name"])
+def test_foxglove_reads_the_schemas_of_each_service(service: dict[str, Any]) -> None:
+    for of in ("request", "response"):
+        schema = json.loads(service[of]["schema"])
+        assert schema["type"] == "object"
+        assert is_plain(schema)
+        assert service[f"{of}Schema"] == service[of]["schema"]
+
+
+def test_a_schema_names_the_fields_of_its_command() -> None:
+    (loop,) = (one for one in advertise_services() if one["name"] == "/mucat/loop")
+    fields = json.loads(loop["request"]["schema"])["properties"]
+    assert {"name", "on", "controller", "set_point"} <= fields.keys()
+    assert fields["on"]["type"] == "boolean"
