@@ -12,19 +12,9 @@ export class BringUpWatch {
   /** counts what the server has done meanwhile: an answer from before is older */
   #turn = 0;
 
-  /** Look again and again while the page is visible. Returns what ends that. */
-  start(): () => void {
-    let ended = false;
-    let timer: ReturnType<typeof setTimeout> | undefined;
-    const look = async () => {
-      if (!document.hidden) await this.look();
-      if (!ended) timer = setTimeout(() => void look(), EVERY[this.state?.phase ?? 'idle']);
-    };
-    void look();
-    return () => {
-      ended = true;
-      clearTimeout(timer);
-    };
+  /** ms between two looks as things are */
+  get pause(): number {
+    return EVERY[this.state?.phase ?? 'idle'];
   }
 
   async look(): Promise<void> {
