@@ -21,21 +21,23 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,portability --i
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
-# Tests in real time that mostly wait, for uploads or a slow network, and bear a delay.
-WAITING := $(addprefix tests/,board/test_bootloader.py server/http/test_poor_network.py \
-	server/features/board/test_firmware_upload.py server/features/bring_up/test_on_the_robot.py \
+# Tests in real time that mostly wait, for uploads, a slow network or what was killed, and bear a delay. About as long as
+# all others in real time.
+WAITING := $(addprefix tests/,board/test_bootloader.py server/http/test_poor_network.py proofs/test_chaos.py \
+	packages/test_wheels.py server/features/board/test_firmware_upload.py server/features/bring_up/test_on_the_robot.py \
 	server/features/comm_tests/test_reserved_board.py server/features/comm_tests/test_thesis_example.py \
-	browser/test_bring_up.py browser/test_firmware_upload.py)
+	browser/test_bring_up.py browser/test_firmware_upload.py browser/test_scenarios.py browser/test_tuning.py)
 REAL_TIME = $(filter-out $(WAITING),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
 # All other tests, each part by a process of its own, the longest first. A part lacks what is a part by itself.
-PARTS := $(addprefix tests/,proofs server/features runtime/experiments server/features/doors proofs/test_memory.py \
-	documents proofs/test_guards.py server pages runtime) tests
+PARTS := $(addprefix tests/,runtime/experiments proofs server proofs/test_guards.py server/features pages documents \
+	proofs/test_memory.py server/features/exports server/features/comparison server/features/identification \
+	runtime server/features/doors) tests
 
 # With a number of jobs of its own, not what another make leaves over. A failure does not hide those of what comes after it.
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
 
 .DEFAULT_GOAL := help
-.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-rest $(PARTS:%=test-in-%) check bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
+.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -44,10 +46,11 @@ help: ## list the targets
 run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
 	@exec .venv/bin/mucat run --port $(PORT)
 
-test: ## every check and every test, in lanes; the output of a lane comes when a command of it has ended
-	@$(MAKE) --no-print-directory --jobs 2 setup-test
-	@$(MAKE) --no-print-directory --jobs 2 host-firmware
-	@$(IN_LANES) --jobs 4 test-real-time test-waiting test-checks test-rest
+test: build/.packages-test ## every check and every test, in lanes; the output of a lane comes when a command of it has ended
+	@$(IN_LANES) --jobs 6 test-real-time test-waiting test-checks test-rest test-page
+
+# The page's checks need little: they run while packages are downloaded.
+test-real-time test-waiting test-checks test-rest: setup-test host-firmware
 
 # Robots in real time have the processors first, one at a time: with two of them, both are late.
 test-real-time:
@@ -60,19 +63,25 @@ test-waiting:
 	@nice -n 5 $(PYTHON) -m pytest -m stack --durations 10 $(WAITING)
 
 test-checks:
-	@status=0; \
-	nice $(MAKE) --no-print-directory check || status=1; \
-	(cd frontend && nice npm test --silent) || status=1; \
+	@nice $(MAKE) --no-print-directory check-code
+
+test-page: frontend/node_modules/.ready
+	@cd frontend; status=0; \
+	nice npm run --silent style || status=1; \
+	nice npm test --silent || status=1; \
 	exit $$status
 
-# Four at once: many of them wait for a process.
+# Five at once: many of them wait for a process.
 test-rest:
-	@nice $(IN_LANES) --jobs 4 $(PARTS:%=test-in-%)
+	@nice $(IN_LANES) --jobs 5 $(PARTS:%=test-in-%)
 
 $(PARTS:%=test-in-%): test-in-%:
 	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))
 
-check: setup-test ## style, types, imports, faults of C and C++, and whether generated files are current
+check: check-code ## style, types, imports, faults of C and C++, and whether generated files are current
+	cd frontend && npm run --silent check
+
+check-code: setup-test
 	.venv/bin/ruff check
 	.venv/bin/ruff format --check
 	.venv/bin/mypy
@@ -81,7 +90,6 @@ check: setup-test ## style, types, imports, faults of C and C++, and whether gen
 	$(PYTHON) -m tests.checks
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate:check)
 	$(PYTHON) -m server.openapi --reference --check
-	cd frontend && npm run --silent check
 	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!firmware/*.gen.h')
 	$(CPPCHECK) --std=c++11 --language=c++ -D__AVR__ '-DISR(vector)=void vector()' $$(git ls-files 'firmware/src/*.cpp' 'firmware/hil/*.cpp' 'firmware/examples/*.ino')
 	$(CPPCHECK) $$(git ls-files 'firmware/emulator/*.c' 'firmware/emulator/*.cpp' 'firmware/host/board.cpp' 'firmware/host/interface.cpp')
@@ -178,7 +186,8 @@ firmware: build/.packages-run ## compile the firmware for the baud of robot.toml
 	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
 	@$(MAKE) --silent -C firmware/emulator
 
-host-firmware:
+# After the robot's firmware, of which it needs objects, too.
+host-firmware: firmware
 	@$(MAKE) --silent -C firmware host hang
 
 setup: build/.packages-run .venv/.ready server/page/index.html server/help/index.html firmware

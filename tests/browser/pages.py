@@ -8,6 +8,8 @@ from playwright.sync_api import Page, expect
 from tests.browser.site import Site
 from tests.proofs.watching import wait
 
+OPEN_MS = 60_000
+"""A comparison starts a process that gives way to all others, on a computer that has other work."""
 SESSIONS = ("Dive to half a metre", "Half a metre with PID")
 """{first} and {second} in the addresses."""
 
@@ -76,7 +78,7 @@ def show(page: Page, site: Site, view: View) -> None:
         "run": site.api.get("/comm-tests/runs").json()[0]["id"],
     }
     page.goto(f"{site.url}/#/{view.address.format(**names)}")
-    expect(page.get_by_role("heading", name=re.compile(view.shows)).first).to_be_visible()
+    expect(page.get_by_role("heading", name=re.compile(view.shows)).first).to_be_visible(timeout=OPEN_MS)
     settle(page)
 
 
@@ -84,7 +86,7 @@ def settle(page: Page) -> None:
     """Wait until no element of the page is busy."""
     expect(
         page.get_by_text(re.compile("being (fetched|read|compared|checked)|(Loading|Checking)…"))
-    ).to_have_count(0)
+    ).to_have_count(0, timeout=OPEN_MS)
 
 
 def stop_recordings(site: Site) -> None:

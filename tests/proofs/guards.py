@@ -4,6 +4,7 @@
 words given, and prints a table; status 1 where a guard is not missed by any of its tests.
 """
 
+import json
 import shutil
 import subprocess
 import sys
@@ -12,7 +13,6 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from os import environ
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
@@ -21,6 +21,7 @@ from tests.board.rig import ROOT, build
 from tests.sources import copy_sources
 
 LIST = Path(__file__).with_name("guards.toml")
+PRELOADED = Path(__file__).with_name("preloaded.py")
 TEST_SECONDS = 240
 """Time limit in s of a guard's tests; a test that hangs without the guard has failed."""
 
@@ -65,10 +66,16 @@ class Outcome:
 
 
 class Tree:
-    """A copy of the source tree from which guards are removed."""
+    """A copy of the source tree from which guards are removed, and the process that runs tests in it."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
+        self._preloaded: subprocess.Popen[str] | None = None
+
+    def close(self) -> None:
+        """End the process that runs tests."""
+        if self._preloaded is not None:
+            self._preloaded.communicate()
 
     def build_board(self) -> None:
         """Build the emulated board: objects of unchanged sources are copied."""
@@ -80,22 +87,15 @@ class Tree:
 
     def run(self, tests: Iterable[str]) -> Outcome:
         """Run these tests in the copy, up to the first that fails."""
-        report, started = self.root / "report.xml", time.monotonic()
+        report, said, started = self.root / "report.xml", self.root / "said", time.monotonic()
         # Nobody reads why a test fails here, so its assertions need not be rewritten. The native traceback
         # parses no sources: CPython's parser of them can fail where a failed test leaves a process behind.
         options = ["-q", "-x", "-p", "no:cacheprovider", "--assert=plain", "--tb=native"]
         limits = [f"--timeout={TEST_SECONDS}", f"--junitxml={report}"]
         report.unlink(missing_ok=True)
-        done = subprocess.run(
-            [sys.executable, "-m", "pytest", *options, *limits, *tests],
-            cwd=self.root,
-            env=environ | {"PYTHONPATH": str(self.root), "PYTHONDONTWRITEBYTECODE": "1"},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-        )
-        words = done.stdout[-2000:] + done.stderr[-2000:]
-        if not report.is_file() or done.returncode not in (0, 1):
+        status = self._pytest([*options, *limits, *tests], said)
+        words = said.read_text(errors="replace")[-4000:]
+        if not report.is_file() or status not in (0, 1):
             return Outcome((), ("the tests do not run",), time.monotonic() - started, words)
         found: Mapping[str, list[str]] = {"failure": [], "error": []}
         for case in ElementTree.parse(report).iter("testcase"):
@@ -104,6 +104,21 @@ class Tree:
                     names.append(case.attrib["name"])
         seconds = time.monotonic() - started
         return Outcome(tuple(found["failure"]), tuple(found["error"]), seconds, words)
+
+    def _pytest(self, options: list[str], said: Path) -> int:
+        """Exit status of pytest in the copy, whose output goes to the file `said`."""
+        if self._preloaded is None:
+            # Without -P the folder of the script would be where modules are looked for.
+            command = [sys.executable, "-P", str(PRELOADED)]
+            self._preloaded = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+            )
+        assert self._preloaded.stdin is not None
+        assert self._preloaded.stdout is not None
+        asked = {"folder": str(self.root), "options": options, "output": str(said)}
+        self._preloaded.stdin.write(json.dumps(asked) + "\n")
+        self._preloaded.stdin.flush()
+        return int(self._preloaded.stdout.readline())
 
     def run_without(self, guard: Guard) -> Outcome:
         """Run a guard's tests without it. Raises GuardError where it cannot be removed."""
@@ -130,7 +145,11 @@ def copy_tree() -> Iterator[Tree]:
     """Copy the files that are or would be under version control, as they are now."""
     with TemporaryDirectory(prefix="mucat-guards-") as folder:
         copy_sources(Path(folder))
-        yield Tree(Path(folder))
+        tree = Tree(Path(folder))
+        try:
+            yield tree
+        finally:
+            tree.close()
 
 
 def prove(guards: list[Guard]) -> int:
