@@ -59,6 +59,12 @@ SETUPS = {
         "pitch", "pid", {"kp": 0.0, "ki": 0.8, "kd": 0.0}, (10.0, -10.0), "pid"
     ),
     "integral alone, 0.8 (roll)": Setup("roll", "pid", {"kp": 0.0, "ki": 0.8, "kd": 0.0}, (7.0, -7.0), "pid"),
+    "PID (kp 0.5, ki 0, kd 0.3; pitch)": Setup(
+        "pitch", "pid", {"kp": 0.5, "ki": 0.0, "kd": 0.3}, (10.0, -10.0), "pid"
+    ),
+    "PID (kp 0.5, ki 0, kd 0.3; roll)": Setup(
+        "roll", "pid", {"kp": 0.5, "ki": 0.0, "kd": 0.3}, (7.0, -7.0), "pid"
+    ),
 }
 
 

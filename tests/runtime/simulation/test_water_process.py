@@ -1,6 +1,7 @@
 """The process of the water, with a board that the test plays and the real Zenoh."""
 
 import fcntl
+import json
 import logging
 import os
 import signal
@@ -210,6 +211,26 @@ class TestAttached:
         board.exchange()
         subscription.close()
         assert len(received) == 3
+
+    def test_the_craft_is_sent_with_the_first_truth_and_every_ten_seconds(
+        self, board: Board, messages: ZenohTransport, clock: SimulatedClock
+    ) -> None:
+        received: list[bytes] = []
+        subscription = messages.subscribe("craft", lambda _, payload: received.append(payload))
+        board.accept()
+        board.exchange()
+        clock.forward(9.0)
+        board.exchange()
+        clock.forward(1.0)
+        board.exchange()
+        wait_for(lambda: len(received) >= 2, "the craft")
+        subscription.close()
+        sent = [json.loads(block.payload)[0] for payload in received for block in read_blocks(payload)]
+        assert [(one["time"], one["title"]) for one in sent] == [
+            (100.0, "Default craft, changed"),
+            (110.0, "Default craft, changed"),
+        ]
+        assert sent[0]["craft"]["pressure"]["noise"] == 0
 
     def test_reset_brings_it_back_to_the_surface(self, board: Board, messages: ZenohTransport) -> None:
         board.accept()

@@ -5,6 +5,7 @@ import io
 import json
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 from mcap.reader import make_reader
@@ -33,7 +34,10 @@ from tests.server.features.exports.recordings import record
 from tests.server.features.sessions.crafts import craft_block
 from tests.server.features.sessions.recorder_rig import RecorderRig
 
-HEAVY = {"mass": 3.9, "fin_positions": ((0.1, 0.06), (-0.1, 0.06), (-0.1, -0.06), (0.1, -0.06))}
+HEAVY: dict[str, Any] = {
+    "mass": 3.9,
+    "fin_positions": ((0.1, 0.06), (-0.1, 0.06), (-0.1, -0.06), (0.1, -0.06)),
+}
 TRUTH = rows_block("truth", 0, (100.0, truth((1, 2, 3), (1.0, 0.0, 0.0, 0.0))))
 STATUS = Block.of(BY_NAME["status"], 1, 0, bytes(BY_NAME["status"].row_bytes))
 
