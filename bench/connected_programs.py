@@ -1,4 +1,4 @@
-"""What the measurement of a door needs of the programs at it."""
+"""The programs at a door, as its measurement uses them."""
 
 from contextlib import AbstractContextManager
 from time import monotonic, time
@@ -15,7 +15,7 @@ class ConnectedPrograms(Protocol):
         """Count from now on."""
 
     def end(self) -> tuple[list[float], float]:
-        """How late each message of the first program was since `begin`, s, and the number of those of all.
+        """The delay of each message of the first program since `begin`, s, and the number of all.
 
         Raises ConnectionError where one was disconnected.
         """

@@ -134,7 +134,7 @@ class Ros2Programs:
         self._begun, self._latencies = sum(self._counts), []
 
     def end(self) -> tuple[list[float], float]:
-        """How late each message of the first program was, s, and the number of those of all."""
+        """The delay of each message of the first program since `begin`, s, and the number of all."""
         return self._latencies, sum(self._counts) - self._begun
 
 

@@ -76,7 +76,10 @@ class WebSocketPrograms:
         self._drained = self._drain.bytes
 
     def end(self) -> tuple[list[float], float]:
-        """How late each message of the first was, s, and the number of all. Raises ConnectionError."""
+        """The delay of each message of the first since `begin`, s, and the number of all.
+
+        Raises ConnectionError where one was disconnected.
+        """
         samples, size, latencies = self._timed.end()
         drained = self._drain.bytes - self._drained
         self._drain.check()

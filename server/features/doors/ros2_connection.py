@@ -1,9 +1,10 @@
 """One connection of a program of ROS 2: its bytes to and from a Zenoh session of its own."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from server.features.doors.commands import DoorCommands, DoorPilot
 from server.features.doors.house import Doors
@@ -70,10 +71,31 @@ async def _open_node(make: MakeNode, session: Ros2Session) -> AsyncIterator[tupl
     try:
         yield await asyncio.shield(opening)
     finally:
-        node, path = await opening
-        await asyncio.to_thread(node.close)
-        for left in (path, path.with_name(f"{path.name}.lock")):
-            left.unlink(missing_ok=True)
+        await _complete(_close(opening))
+
+
+async def _close(opening: asyncio.Future[tuple[Ros2Node, Path]]) -> None:
+    node, path = await opening
+    await asyncio.to_thread(node.close)
+    for left in (path, path.with_name(f"{path.name}.lock")):
+        left.unlink(missing_ok=True)
+
+
+async def _complete(work: Coroutine[Any, Any, None]) -> None:
+    """Await all of the work, also where this task is cancelled meanwhile.
+
+    A call that waits for a thread would be dropped with its task, and the session's threads would stay.
+    """
+    task = asyncio.create_task(work)
+    cancelled = False
+    while not task.done():
+        try:
+            await asyncio.shield(task)
+        except asyncio.CancelledError:
+            cancelled = True
+    task.result()
+    if cancelled:
+        raise asyncio.CancelledError
 
 
 async def _pump(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
