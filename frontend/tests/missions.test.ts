@@ -12,6 +12,7 @@ import {
   newDocument,
   pathOf,
   placeText,
+  kindsFor,
   readCards,
   removeAt,
   setField,
@@ -131,6 +132,22 @@ describe('cards', () => {
     expect(setField(one, [], 'seconds', undefined).fields).toEqual({ do: 'hold', within: 0.2, note: 'n' });
     const turn = KINDS[1];
     expect(turn && setKind(one, [], turn).fields).toEqual({ do: 'turn', within: 0.2, note: 'n' });
+  });
+
+  it('without steps may become any kind: a mission may be a single step', () => {
+    const empty = newDocument([]).root;
+    expect(kindsFor(empty, KINDS)).toEqual(KINDS);
+    const leaf = kindsFor(empty, KINDS).find(({ do: name }) => name === 'hold');
+    if (leaf === undefined) throw new Error('no such kind');
+    const single = setKind(empty, [], leaf);
+    expect(tableOf({ head: {}, root: single })).toEqual({ mission: { do: 'hold' } });
+    const sequence = kindsFor(single, KINDS).find(({ do: name }) => name === 'sequence');
+    expect(sequence && tableOf({ head: {}, root: setKind(single, [], sequence) })).toEqual({ mission: { do: 'sequence', steps: [] } });
+  });
+
+  it('with steps stay such as have steps', () => {
+    const { root: one } = readCards({ mission: { do: 'sequence', steps: [{ do: 'hold' }] } });
+    expect(kindsFor(one, KINDS)).toEqual(KINDS.filter(({ most }) => most !== 0));
   });
 
   it('begin with a name that is free', () => {

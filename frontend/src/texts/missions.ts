@@ -29,7 +29,7 @@ export const missions = {
     goOn: 'Continue editing',
   },
   editor: {
-    back: 'All missions',
+    back: '← All missions',
     untitled: 'New mission',
     save: 'Save',
     saved: 'Saved',

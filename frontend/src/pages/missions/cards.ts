@@ -111,12 +111,18 @@ export function withEntry(table: Table, name: string, value: unknown): Table {
   return Object.fromEntries(Object.entries({ ...table, [name]: value }).filter(([, one]) => one !== undefined));
 }
 
+/** The kinds that a step may become: one with steps below it keeps them. */
+export function kindsFor(card: Card, kinds: readonly MissionNodeKind[]): readonly MissionNodeKind[] {
+  return (card.steps ?? []).length > 0 ? kinds.filter(({ most }) => most !== 0) : kinds;
+}
+
 /** Another kind for a step; it keeps the fields that both have. */
 export function setKind(root: Card, path: Path, kind: MissionNodeKind): Card {
   const known = ['note', ...kind.fields.map(({ name }) => name)];
-  return changeAt(root, path, (card) => ({
-    ...card,
-    fields: { do: kind.do, ...Object.fromEntries(Object.entries(card.fields).filter(([name]) => known.includes(name))) },
+  return changeAt(root, path, ({ id, fields, steps = [] }) => ({
+    id,
+    fields: { do: kind.do, ...Object.fromEntries(Object.entries(fields).filter(([name]) => known.includes(name))) },
+    ...(kind.most !== 0 || steps.length > 0 ? { steps } : {}),
   }));
 }
 
