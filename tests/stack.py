@@ -44,7 +44,7 @@ class Stack:
     def __init__(self, data: Path, *options: str) -> None:
         self.data = data
         self.port = free_port()
-        self.url = f"http://127.0.0.1:{self.port}"
+        self.url = self.first = f"http://127.0.0.1:{self.port}"
         self.log = data / "stack.log"
         self._options = options
         self._process: subprocess.Popen[bytes] | None = None

@@ -52,7 +52,7 @@ def opened_page(browser: Browser, site: Site, cookies: StorageState, size: Viewp
     page = context.new_page()
     complaints: list[str] = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto(site.url)
+    page.goto(site.first)
     yield page
     context.close()
     assert complaints == []

@@ -13,6 +13,11 @@ class Site(Protocol):
     def url(self) -> str: ...
 
     @property
+    def first(self) -> str:
+        """Address at which a test finds a page."""
+        ...
+
+    @property
     def port(self) -> int: ...
 
     @property

@@ -44,6 +44,11 @@ class DiveSite:
         """The address of the page."""
         return f"http://127.0.0.1:{self.port}"
 
+    @property
+    def first(self) -> str:
+        """A page without charts and camera, which would take the browser twice the time to open."""
+        return f"{self.url}/#/people"
+
     def forget_confirmations(self, clock: Clock) -> None:
         """Ask every browser for a new confirmation, whose age `clock` tells from now on."""
         assert self._access is not None

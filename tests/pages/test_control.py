@@ -16,6 +16,7 @@ def control(page: Page) -> Locator:
 
 
 def test_control_passes_from_one_page_to_another(page: Page, browser: Browser, site: DiveSite) -> None:
+    page.get_by_role("link", name="Operate").click()
     expect(control(page)).to_have_accessible_name(MINE)
     with somebody(browser, site, "operator") as other:
         expect(control(other)).not_to_have_accessible_name(MINE)

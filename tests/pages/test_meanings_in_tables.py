@@ -34,6 +34,7 @@ def test_a_finger_asks_what_a_signal_and_an_axis_mean(
 
 def test_a_key_asks_what_the_quality_of_the_link_means(page: Page) -> None:
     page.set_viewport_size(ROOMY)
+    page.get_by_role("link", name="Operate").click()
     page.reload()
     link = page.get_by_role("region", name="Serial link")
     ask_by_key(link.locator("summary", has_text="Quality"), link.get_by_text("Share of the board’s frames"))

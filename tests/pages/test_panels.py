@@ -14,7 +14,8 @@ from tests.browser.site import Site
 
 @pytest.fixture
 def fresh(page: Page, site: Site) -> Iterator[Page]:
-    """The page; afterwards the server has no layout."""
+    """The page Operate; afterwards the server has no layout."""
+    page.get_by_role("link", name="Operate").click()
     yield page
     for layout in site.api.get("/layouts").json():
         site.api.delete(f"/layouts/{layout['id']}").raise_for_status()

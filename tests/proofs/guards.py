@@ -49,7 +49,8 @@ class Guard:
         if found != 1:
             return f"{self.name}: its text is in {self.file} {found} times, not once"
         for test in self.tests:
-            file, _, function = test.partition("::")
+            file, _, case = test.partition("::")
+            function = case.partition("[")[0]
             if not (root / file).is_file() or f"def {function}(" not in (root / file).read_text():
                 return f"{self.name}: there is no test {test}"
         return ""

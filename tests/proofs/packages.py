@@ -80,7 +80,7 @@ class InstalledRobot:
 
     def __init__(self, root: RootSystem, config: str | None) -> None:
         self.port = free_port()
-        self.url = f"http://127.0.0.1:{self.port}"
+        self.url = self.first = f"http://127.0.0.1:{self.port}"
         self.data = root.path / DATA
         self.api = Commander(base_url=f"{self.url}/api", timeout=60.0, auth=ShellToken(DataFolder(self.data)))
         words = [MUCAT, "run", "--port", str(self.port), "--data", f"/{DATA}"]
