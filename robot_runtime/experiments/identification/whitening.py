@@ -83,4 +83,6 @@ def _deviations(white: Floats, activity: Floats) -> Floats:
     terms = np.array([(1.0, activity.ravel()[part].mean()) for part in parts])
     # Of each part's mean square the relative error counts.
     (fixed, growing), _ = nnls(terms / squares[:, None], np.ones(_PARTS))
-    return np.asarray(np.maximum(np.sqrt(fixed + growing * activity), _LEAST))
+    # No moment counts more than the quietest part shows.
+    known = np.maximum(activity, terms[0, 1])
+    return np.asarray(np.maximum(np.sqrt(fixed + growing * known), _LEAST))
