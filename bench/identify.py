@@ -29,7 +29,7 @@ from tests.runtime.experiments.identification.swimmer import random_craft
 
 _CRAFTS = 8
 _TRIALS = 4
-"""Sessions of a fit, of 90 s each; one more is left out."""
+"""Sessions of a fit, of 120 s each; one more is left out."""
 
 
 @dataclass(frozen=True, slots=True)

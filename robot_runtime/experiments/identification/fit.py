@@ -56,6 +56,7 @@ class Fit:
         self._shooting = Shooting(windows, start)
         self._progress = progress
         self._whitening = Whitening.none(FIRST_WEIGHTS)
+        self._activity = windows.activity()
 
     def run(self) -> FitSolution:
         """Fits all numbers, and then once more those that are seen. Raises what `progress` raises."""
@@ -99,7 +100,7 @@ class Fit:
         numbers = np.asarray(solution.x)
         for _ in range(2):
             self._move_starts(fitted, numbers)
-        self._whitening = Whitening.of(self._shooting.errors(fitted, numbers)[0])
+        self._whitening = Whitening.of(self._shooting.errors(fitted, numbers)[0], self._activity)
         return numbers
 
     def _bounds(self, fitted: Sequence[CraftQuantity]) -> tuple[Floats, Floats]:

@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
-from scipy.interpolate import BSpline, make_smoothing_spline
+from scipy.interpolate import BSpline, make_interp_spline, make_smoothing_spline
+from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from robot_runtime.contract.craft import Craft
 from robot_runtime.experiments.identification.bodies import CHANNELS, STATES, FinMotions, Floats
@@ -15,7 +17,7 @@ EVERY = 2
 """Steps between two moments that are compared."""
 WINDOW = 8.0
 """s. Longer than the hull's memory of its start (1 s), shorter than the time in which errors add up."""
-WINDOWS_MAX = 44
+WINDOWS_MAX = 60
 """Of a fit: more cost time, and say little more."""
 GAP = 0.1
 """s without a sample across which no window reaches."""
@@ -23,8 +25,8 @@ COVERED = 0.08
 """m of the pressure sensor's depth from which the hull is surely under water."""
 FIN_SAMPLES_MIN = 100
 """Of a session: two seconds, a quarter of a window."""
-DEPTH_LATENCY = 0.0145
-"""s from the pressure to its sample: conversion and the board's schedule (measured on the emulated board)."""
+DEPTH_LATENCY = 0.010
+"""s from the pressure to its sample, which is read in the tick after the conversion began."""
 FIN_CUTOFF = 18.0
 """Hz above which a fin's angle is smoothed.
 
@@ -32,6 +34,14 @@ A fin's own motion falls with the frequency, its power spectrum with the fourth 
 as the encoder's noise and steps, which are white (measured on the emulated board). A spline through every
 sample takes this noise for motion, and finds too much damping. Smoothing above 14 Hz takes away more motion
 than it leaves noise; above 18 Hz as much, so that the mean square speed, and with it the thrust, is right."""
+RESTING_RANGE, RESTING_SAMPLES = 0.02, 11
+"""rad that the angle of a resting fin covers at most in so many samples: seven deviations of its noise."""
+RESTING_WEIGHT = 1e-4
+"""Of a sample of a fin at rest, which is smoothed above a tenth of `FIN_CUTOFF`.
+
+There noise that is taken for motion drags at the hull as linear damping does, with half as much as yaw's."""
+ACTIVITY_TIME = 0.3
+"""s over which the activity of the fins is a mean: as long as the hull shows an error of their speeds."""
 _TRIMMED = 0.623
 """Mean of the 90 % smallest squares of a standard normal variable: (0.9 - 2·1.645·φ(1.645)) / 0.9."""
 MEAN_AGE = 0.0025
@@ -94,6 +104,12 @@ class Windows:
         shown = np.stack(angles, axis=2) - zeros[list(self.sessions)].T
         return FinMotions(shown, np.stack(speeds, axis=2))
 
+    def activity(self) -> Floats:
+        """The fins' mean square speed (rad²/s²) about the compared moments, of shape (windows, moments)."""
+        speeds = self.fins(0.0, np.zeros((max(self.sessions) + 1, 4))).speeds[:: 2 * EVERY]
+        squares = (speeds**2).mean(axis=1)
+        return np.asarray(uniform_filter1d(squares, round(ACTIVITY_TIME / (STEP * EVERY)), axis=0).T)
+
     def chosen(self, places: Sequence[int]) -> "Windows":
         """Some of the windows."""
         return Windows(
@@ -111,11 +127,13 @@ def cut(sessions: Sequence[SessionStreams], craft: Craft) -> Windows:
     Of more than `WINDOWS_MAX` an even choice is taken. Raises ValueError where there is none, in words.
     """
     found = [
-        (place, spline, start, *_sample(session, start, craft))
+        (place, spline, start, *_sample(session, readings, start, craft))
         for place, session in enumerate(sessions)
         if len(session.motor_times) >= FIN_SAMPLES_MIN
-        for spline in [_smooth_fins(session)]
-        for start in _starts(session)
+        for starts in [tuple(_starts(session))]
+        if starts
+        for spline, readings in [(_smooth_fins(session), _Readings.of(session))]
+        for start in starts
     ]
     if not found:
         raise ValueError(
@@ -148,15 +166,35 @@ def _starts(session: SessionStreams) -> Iterator[float]:
             start += WINDOW
 
 
-def _sample(session: SessionStreams, start: float, craft: Craft) -> tuple[Floats, Floats]:
+@dataclass(frozen=True, slots=True)
+class _Readings:
+    """Cubic splines through the readings of a session.
+
+    Straight lines between them would take 3 % of a motion of 8 Hz away, and the hull would seem inert.
+    """
+
+    depth: BSpline
+    inertial: BSpline
+    """Turn rates (rad/s), then specific forces (m/s²)."""
+
+    @classmethod
+    def of(cls, session: SessionStreams) -> Self:
+        inertial = np.concatenate((session.rates, session.forces), axis=1)
+        return cls(
+            make_interp_spline(*_ascending(session.depth_times, session.depths)),
+            make_interp_spline(*_ascending(session.imu_times, inertial)),
+        )
+
+
+def _sample(
+    session: SessionStreams, readings: _Readings, start: float, craft: Craft
+) -> tuple[Floats, Floats]:
     """The measured channels on the grid, and a guess of the state at its start."""
     grid = start + np.arange(round(WINDOW / STEP) // EVERY + 1) * STEP * EVERY + MEASURED_AGE
     measured = np.empty((CHANNELS, len(grid)))
-    measured[0] = np.interp(grid + DEPTH_LATENCY, session.depth_times, session.depths)
-    columns = np.concatenate((session.rates, session.forces), axis=1)
-    for axis in range(6):
-        latency = craft.gyroscope.latency if axis < 3 else craft.accelerometer.latency + MEAN_AGE
-        measured[1 + axis] = np.interp(grid + latency, session.imu_times, columns[:, axis])
+    measured[0] = readings.depth(grid + DEPTH_LATENCY)
+    measured[1:4] = readings.inertial(grid + craft.gyroscope.latency)[:, :3].T
+    measured[4:] = readings.inertial(grid + craft.accelerometer.latency + MEAN_AGE)[:, 3:].T
     attitude = session.attitudes[np.searchsorted(session.imu_times, start)]
     w, x, y, z = attitude / np.linalg.norm(attitude)
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
@@ -180,7 +218,13 @@ def _smooth_fins(session: SessionStreams) -> BSpline:
     times, angles = _ascending(session.motor_times, np.unwrap(session.angles, axis=0))
     interval = float(np.median(np.diff(times)))
     charge = 1 / (interval * (2 * np.pi * FIN_CUTOFF) ** 4)
-    fins = [make_smoothing_spline(times, column, lam=charge) for column in angles.T]
+    covered = maximum_filter1d(angles, RESTING_SAMPLES, axis=0)
+    covered -= minimum_filter1d(angles, RESTING_SAMPLES, axis=0)
+    weights = np.where(covered > RESTING_RANGE, 1.0, RESTING_WEIGHT)
+    fins = [
+        make_smoothing_spline(times, column, weight, charge)
+        for column, weight in zip(angles.T, weights.T, strict=True)
+    ]
     return BSpline(fins[0].t, np.stack([one.c for one in fins], axis=1), fins[0].k)
 
 

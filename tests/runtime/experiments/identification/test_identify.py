@@ -12,7 +12,15 @@ from robot_runtime.experiments.identification.identify import Identification, id
 from robot_runtime.experiments.identification.prediction import predict
 from robot_runtime.experiments.identification.quantities import QUANTITIES, ZERO_SPREAD
 from robot_runtime.experiments.identification.shooting import OF_A_SESSION, OFFSETS
-from robot_runtime.experiments.identification.streams import WINDOW, SessionStreams, cut, sensor_noise
+from robot_runtime.experiments.identification.streams import (
+    EVERY,
+    MEASURED_AGE,
+    STEP,
+    WINDOW,
+    SessionStreams,
+    cut,
+    sensor_noise,
+)
 from robot_runtime.experiments.identification.whitening import Whitening
 from tests.runtime.experiments.identification.swimmer import HEAVING, swim
 
@@ -132,16 +140,49 @@ def test_residuals_of_a_filtered_noise_are_made_white() -> None:
     errors = noise.copy()
     for moment in range(1, 2000):
         errors[:, 0, moment] += share * errors[:, 0, moment - 1]
-    found = Whitening.of(errors)
+    found = Whitening.of(errors, np.zeros((40, 2000)))
     assert found.coefficients == pytest.approx(np.array([[share, 0, 0, 0], [0, 0, 0, 0]]), abs=0.02)
-    assert found.sigma == pytest.approx([0.3, 0.3], rel=0.02)
+    assert found.sigma == pytest.approx(np.full((40, 2, 1996), 0.3), rel=0.02)
     assert found.apply(errors) == pytest.approx(noise[:, :, 4:] / 0.3, abs=0.3)
     slopes = np.stack((errors, 2 * errors), axis=3)
     assert found.apply(slopes)[..., 1] == pytest.approx(2 * found.apply(errors))
 
 
+def test_residuals_count_less_where_the_fins_move() -> None:
+    random = np.random.default_rng(1)
+    activity = np.repeat([[0.0, 30.0, 60.0, 0.0]], 250, axis=1) * np.ones((20, 1))
+    true = np.sqrt(0.01**2 + 0.1**2 * activity)
+    found = Whitening.of(random.normal(0, 1, (20, 1, 1000)) * true[:, None], activity)
+    assert found.sigma[:, 0] == pytest.approx(true[:, 4:], rel=0.1)
+
+
 def test_a_channel_without_residuals_is_no_fault() -> None:
-    assert np.all(Whitening.of(np.zeros((2, 1, 50))).apply(np.zeros((2, 1, 50))) == 0)
+    none = np.zeros((2, 1, 50))
+    assert np.all(Whitening.of(none, none[:, 0]).apply(none) == 0)
+
+
+def test_a_resting_fin_has_no_speed() -> None:
+    """The noise of its encoder is no motion, whose drag would count as damping of the hull."""
+    swum = swim(START, 6, 10)
+    noise = np.random.default_rng(1).normal(0, START.encoder.noise, swum.angles.shape)
+    resting = replace(swum, angles=np.round((0.5 + noise) * 512 / np.pi) * np.pi / 512)
+    assert cut([resting], START).fins(0.0, np.zeros((1, 4))).speeds.std() < 0.02
+    # A fin that turns keeps its speed up to the moment at which it stops.
+    turned = np.clip(3.0 * (swum.motor_times - 4.0), 0.0, 3.0)[:, None] + resting.angles - 0.5
+    windows = cut([replace(resting, angles=np.remainder(turned + np.pi, 2 * np.pi) - np.pi)], START)
+    speeds = windows.fins(0.0, np.zeros((1, 4))).speeds[:, 0, 0]
+    times = windows.starts[0] + np.arange(len(speeds)) * STEP / 2
+    assert speeds[(times > 4.1) & (times < 4.9)] == pytest.approx(3.0, abs=0.6)
+
+
+def test_readings_between_two_samples_follow_a_quick_motion() -> None:
+    swum = swim(START, 6, 10)
+    shake = np.sin(2 * np.pi * 8 * swum.imu_times)
+    shaken = replace(swum, rates=np.repeat(shake[:, None], 3, axis=1))
+    windows = cut([shaken], START)
+    times = windows.starts[0] + np.arange(windows.measured.shape[1]) * STEP * EVERY
+    times += MEASURED_AGE + START.gyroscope.latency
+    assert windows.measured[1, :, 0] == pytest.approx(np.sin(2 * np.pi * 8 * times), abs=0.005)
 
 
 def test_the_zeros_of_the_encoders_are_found() -> None:

@@ -40,7 +40,7 @@ def record(folder: Path) -> RecordedTrials:
     (folder / "other.toml").write_text(CRAFT)
     (folder / "swum.toml").write_text('[craft]\nfile = "other.toml"\n')
     (folder / "robot.toml").write_text("")
-    text = _shipped()["sea_trial"].replace("duration = 90", f"duration = {SECONDS}")
+    text = _shipped()["sea_trial"].replace("duration = 120", f"duration = {SECONDS}")
     head, *events = text.split("[[events]]")
     early = [one for one in events if float(one.split("at = ")[1].split()[0]) < SECONDS]
     data = DataFolder(folder / "data")
