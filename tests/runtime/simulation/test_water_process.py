@@ -12,6 +12,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -63,7 +64,7 @@ class Board:
         self.line.sendall(fins)
         word, *numbers = self.hear().split()
         assert word == "sense"
-        assert len(numbers) == 15
+        assert len(numbers) == 16
         return [float(number) for number in numbers]
 
     def hang_up(self) -> None:
@@ -313,6 +314,16 @@ def command(folder: Path, *more: str) -> list[str]:
     return [*program, "--board", str(folder / "board"), "--connect", endpoint, "--robot", "turtle", *more]
 
 
+@contextmanager
+def started(folder: Path, *more: str) -> Iterator[subprocess.Popen[str]]:
+    """The simulator's process, which also a test that fails does not wait for."""
+    with subprocess.Popen(command(folder, *more), stderr=subprocess.PIPE, text=True) as program:
+        try:
+            yield program
+        finally:
+            program.kill()
+
+
 def accepted(messages: ZenohTransport) -> bool:
     try:
         return messages.query("simulator/reset", {}, timeout=0.5) == {"accepted": True}
@@ -321,7 +332,7 @@ def accepted(messages: ZenohTransport) -> bool:
 
 
 def test_the_program_runs_and_ends_on_sigterm(folder: Path, board: Board, messages: ZenohTransport) -> None:
-    with subprocess.Popen(command(folder, "--seed", "2")) as program:
+    with started(folder, "--seed", "2") as program:
         assert board.accept() == f"attach {PERIOD}"
         board.exchange()
         wait_for(lambda: accepted(messages), "answer")
@@ -330,7 +341,7 @@ def test_the_program_runs_and_ends_on_sigterm(folder: Path, board: Board, messag
 
 
 def test_program_waits_for_board_and_peers_that_are_not_there(folder: Path) -> None:
-    with subprocess.Popen(command(folder), stderr=subprocess.PIPE, text=True) as program:
+    with started(folder) as program:
         assert program.stderr is not None
         assert "no board at" in program.stderr.readline()
         late = Board(folder / "board")
@@ -347,7 +358,7 @@ def test_program_ends_some_time_after_its_server(folder: Path, board: Board) -> 
     lock = folder / "server.lock"
     with lock.open("w") as server:
         fcntl.flock(server, fcntl.LOCK_EX)
-        with subprocess.Popen(command(folder, "--server-lock", str(lock), "--linger", "0")) as program:
+        with started(folder, "--server-lock", str(lock), "--linger", "0") as program:
             board.accept()
             board.exchange()
             assert program.poll() is None
@@ -359,7 +370,7 @@ def test_program_ends_some_time_after_its_server(folder: Path, board: Board) -> 
 def test_program_ends_with_its_parent(folder: Path, board: Board) -> None:
     parent = "import subprocess, sys; subprocess.Popen(sys.argv[1:]); sys.stdin.read()"
     arguments = [sys.executable, "-c", parent, *command(folder, "--with-parent")]
-    with subprocess.Popen(arguments, stdin=subprocess.PIPE) as started:
+    with subprocess.Popen(arguments, stdin=subprocess.PIPE) as one:
         board.accept()
-        os.kill(started.pid, signal.SIGKILL)
+        os.kill(one.pid, signal.SIGKILL)
     assert board.hear() == ""
