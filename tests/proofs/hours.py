@@ -35,7 +35,7 @@ from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.exports.tables import write_tables
-from server.features.sessions.recorder import PERIOD, Recorder
+from server.features.sessions.recorder import PERIOD, STANDING_SECONDS, Recorder
 from server.features.sessions.recording import Recording
 from server.features.sessions.replay import read_blocks_between
 from server.features.sessions.retention import RetentionWorker
@@ -157,6 +157,8 @@ class Hours:
         self._old = asyncio.run(self._take(OLD_SECONDS * self._seconds, 2, Checksums(), ()))
 
     def _record(self) -> None:
+        # So late that the craft of the older session is no longer in force, and does not begin this one.
+        self._clock.forward(STANDING_SECONDS)
         # First the older session goes into the bin; then out of it, so late that its room is not used again.
         self._session = asyncio.run(self._take(self._seconds, 1, self._sent, (0.25, 0.95)))
         with self.store.read() as database:
