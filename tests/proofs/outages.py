@@ -160,7 +160,10 @@ class World:
         if armed and not (outcome.armed and outage.off is None):
             problems.append("it came up armed")
         if not armed and outcome.armed and outage.off is None:
-            alarms = "; ".join(f"{alarm['fault']} ({alarm['what']})" for alarm in self.viewer.alarms)
+            alarms = "; ".join(
+                f"{alarm['fault']} since {alarm['since']:.1f} s ({alarm['what']})"
+                for alarm in self.viewer.alarms
+            )
             problems.append(f"it was stopped, with the alarms {alarms}")
         if outage.rest is not None and outcome.rest > outage.rest:
             problems.append(f"the fins moved for {outcome.rest:.2f} s")
