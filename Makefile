@@ -21,12 +21,11 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,portability --i
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
-# Tests in real time that mostly wait, for uploads, a slow network or what was killed, and bear a delay. About as long as
-# all others in real time.
-WAITING := $(addprefix tests/,board/test_bootloader.py server/http/test_poor_network.py proofs/test_chaos.py \
-	packages/test_wheels.py server/features/board/test_firmware_upload.py server/features/bring_up/test_on_the_robot.py \
+# Tests in real time that mostly wait, for uploads or a slow network, and bear a delay.
+WAITING := $(addprefix tests/,board/test_bootloader.py server/http/test_poor_network.py \
+	server/features/board/test_firmware_upload.py server/features/bring_up/test_on_the_robot.py \
 	server/features/comm_tests/test_reserved_board.py server/features/comm_tests/test_thesis_example.py \
-	browser/test_bring_up.py browser/test_firmware_upload.py browser/test_scenarios.py browser/test_tuning.py)
+	browser/test_bring_up.py browser/test_firmware_upload.py)
 REAL_TIME = $(filter-out $(WAITING),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
 # All other tests, each part by a process of its own, the longest first. A part lacks what is a part by itself.
 PARTS := $(addprefix tests/,runtime/experiments proofs server proofs/test_guards.py server/features pages documents \
@@ -71,9 +70,9 @@ test-page: frontend/node_modules/.ready
 	nice npm test --silent || status=1; \
 	exit $$status
 
-# Five at once: many of them wait for a process.
+# Four at once: many of them wait for a process.
 test-rest:
-	@nice $(IN_LANES) --jobs 5 $(PARTS:%=test-in-%)
+	@nice $(IN_LANES) --jobs 4 $(PARTS:%=test-in-%)
 
 $(PARTS:%=test-in-%): test-in-%:
 	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))
