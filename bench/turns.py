@@ -11,15 +11,12 @@ from math import degrees, radians
 from statistics import median
 from typing import Any
 
-from robot_runtime.contract.documents import Truth
 from robot_runtime.control.attitude import euler_angles, wrap_angle
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
-from robot_runtime.simulation.water.geometry import rotation, to_world
 from robot_runtime.simulation.water.parameters import SimulationParameters
-from robot_runtime.transport.blocks import read_blocks, read_rows
-from tests.runtime.control.depth_experiment import SEEDS, variants
+from tests.runtime.control.depth_experiment import SEEDS, read_truth, variants
 
 DEPTH = 0.6
 """m."""
@@ -89,12 +86,8 @@ class _Attitudes:
 
     def blocks(self, data: bytes) -> None:
         """Stores heading, pitch and roll, and the sensor's depth."""
-        for block in read_blocks(data):
-            if block.topic.name == "truth":
-                for time, truth in read_rows(block):
-                    assert isinstance(truth, Truth)
-                    depth = truth.position[2] + to_world(rotation(truth.attitude), self._sensor)[2]
-                    self.samples.append((time, euler_angles(truth.attitude), depth))
+        for time, truth, depth in read_truth(data, self._sensor):
+            self.samples.append((time, euler_angles(truth.attitude), depth))
 
     def event(self, event: str, **more: Any) -> None:
         """Checks that no command was refused."""

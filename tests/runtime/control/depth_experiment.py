@@ -1,6 +1,6 @@
 """An experiment with the depth controllers in simulated time: three steps and a sine, with its figures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import pi, sin
@@ -111,6 +111,16 @@ class Sample:
     fins: tuple[float, ...]
 
 
+def read_truth(data: bytes, sensor: tuple[float, float, float]) -> Iterator[tuple[float, Truth, float]]:
+    """Each truth in these blocks: its time (s), the truth, and the depth (m) of this place of the hull."""
+    for block in read_blocks(data):
+        if block.topic.name == "truth":
+            for time, truth in read_rows(block):
+                assert isinstance(truth, Truth)
+                above = to_world(rotation(truth.attitude), sensor)[2]
+                yield time, truth, truth.position[2] + above
+
+
 class _TruthRecorder:
     def __init__(self, sensor: tuple[float, float, float]) -> None:
         self.samples: list[Sample] = []
@@ -118,12 +128,8 @@ class _TruthRecorder:
 
     def blocks(self, data: bytes) -> None:
         """Store the truth."""
-        for block in read_blocks(data):
-            if block.topic.name == "truth":
-                for time, truth in read_rows(block):
-                    assert isinstance(truth, Truth)
-                    above = to_world(rotation(truth.attitude), self._sensor)[2]
-                    self.samples.append(Sample(time, truth.position[2] + above, truth.fins))
+        for time, truth, depth in read_truth(data, self._sensor):
+            self.samples.append(Sample(time, depth, truth.fins))
 
     def event(self, event: str, **more: Any) -> None:
         """Ignore the message."""
