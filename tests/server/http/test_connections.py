@@ -212,6 +212,20 @@ def test_a_connection_that_waits_for_its_client_makes_room() -> None:
     asyncio.run(scenario())
 
 
+def test_an_address_has_so_many_connections_however_many_the_server_could_have() -> None:
+    async def scenario() -> None:
+        async with site() as one:
+            first = await one.connect()
+            one.clock.forward(1)
+            for _ in range(ADDRESS_MAX - 1):
+                await one.connect()
+            await one.open()
+            assert await has_ended(first)
+            assert len(one.limits) == ADDRESS_MAX
+
+    asyncio.run(scenario())
+
+
 def test_requests_that_are_worked_on_are_not_ended_for_others() -> None:
     async def scenario() -> None:
         async with site(total=2) as one:
