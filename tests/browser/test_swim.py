@@ -20,9 +20,11 @@ from tests.browser.driving import hold_to_arm, wait_for_depth
 from tests.stack import Stack
 
 
-def depth(page: Page) -> float:
-    """The shown depth, m."""
-    return float(page.locator(".reading", has_text="Depth").locator(".value").inner_text())
+def shown_depth(page: Page) -> tuple[datetime, float]:
+    """The shown depth, m, and the time at which it was shown, read in one moment of the page."""
+    value = page.locator(".reading", has_text="Depth").locator(".value")
+    milliseconds, text = value.evaluate("element => [Date.now(), element.innerText]")
+    return datetime.fromtimestamp(milliseconds / 1000, UTC), float(text)
 
 
 def read_zip(data: bytes) -> dict[str, list[dict[str, str]]]:
@@ -51,7 +53,7 @@ def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
     shown = []
     for _ in range(20):
         page.wait_for_timeout(100)  # so that the values compared are spread over two seconds
-        shown.append((datetime.now(UTC), depth(page)))
+        shown.append(shown_depth(page))
 
     page.get_by_role("button", name="no card").click()
     expect(page.get_by_text("set point 0.50 m", exact=True)).to_be_visible()
