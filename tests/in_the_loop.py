@@ -115,7 +115,9 @@ def health(stack: Stack, name: str) -> str:
 def wait(condition: Callable[[], object], what: str, stack: Stack) -> None:
     end = time.monotonic() + PATIENCE
     while not condition():
-        assert time.monotonic() < end, f"waited in vain for {what}: {state(stack)}"
+        if time.monotonic() >= end:
+            short = {name: value for name, value in state(stack).items() if name != "loops"}
+            raise AssertionError(f"waited in vain for {what}: {short}")
         time.sleep(0.05)
 
 

@@ -266,7 +266,8 @@ class FaultDetector:
         return self._heard - self._imu > self._imu_stale
 
     def _capsized(self) -> bool:
-        return not self._imu_is_stale() and self._age(self._upright) > _LIMITS["capsized"]
+        """Compares with the last attitude, because of a board that sends nothing it is not known."""
+        return not self._imu_is_stale() and self._imu - self._upright > _LIMITS["capsized"]
 
     def _does_not_rise(self) -> bool:
         if self._ascent is None or self._depth <= AT_SURFACE:

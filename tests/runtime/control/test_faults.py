@@ -65,12 +65,14 @@ def test_a_silent_sensor_is_a_fault_after_its_limit(rig: Rig, name: str, limit: 
     assert wrong(rig) == set()
 
 
-def test_a_silent_board_is_not_reported_as_a_silent_imu(rig: Rig) -> None:
+def test_a_silent_board_is_not_reported_as_a_silent_imu_or_a_capsized_robot(rig: Rig) -> None:
     rig.clock.forward(0.39)
     assert wrong(rig) == set()
     rig.clock.forward(0.45)
     assert wrong(rig) == {"depth_stale"}
     rig.clock.forward(0.02)
+    assert wrong(rig) == {"depth_stale", "board_silent"}
+    rig.clock.forward(BY_NAME["capsized"].limit)
     assert wrong(rig) == {"depth_stale", "board_silent"}
 
 
