@@ -34,6 +34,7 @@ PARTS := $(addprefix tests/,runtime/experiments proofs server proofs/test_guards
 
 # With a number of jobs of its own, not what another make leaves over. A failure does not hide those of what comes after it.
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
+BESIDE := nice python3 -m tests.beside
 
 .DEFAULT_GOAL := help
 .PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
@@ -62,17 +63,17 @@ test-waiting:
 	@nice -n 5 $(PYTHON) -m pytest -m stack --durations 10 $(WAITING)
 
 test-checks:
-	@nice $(MAKE) --no-print-directory check-code
+	@$(BESIDE) $(IN_LANES) check-code
 
 test-page: frontend/node_modules/.ready
-	@cd frontend; status=0; \
-	nice npm run --silent style || status=1; \
-	nice npm test --silent || status=1; \
+	@status=0; \
+	$(BESIDE) npm --prefix frontend run --silent style || status=1; \
+	$(BESIDE) npm --prefix frontend test --silent || status=1; \
 	exit $$status
 
 # Four at once: many of them wait for a process.
 test-rest:
-	@nice $(IN_LANES) --jobs 4 $(PARTS:%=test-in-%)
+	@$(BESIDE) $(IN_LANES) --jobs 4 $(PARTS:%=test-in-%)
 
 $(PARTS:%=test-in-%): test-in-%:
 	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))

@@ -20,6 +20,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from bench.results import commit, machine
+from tests import beside
 
 FOLDER = Path("build/proofs")
 LINES = 30
@@ -79,7 +80,7 @@ STAGES: tuple[Stage, ...] = (
                 Proof("packages", "The wheels install and swim on fresh systems of each architecture."),
             ),
             at_once=2,
-            prefix=("chrt", "--idle", "0"),
+            prefix=("nice", sys.executable, beside.__file__),
         ),
     ),
     (

@@ -25,7 +25,7 @@ right:
 part:
 	@echo "part <$(ONLY)>"
 idle:
-	@chrt --pid $$$$
+	@nice; ps -o sid= -p $$$$
 halted:
 	@kill -INT $(PROOF_PID); exec sleep 60
 """
@@ -129,7 +129,9 @@ def test_what_computes_leaves_the_processor_to_the_robots(
     (lane,) = (lane for stage in STAGES for lane in stage if lane.prefix)
     monkeypatch.setattr(report, "STAGES", ((Lane((Proof("idle", "It yields."),), prefix=lane.prefix),),))
     assert report.main() == 0
-    assert "SCHED_IDLE" in outcomes(folder)["idle"].said
+    niceness, session = map(int, outcomes(folder)["idle"].said.split())
+    assert niceness == min(os.nice(0) + 10, 19)
+    assert session != os.getsid(0)
 
 
 def test_the_next_stage_begins_when_all_of_the_first_has_ended(

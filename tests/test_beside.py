@@ -1,0 +1,45 @@
+"""Commands that give way to robots in real time."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.beside import NICENESS
+from tests.stack import ROOT
+
+BESIDE = [sys.executable, "-m", "tests.beside"]
+
+
+def test_a_command_has_a_session_of_little_weight_and_its_exit_code_is_told() -> None:
+    own = Path("/proc/self/autogroup")
+    if not own.exists():
+        pytest.skip("this kernel does not share the processors by session")
+    # Its weight is set once it runs: it waits for that.
+    command = f"""
+import os, sys
+while not (said := open("/proc/self/autogroup").read()).endswith("nice {NICENESS}\\n"):
+    pass
+print(os.getsid(0) == os.getpid(), said)
+sys.exit(3)
+"""
+    whole = [*BESIDE, sys.executable, "-c", command]
+    ended = subprocess.run(whole, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    assert ended.returncode == 3
+    assert ended.stdout.startswith("True")
+    assert own.read_text() not in ended.stdout
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_what_ends_it_ends_the_command(number: signal.Signals) -> None:
+    process = subprocess.Popen(
+        [*BESIDE, "sh", "-c", "echo runs; exec sleep 600"], cwd=ROOT, stdout=subprocess.PIPE, text=True
+    )
+    with process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "runs\n"
+        os.kill(process.pid, number)
+        assert process.wait(60) == 128 + number
