@@ -25,7 +25,7 @@ right:
 part:
 	@echo "part <$(ONLY)>"
 idle:
-	@nice; ps -o sid= -p $$$$
+	@nice; cut -d' ' -f6 /proc/$$$$/stat
 halted:
 	@kill -INT $(PROOF_PID); exec sleep 60
 """
