@@ -5,7 +5,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, Route, expect
 
 from tests.browser.axe import AXE, faults
 from tests.browser.people import somebody
@@ -292,6 +292,28 @@ def test_an_older_version_is_taken_back(page: Page, site: Site) -> None:
     expect(card(page, "1")).to_contain_text("depth 0.5 m")
     page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_text(re.compile("^Version 3"))).to_be_visible()
+
+
+def test_what_is_written_while_it_is_saved_stays(page: Page, site: Site) -> None:
+    keep(site, "meanwhile")
+    open_mission(page, site, "meanwhile")
+    held: list[Route] = []
+    page.route(
+        "**/api/missions",
+        lambda route, asked: held.append(route) if asked.method == "POST" else route.continue_(),
+    )
+    card(page, "1").click()
+    page.get_by_role("textbox", name=re.compile("^depth")).fill("0.8")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_role("button", name="Saving…")).to_be_visible()
+    page.get_by_role("button", name="Undo", exact=True).click()
+    expect(card(page, "1")).to_contain_text("depth 0.5 m")
+    with page.expect_response(
+        lambda response: response.request.method == "GET" and response.url.endswith("/api/missions")
+    ):
+        held[0].continue_()
+    expect(page.get_by_role("button", name="Save", exact=True)).to_be_enabled()
+    expect(card(page, "1")).to_contain_text("depth 0.5 m")
 
 
 def test_a_file_is_opened(page: Page, site: Site, tmp_path: Path) -> None:

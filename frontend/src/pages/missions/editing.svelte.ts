@@ -51,6 +51,8 @@ export class MissionEditing {
   #history = $state.raw(begin<Entry>({ text: this.written.text, cards: null }));
   /** who may only look at it */
   viewOnly = $state(false);
+  /** while the library has another text of it than what it was opened as */
+  saving = $state(false);
   /** how many seeds the present text was tried with, and how often each step failed, by its place */
   tried = $state(0);
   failures = $state.raw<Readonly<Record<string, number>>>({});
