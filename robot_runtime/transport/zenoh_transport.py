@@ -28,9 +28,10 @@ _OPENING_MS = 50
 _RETRY_MS_MIN, _RETRY_MS_MAX = 50, 200
 """ms between two attempts to connect to a lost peer, doubled from the first to the last."""
 
-_THREADS = "(net: (worker_threads: 1), acc: (handover: net), rx: (handover: net), tx: (handover: net))"
-"""Zenoh's `ZENOH_RUNTIME`: one thread does all its work. With a thread for each kind of work, which is its
-default, three are woken for a message, and the work of each is less than its waking."""
+_THREADS = "(net: (worker_threads: 1), acc: (handover: net), rx: (worker_threads: 1), tx: (handover: net))"
+"""Zenoh's `ZENOH_RUNTIME`: a thread that receives, and one for all else. With a thread for each kind of work,
+its default, three are woken for a message, and the work of each is less than its waking. A single one would
+wait for itself: where the queue is full, it answers a received message after 5 s; none is sent till then."""
 
 _REFUSAL = zenoh.Encoding.TEXT_PLAIN
 

@@ -281,6 +281,16 @@ def test_the_server_loads_no_heavy_library() -> None:
     assert printed(program) == ""
 
 
+def test_the_doctor_looks_at_a_current_database_without_alembic() -> None:
+    """Each server that starts does: its loading would take most of a restart."""
+    program = (
+        "import sys; from pathlib import Path; from migrations import HEAD\n"
+        "from server.platform.schema import refuse_unknown\n"
+        "refuse_unknown(HEAD, Path('mucat.db')); print('alembic' in sys.modules)"
+    )
+    assert printed(program).strip() == "False"
+
+
 @pytest.mark.parametrize(
     ("line", "completed"),
     [

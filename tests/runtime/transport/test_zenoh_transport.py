@@ -1,3 +1,6 @@
+import select
+import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -5,9 +8,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import zenoh
 
 from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.zenoh_transport import ZenohTransport
+from tests.stack import ROOT
 
 
 @pytest.fixture
@@ -103,3 +108,54 @@ def test_a_request_without_an_answer_times_out(ends: tuple[ZenohTransport, Zenoh
     with pytest.raises(NoAnswerError, match="no answer to picture within"):
         asking.query_bytes("picture", b"", timeout=0.2)
     gate.set()
+
+
+SLOW_READER = """
+import os, sys, threading, time
+
+# Of Zenoh's own threads, so that it asks while it does not read.
+one = "(worker_threads: 1)"
+os.environ["ZENOH_RUNTIME"] = f"(net: {one}, acc: {one}, rx: {one}, tx: {one})"
+
+import zenoh
+from robot_runtime.transport.zenoh_transport import ZenohTransport
+
+begun, asked = threading.Event(), threading.Event()
+
+def read(_):
+    begun.set()
+    asked.wait()
+
+with ZenohTransport("turtle", connect=[sys.argv[1]]) as reader:
+    session = reader._session
+    flood = session.declare_subscriber("mucat/turtle/flood", zenoh.handlers.Callback(read, indirect=False))
+    begun.wait()
+    print("reads nothing", flush=True)
+    sys.stdin.readline()
+    threading.Timer(0.5, asked.set).start()
+    print([reply.err.payload.to_string() for reply in session.get("mucat/turtle/nothing", timeout=4.0)])
+"""
+
+
+def test_what_is_received_while_the_queue_is_full_does_not_stop_the_sending() -> None:
+    """Where one thread does both, it waits for itself for 5 s."""
+    with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+        endpoint = f"unixsock-stream/{folder}/zenoh"
+        with ZenohTransport("turtle", listen=[endpoint]) as sender:
+            # Ended in the thread that receives, as Zenoh ends a question that nobody answers.
+            end = zenoh.handlers.Callback(zenoh.Query.drop, indirect=False)
+            sender._session.declare_queryable("mucat/turtle/nothing", end)
+            with subprocess.Popen(
+                [sys.executable, "-c", SLOW_READER, endpoint],
+                cwd=ROOT,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+            ) as reader:
+                assert reader.stdout is not None
+                while not select.select([reader.stdout], [], [], 0.0)[0]:
+                    sender.publish("flood", bytes(100_000))
+                # More than the queue and the socket hold.
+                for _ in range(20):
+                    sender.publish("flood", bytes(100_000))
+                assert reader.communicate("ask\n", 60)[0] == "reads nothing\n[]\n"
