@@ -138,7 +138,7 @@ with ZenohTransport("turtle", connect=[sys.argv[1]]) as reader:
 
 
 def test_what_is_received_while_the_queue_is_full_does_not_stop_the_sending() -> None:
-    """Where one thread does both, it waits for itself for 5 s."""
+    """A thread that did both would wait for itself, for 5 s."""
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         endpoint = f"unixsock-stream/{folder}/zenoh"
         with ZenohTransport("turtle", listen=[endpoint]) as sender:
