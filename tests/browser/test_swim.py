@@ -175,6 +175,7 @@ def test_a_reload_keeps_the_events(page: Page) -> None:
     expect(page.get_by_role("log").get_by_text("armed", exact=True).first).to_be_visible()
 
 
+@pytest.mark.usefixtures("_at_rest")
 def test_a_board_that_was_reset_is_disarmed_and_can_be_armed_again(stack: Stack) -> None:
     wait_for_state(stack, lambda state: state["refusals"] == [])
     stack.api.post("/robot/commands/arm").raise_for_status()
