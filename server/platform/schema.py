@@ -68,8 +68,11 @@ def refuse_unknown(revision: str, database: Path, folder: DataFolder | None = No
 
     It names the backup in `folder` that fits this version.
     """
-    # Alembic's loading would take most of a restart.
-    if revision == HEAD or revision in (known := known_revisions()):
+    # For this one Alembic need not be loaded, which would take most of a restart.
+    if revision == HEAD:
+        return
+    known = known_revisions()
+    if revision in known:
         return
     fitting = None if folder is None else find_copy(folder, known)
     remedy = (
