@@ -266,7 +266,7 @@ class FaultDetector:
         return self._heard - self._imu > self._imu_stale
 
     def _capsized(self) -> bool:
-        """Compares with the last attitude, because of a board that sends nothing it is not known."""
+        """Compares with the last attitude: of a board that sends nothing, none is known."""
         return not self._imu_is_stale() and self._imu - self._upright > _LIMITS["capsized"]
 
     def _does_not_rise(self) -> bool:

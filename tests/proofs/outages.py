@@ -19,7 +19,6 @@ import httpx
 import psutil
 
 from server.platform.settings import DataFolder
-from server.processes.supervisor import HEARTBEAT_SECONDS
 from tests.proofs.watching import Fins, Viewer, wait
 from tests.stack import Stack
 
@@ -160,7 +159,7 @@ class World:
         armed = bool(self.viewer.state["armed"])
         if armed and not (outcome.armed and outage.off is None):
             problems.append("it came up armed")
-        if not armed and outcome.armed and outage.off is None and not self._was_silent(outcome):
+        if not armed and outcome.armed and outage.off is None:
             alarms = "; ".join(
                 f"{alarm['fault']} since {alarm['since']:.1f} s ({alarm['what']})"
                 for alarm in self.viewer.alarms
@@ -170,12 +169,6 @@ class World:
             problems.append(f"the fins moved for {outcome.rest:.2f} s")
         if outage.off is not None and outcome.off > outage.off:
             problems.append(f"the motors had power for {outcome.off:.2f} s")
-
-    def _was_silent(self, outcome: Outcome) -> bool:
-        """True if the robot was rightly stopped: the next server took longer than the robot waits for one."""
-        return outcome.again > HEARTBEAT_SECONDS and any(
-            alarm["fault"] == "server_silent" for alarm in self.viewer.alarms
-        )
 
     def calm(self) -> None:
         """Disarm, acknowledge, and wait until all is well."""

@@ -111,7 +111,7 @@ def test_a_request_without_an_answer_times_out(ends: tuple[ZenohTransport, Zenoh
 
 
 SLOW_READER = """
-import os, sys, threading, time
+import os, sys, threading
 
 # Of Zenoh's own threads, so that it asks while it does not read.
 one = "(worker_threads: 1)"
