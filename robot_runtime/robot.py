@@ -14,6 +14,7 @@ from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.core import PUBLISH_EVERY, Core
 from robot_runtime.link.serial_link import SerialLink
+from robot_runtime.periodic_task import PeriodicTask
 from robot_runtime.service_manager import ServiceManager
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import Outbox
@@ -141,13 +142,12 @@ class Robot(Core):
 
     def _control_loop(self) -> None:
         period = 1 / self.config.control.rate
-        due = self.clock.now() + period
+        ticks = PeriodicTask(self.clock.now() + period, period, self._tick)
         self._service.ready()
-        while not self._ending.wait(max(min(due, self.pilot_tick()) - self.clock.now(), 0.0)):
-            if self.clock.now() < due:
-                continue
-            self.control_tick()
-            # A control loop that hangs is ended and started again, disarmed.
-            self._service.feed(self.clock.now())
-            # Late ticks are skipped.
-            due = max(due + period, self.clock.now())
+        while not self._ending.wait(max(min(ticks.due, self.pilot_tick()) - self.clock.now(), 0.0)):
+            ticks.run_if_due(self.clock.now())
+
+    def _tick(self) -> None:
+        self.control_tick()
+        # A control loop that hangs is ended and started again, disarmed.
+        self._service.feed(self.clock.now())

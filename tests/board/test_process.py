@@ -51,9 +51,14 @@ def test_time_in_which_it_was_held_up_is_skipped_and_counted(tmp_path: Path) -> 
 
 def test_it_can_run_faster_than_real_time(tmp_path: Path) -> None:
     with start(tmp_path, "--speed", "0") as process, process.connect() as board:
-        first, begin = board.stats()["time"], time.monotonic()
-        wait_for(lambda: board.stats()["time"] - first >= 2, "two seconds of the board's time")
-        assert time.monotonic() - begin < 2
+        leads = []
+
+        def outruns() -> bool:
+            leads.append(board.stats()["time"] - time.monotonic())
+            # A board that keeps to real time makes up for a tenth of a second at most.
+            return max(leads) - min(leads) > 0.2 and leads.index(max(leads)) > leads.index(min(leads))
+
+        wait_for(outruns, "the board to be faster than real time")
 
 
 def test_a_host_receives_telemetry_in_real_time(tmp_path: Path) -> None:

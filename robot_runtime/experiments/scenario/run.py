@@ -21,6 +21,7 @@ from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import CommandEvent, LineFaultChange, TimedEvent, WaterEvent
 from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
 from robot_runtime.link.link_driver import PERIOD as GATHERING
+from robot_runtime.periodic_task import SAME_TIME, PeriodicTask
 from robot_runtime.simulation.boards.stepped_board import PERIOD
 from robot_runtime.simulation.water.requests import changes
 
@@ -30,8 +31,6 @@ AFTERWARDS = 0.5
 """s after the end for which the robot is watched as it disarms."""
 PROGRESS_EVERY = 1.0
 """s of simulated time."""
-_SAME_TIME = 1e-6
-"""s; much less than a step, much more than sums of steps are off by."""
 
 
 class RunListener(Protocol):
@@ -44,21 +43,6 @@ class RunListener(Protocol):
     def event(self, event: str, **more: Any) -> None:
         """Receive an event of the run: started, progress, marker or ended."""
         ...
-
-
-class _PeriodicTask:
-    """An action every `period` (s); missed periods are not made up for."""
-
-    def __init__(self, start: float, period: float, action: Callable[[], object]) -> None:
-        self.due = start
-        self._period = period
-        self._action = action
-
-    def run_if_due(self, now: float) -> None:
-        """Runs the action if it is due."""
-        if now >= self.due - _SAME_TIME:
-            self.due = max(self.due + self._period, now)
-            self._action()
 
 
 class ScenarioRun:
@@ -115,8 +99,8 @@ class _RunLoop:
         self._received = b""
         self._next_poll = now = rig.clock.now()
         self._tasks = [
-            _PeriodicTask(now, 1 / rig.scenario.control.rate, rig.robot.control_tick),
-            _PeriodicTask(now, PUBLISH_EVERY, rig.robot.publish_tick),
+            PeriodicTask(now, 1 / rig.scenario.control.rate, rig.robot.control_tick),
+            PeriodicTask(now, PUBLISH_EVERY, rig.robot.publish_tick),
         ]
         self._has_camera = needs_camera(rig.scenario)
         rig.robot.bus.on_document("event", self._see_event)
@@ -127,7 +111,7 @@ class _RunLoop:
         robot = self._rig.robot
         robot.outbox.flush()
         robot.announce()
-        self._tasks.append(_PeriodicTask(0.0, PROGRESS_EVERY, self._report_progress))
+        self._tasks.append(PeriodicTask(0.0, PROGRESS_EVERY, self._report_progress))
 
     def play(self) -> None:
         """Runs all events, until the end or until it is stopped."""
@@ -158,7 +142,7 @@ class _RunLoop:
     def _until(self, end: float) -> None:
         """Advances the time to `end` (s), or until it is stopped."""
         rig = self._rig
-        while (now := rig.clock.now()) < end - _SAME_TIME and not self._stopped():
+        while (now := rig.clock.now()) < end - SAME_TIME and not self._stopped():
             self._poll_link(now)
             for task in self._tasks:
                 task.run_if_due(now)
@@ -166,7 +150,7 @@ class _RunLoop:
             if self._arming is not None:
                 self._continue_arming(now)
                 due.append(self._next_attempt)
-            if self._has_camera and now > -_SAME_TIME:
+            if self._has_camera and now > -SAME_TIME:
                 due.append(now + rig.robot.vision.tick())
             periods = max(round((min(due) - now) / PERIOD), 1)
             self._received += rig.run(periods)
@@ -174,7 +158,7 @@ class _RunLoop:
     def _poll_link(self, now: float) -> None:
         """Does the work of the link's thread: collects bytes, handles them, sends what is due."""
         line = self._rig.robot.link
-        if now < self._next_poll - _SAME_TIME and (line.gathering or not self._received):
+        if now < self._next_poll - SAME_TIME and (line.gathering or not self._received):
             return
         self._receive_bytes()
         line.poll()
@@ -218,7 +202,7 @@ class _RunLoop:
         assert self._arming is not None
         arming, event = self._arming
         supervisor = self._rig.robot.supervisor
-        if not arming.over and (supervisor.board_armed or now >= self._next_attempt - _SAME_TIME):
+        if not arming.over and (supervisor.board_armed or now >= self._next_attempt - SAME_TIME):
             self._next_attempt = now + ARM_WAIT
             supervisor.continue_arming()
         if arming.over:
