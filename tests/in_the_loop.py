@@ -14,6 +14,7 @@ from typing import Any
 
 from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.transport.blocks import read_blocks, read_rows
 from tests.exports import export_session
 from tests.stack import ROOT, Stack
@@ -26,6 +27,8 @@ CUT_SECONDS = 3.0
 """Length of the cut, a fact of the test: several times what the robot waits before it stops."""
 SET_POINT = 0.5
 """m"""
+LATEST = 10.0
+"""s, the part of the session that is read each time."""
 TURN = 0.01
 """m above its deepest place, the robot has turned."""
 
@@ -65,11 +68,12 @@ def main() -> None:
         try:
             wait(lambda: refusals(stack) == [], "the simulator", stack)
             told["simulator"] = health(stack, "simulator")
+            if missing() is None:
+                wait(lambda: state(stack)["camera"] == "rendered scene", "pictures of the scene", stack)
             session = stack.api.post("/sessions", json={"name": "in the loop"}).json()
             stack.arm()
-            wait(lambda: has_turned(stack, session["id"]), "the turn below the set point", stack)
+            wait(Dive(stack, session["id"]).has_turned, "the turn below the set point", stack)
             told["armed"] = state(stack)["armed"]
-            told["camera"] = state(stack)["camera"]
             hosts.loss = 1.0
             wait(lambda: not state(stack)["armed"], "the stop after the cut", stack)
             time.sleep(CUT_SECONDS)
@@ -84,7 +88,7 @@ def main() -> None:
         finally:
             simulator.terminate()
             simulator.wait(10)
-        told["packets"] = [hosts.carried, hosts.lost]
+        told["packets"] = hosts.packets
     print(json.dumps(told))  # noqa: T201 - it speaks to the test that started it
 
 
@@ -93,13 +97,23 @@ def state(stack: Stack) -> dict[str, Any]:
     return found
 
 
-def has_turned(stack: Stack, session: int) -> bool:
-    """True once the robot was below its set point and rises again."""
-    answer = stack.api.get(f"/sessions/{session}/blocks", params={"start": 0.0, "end": PATIENCE})
-    answer.raise_for_status()
-    blocks = [block for block in read_blocks(answer.content) if block.topic is DEPTH]
-    depths = [record.depth for block in blocks for _, record in read_rows(block) if isinstance(record, Depth)]
-    return bool(depths) and depths[-1] < max(depths) - TURN and max(depths) > SET_POINT
+class Dive:
+    """Follows the depth of a session that has just begun."""
+
+    def __init__(self, stack: Stack, session: int) -> None:
+        self._stack, self._session = stack, session
+        self._began = time.monotonic()
+        self._deepest = 0.0
+
+    def has_turned(self) -> bool:
+        """True once the robot was below its set point and rises again; to be asked often."""
+        span = {"start": max(time.monotonic() - self._began - LATEST, 0.0), "end": PATIENCE}
+        answer = self._stack.api.get(f"/sessions/{self._session}/blocks", params=span)
+        blocks = [block for block in read_blocks(answer.raise_for_status().content) if block.topic is DEPTH]
+        rows = [record for block in blocks for _, record in read_rows(block)]
+        depths = [record.depth for record in rows if isinstance(record, Depth)]
+        self._deepest = max(self._deepest, *depths)
+        return bool(depths) and depths[-1] < self._deepest - TURN and self._deepest > SET_POINT
 
 
 def refusals(stack: Stack) -> list[str]:

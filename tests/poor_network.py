@@ -187,7 +187,7 @@ class Scenario:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
-        self.report.packets = [self._hosts.carried, self._hosts.lost]
+        self.report.packets = [*self._hosts.packets]
 
     async def _robot(self) -> None:
         start = time.monotonic()

@@ -145,7 +145,8 @@ class Stack:
     def arm(self) -> None:
         """Arm as soon as nothing speaks against it; after a start, a sensor or a value may be awaited."""
         end = time.monotonic() + READY_SECONDS
-        while (answer := self.api.post("/robot/commands/arm")).status_code == 409:
+        # 409: something speaks against it; 503: the runtime does not answer in time.
+        while (answer := self.api.post("/robot/commands/arm")).status_code in (409, 503):
             assert time.monotonic() < end, answer.text
             time.sleep(_POLL)
         answer.raise_for_status()

@@ -11,11 +11,11 @@ that:
 import ctypes
 import fcntl
 import heapq
+import multiprocessing
 import os
 import random
 import select
 import subprocess
-import threading
 import time
 from collections.abc import Callable
 from struct import Struct
@@ -28,6 +28,7 @@ _TUNSETIFF = 0x400454CA
 _IFF_TUN, _IFF_NO_PI = 0x0001, 0x1000
 _REQUEST = Struct("16sH22x")
 _PACKET_BYTES = 2048
+_FORK = multiprocessing.get_context("fork")
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
@@ -52,8 +53,9 @@ class TwoHosts:
     """
 
     def __init__(self, delay: float, jitter: float, loss: float, seed: int = 1) -> None:
-        self.delay, self.jitter, self.loss = delay, jitter, loss
-        self.carried = self.lost = 0
+        self.delay, self.jitter = delay, jitter
+        self._loss = _FORK.Value("d", loss)
+        self._carried, self._lost = _FORK.Value("L", 0), _FORK.Value("L", 0)
         self._random = random.Random(seed)
         self._here = _interface(HERE)
         home = os.open("/proc/self/ns/net", os.O_RDONLY)
@@ -62,18 +64,32 @@ class TwoHosts:
         self._away = os.open("/proc/self/ns/net", os.O_RDONLY)
         _call(_libc.setns, home, _CLONE_NEWNET)
         os.close(home)
-        self._ending = False
-        self._thread = threading.Thread(target=self._carry, daemon=True)
+        # A process of its own: the network does not wait for a test that computes.
+        self._carrier = _FORK.Process(target=self._carry, daemon=True)
 
     def __enter__(self) -> Self:
-        self._thread.start()
+        self._carrier.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._ending = True
-        self._thread.join()
+        self._carrier.kill()
+        self._carrier.join()
         for handle in (self._here, self._there, self._away):
             os.close(handle)
+
+    @property
+    def loss(self) -> float:
+        """The share of packets that is lost."""
+        return float(self._loss.value)
+
+    @loss.setter
+    def loss(self, share: float) -> None:
+        self._loss.value = share
+
+    @property
+    def packets(self) -> tuple[int, int]:
+        """Number of carried and of lost packets."""
+        return self._carried.value, self._lost.value
 
     def enter_there(self) -> None:
         """Move a child that is about to run its program to the other host."""
@@ -81,19 +97,19 @@ class TwoHosts:
 
     def _carry(self) -> None:
         under_way: list[tuple[float, int, int, bytes]] = []
-        while not self._ending:
+        while True:
             wait = min(under_way[0][0] - time.monotonic(), 0.05) if under_way else 0.05
             ready, _, _ = select.select([self._here, self._there], [], [], max(wait, 0))
             now = time.monotonic()
             for source in ready:
                 packet = os.read(source, _PACKET_BYTES)
                 if self._random.random() < self.loss:
-                    self.lost += 1
+                    self._lost.value += 1
                     continue
-                self.carried += 1
+                self._carried.value += 1
                 due = now + max(self.delay + self._random.uniform(-self.jitter, self.jitter), 0)
                 target = self._there if source == self._here else self._here
-                heapq.heappush(under_way, (due, self.carried, target, packet))
+                heapq.heappush(under_way, (due, self._carried.value, target, packet))
             while under_way and under_way[0][0] <= now:
                 _, _, target, packet = heapq.heappop(under_way)
                 os.write(target, packet)

@@ -7,10 +7,13 @@ Playwright keeps an event loop running, which tests of other rooms could not sta
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page, StorageState
+from playwright.sync_api import Browser, Page, StorageState, expect
 
 from tests.browser.opening import DESKTOP, PHONE, closing_pages, launched, opened_page, signed_in
 from tests.browser.site import Site
+
+expect.set_options(timeout=20_000)
+"""ms until a test gives up waiting for what never comes; the page itself may be late on a busy computer."""
 
 __all__ = ["_no_page_is_left", "any_page", "browser", "cookies", "page"]
 

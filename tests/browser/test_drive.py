@@ -136,19 +136,21 @@ def test_a_thumb_drives_on_the_pad(page: Page) -> None:
 
 
 @contextmanager
-def resting_within_half_a_second(stack: Stack, begin: Callable[[], object]) -> Iterator[None]:
-    """Run the block while the fins flap; after it they rest within half a second of the board's time."""
+def resting_afterwards(stack: Stack, begin: Callable[[], object]) -> Iterator[None]:
+    """Run the block while the fins flap; after it they come to rest while the motors have power.
+
+    How soon is measured in simulated time: tests/proofs/test_faults.py.
+    """
     fins = Fins(DataFolder(stack.data).board_socket)
     try:
         begin()
         until_seen(lambda: fins.seen[-1:] and fins.seen[-1].moving)
         yield
         since = time.monotonic()
-        until_seen(lambda: fins.seen[-1].time > since + 2 * NEUTRAL_SECONDS)
-        moved = fins.moved_for(since)
+        until_seen(lambda: fins.seen[-1].time > since and not fins.seen[-1].moving)
+        assert fins.seen[-1].powered
     finally:
         fins.close()
-    assert moved <= NEUTRAL_SECONDS, f"the fins moved for {moved:.3f} s"
 
 
 def until_seen(condition: Any) -> None:
@@ -165,18 +167,17 @@ def test_a_lost_gamepad_a_lost_socket_and_escape_stop_driving(page: Page, stack:
     drive = page.get_by_role("region", name="Drive")
     page.evaluate(GAMEPAD)
     expect(drive.get_by_text("Test pad")).to_be_visible()
-    with resting_within_half_a_second(
-        stack, lambda: page.evaluate("() => { globalThis.pad.axes = [0, 0, 0, -1]; }")
-    ):
+    with resting_afterwards(stack, lambda: page.evaluate("() => { globalThis.pad.axes = [0, 0, 0, -1]; }")):
         expect_surge(page, "forwards")
         page.evaluate("() => { globalThis.pad = null; }")
     expect(drive.get_by_text("Test pad disconnected; controls released.")).to_be_visible()
     expect_surge(page, "")
-    with resting_within_half_a_second(stack, lambda: page.keyboard.down("r")):
+    with resting_afterwards(stack, lambda: page.keyboard.down("r")):
         page.evaluate("() => { for (const one of globalThis.sockets) one.close(); }")
-    expect(drive).to_be_visible()
     page.keyboard.up("r")
-    with resting_within_half_a_second(stack, lambda: page.keyboard.down("r")):
+    # While the page has no control, it shows no sticks and takes no keys.
+    expect(page.get_by_role("img", name="left stick")).to_be_visible()
+    with resting_afterwards(stack, lambda: page.keyboard.down("r")):
         page.keyboard.press("Escape")
 
 

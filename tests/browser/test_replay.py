@@ -14,7 +14,7 @@ def record_a_dive(page: Page, stack: Stack) -> tuple[int, float, float]:
     """Record a dive to 0.5 m. Returns the session, the time of a bookmark (s), and the depth there (m)."""
     session = stack.api.post("/sessions", json={"name": "to be replayed"}).json()["id"]
     hold_to_arm(page)
-    wait_for_depth(page, 0.2, 0.3)
+    wait_for_depth(page, 0.2, 0.6)
     mark = stack.api.post(f"/sessions/{session}/markers", json={"text": "on the way down"}).json()
     wait_for_depth(page, 0.45, 0.55)
     stack.api.post("/robot/stop").raise_for_status()
@@ -77,7 +77,7 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     assert commands == []
 
     # The robot itself can be stopped from here, and is.
-    stack.api.post("/robot/commands/arm").raise_for_status()
+    stack.arm()
     expect(page.get_by_text("ARMED", exact=True)).to_be_visible()
     page.keyboard.press("Escape")
     expect(page.locator(".now")).to_contain_text("disarmed")

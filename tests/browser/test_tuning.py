@@ -15,7 +15,9 @@ RUN_MS = 60_000
 
 
 def hold_to_arm(page: Page) -> None:
-    page.get_by_role("button", name="Hold to arm").hover()
+    button = page.get_by_role("button", name="Hold to arm")
+    expect(button).to_be_enabled()
+    button.hover()
     page.mouse.down()
     expect(page.get_by_role("button", name=re.compile("^Run the"))).to_be_enabled()
     page.mouse.up()

@@ -56,6 +56,7 @@ def show_toml(page: Page) -> Locator:
 
 def tab_to(page: Page, wanted: Locator, most: int = 60) -> None:
     """Go on by Tab until it has the focus."""
+    expect(wanted).to_be_visible()
     for _ in range(most):
         page.keyboard.press("Tab")
         if wanted.count() == 1 and wanted.evaluate("(one) => one === document.activeElement"):

@@ -212,6 +212,10 @@ class Rig:
         told = [document for name, document in self.listener.documents if name == "parameters"]
         return {one["name"]: one for one in told[-1]["parameters"]} if told else {}
 
+    def alarms(self) -> list[str]:
+        """The faults of the newest state's alarms."""
+        return [alarm["fault"] for alarm in self.listener.newest_state().get("alarms", [])]
+
     def newest_parameter(self, name: str) -> dict[str, Any]:
         return self.newest_parameters().get(name, {})
 
@@ -243,6 +247,10 @@ def _micros() -> int:
 
 
 def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
+    def since_stop() -> list[int]:
+        types = [type_ for _, type_, _ in rig.board.heard]
+        return types[types.index(Stop.type, types.index(Start.type)) :] if Stop.type in types else []
+
     rig.ready()
     rig.arm()
     rig.board.wait(lambda: rig.board.count(Navigation.type) >= 21)
@@ -250,12 +258,13 @@ def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
     gaps = [after - before for before, after in pairwise(times)]
     # A busy computer is late now and then: the median does not see it.
     assert median(gaps) == pytest.approx(0.1, rel=0.1)
-    assert Navigation.from_bytes(rig.board.heard[-1][2]).z == pytest.approx(1.0)
+    newest = [payload for _, type_, payload in rig.board.heard if type_ == Navigation.type][-1]
+    assert Navigation.from_bytes(newest).z == pytest.approx(1.0)
     rig.ask("stop")
     rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
-    after = rig.board.count(Navigation.type)
-    rig.board.wait(lambda: sum(at > time.monotonic() - 0.5 for at, _, _ in rig.board.heard) > 3)
-    assert rig.board.count(Navigation.type) <= after + 1
+    rig.board.wait(lambda: len(since_stop()) > 5)
+    # The tick during which STOP went out may have ended after it.
+    assert since_stop().count(Navigation.type) <= 1
     assert rig.listener.texts("event")[-1] == "Stopped by the operator."
 
 
@@ -385,13 +394,13 @@ def test_a_port_that_vanishes_disarms_and_its_return_does_not_arm(rig: Rig) -> N
     assert rig.board.count(Start.type) == 0
 
 
-def test_a_silent_board_is_a_fault_within_a_second(rig: Rig) -> None:
+def test_a_silent_board_is_a_fault_that_stops_the_robot(rig: Rig) -> None:
     rig.ready()
     rig.arm()
     rig.board.silent = True
-    began = time.monotonic()
-    rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
-    assert time.monotonic() - began < 1.0
+    rig.board.wait(lambda: rig.board.count(Stop.type) >= 1)
+    rig.listener.wait(lambda: "board_silent" in rig.alarms())
+    assert not rig.listener.newest_state()["armed"]
 
 
 def test_without_the_server_s_heartbeat_an_armed_robot_is_stopped(tmp_path: Path) -> None:
@@ -402,12 +411,12 @@ def test_without_the_server_s_heartbeat_an_armed_robot_is_stopped(tmp_path: Path
         return float(state["time"] - state["armed_since"])
 
     try:
-        rig.ready()
         with rig.saying(HEARTBEAT):
+            rig.ready()
             rig.arm()
             rig.listener.wait(lambda: armed_for() > 2.5)
-        rig.listener.wait(lambda: rig.listener.newest_state()["mode"] == "failsafe")
-        assert [alarm["fault"] for alarm in rig.listener.newest_state()["alarms"]] == ["server_silent"]
+        rig.listener.wait(lambda: rig.alarms() == ["server_silent"])
+        assert rig.listener.newest_state()["mode"] == "failsafe"
         rig.board.wait(lambda: rig.board.count(Stop.type) >= 1)
     finally:
         rig.close()

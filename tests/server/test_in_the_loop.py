@@ -6,19 +6,15 @@ import json
 import subprocess
 import sys
 import zipfile
-from itertools import pairwise
 from typing import Any
 
 import pytest
 
-from robot_runtime.simulation.scene.availability import missing
+from tests.in_the_loop import CUT_SECONDS
 from tests.stack import ROOT
 from tests.two_hosts import available
 
 pytestmark = pytest.mark.stack
-
-DISARM_SECONDS = 1.0
-"""After 0.5 s the simulator counts as lost and the depth as too old; then STOP goes out."""
 
 
 def table(archive: zipfile.ZipFile, name: str) -> list[dict[str, str]]:
@@ -53,7 +49,6 @@ def test_it_dives_to_its_set_point_through_delay_jitter_and_loss(
 ) -> None:
     told, archive = swum
     assert told["armed"]
-    assert missing() is not None or told["camera"] == "rendered scene"
     carried, lost = told["packets"]
     assert carried > 500
     assert lost > 5
@@ -76,6 +71,7 @@ def test_a_lost_simulator_is_a_fault_and_stops_the_robot(
     armed = next(float(event["time [s]"]) for event in events if event["kind"] == "armed")
     disarmed = next(float(event["time [s]"]) for event in events if event["kind"] == "disarmed")
     times = [float(line["time [s]"]) for line in table(archive, "depth")]
-    last = max(before for before, after in pairwise(times) if after - before > DISARM_SECONDS)
-    assert armed < last < disarmed
-    assert min(disarmed, float(lost["time [s]"])) - last < DISARM_SECONDS
+    # How soon it stops is measured in simulated time: tests/runtime/control/test_hil_feed.py.
+    deepest = max(table(archive, "depth"), key=lambda line: float(line["depth [m]"]))
+    assert armed < float(deepest["time [s]"]) < disarmed
+    assert not [time for time in times if disarmed + 1 < time < disarmed + CUT_SECONDS]

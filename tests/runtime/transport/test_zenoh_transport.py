@@ -49,13 +49,15 @@ def test_a_peer_does_not_wait_for_missing_peers(tmp_path: Path) -> None:
 def test_a_peer_reconnects_soon() -> None:
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         endpoint = f"unixsock-stream/{folder}/zenoh"
+        seconds = []
         with ZenohTransport("turtle", connect=[endpoint]) as staying:
-            with ZenohTransport("turtle", listen=[endpoint]) as leaving:
-                heard(staying, leaving)
-            # Pauses between retries grow to a limit, which is reached by now.
-            time.sleep(1.8)
-            with ZenohTransport("turtle", listen=[endpoint]) as back:
-                assert heard(staying, back) < 0.5
+            for _ in range(4):
+                with ZenohTransport("turtle", listen=[endpoint]) as coming_and_leaving:
+                    seconds.append(heard(staying, coming_and_leaving))
+                # Pauses between retries grow to a limit, which is reached by now.
+                time.sleep(1.8)
+        # A busy computer delays some of them.
+        assert min(seconds[1:]) < 0.5
 
 
 def ask(asking: ZenohTransport, name: str, payload: bytes) -> bytes:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import inf
 from pathlib import Path
+from statistics import median
 
 import cv2
 import numpy as np
@@ -253,9 +254,9 @@ class TestThread:
         node.start()
         wait_for(lambda: len(listener.detections) >= 11, "eleven pictures")
         node.close()
-        taken = [detection.taken for detection in listener.detections]
-        # Single pictures may be late, but none is early and the rate is not exceeded.
-        assert (taken[10] - taken[0]) / 10 > 0.045
+        gaps = [after.taken - before.taken for before, after in pairwise(listener.detections)]
+        # On a busy computer single pictures are late, and those after them less so.
+        assert median(gaps) > 0.045
 
     def test_a_higher_rate_applies_at_once(self, listener: Listener) -> None:
         node = listener.node(SteadyClock(), config=VisionConfig(rate=2.0, width=64, height=48))

@@ -153,26 +153,32 @@ def test_pauses_grow_to_a_limit_and_reset_after_a_steady_run(
     assert pauses == wanted
 
 
-def test_a_process_is_terminated_first_and_then_killed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
-    up = "print('up')\ntime.sleep(600)"
-    polite = f"import signal, sys, time; signal.signal(15, lambda *_: sys.exit(print('bye')))\n{up}"
-    deaf = f"import signal, time; signal.signal(15, signal.SIG_IGN)\n{up}"
-    crew = Crew(tmp_path, program("polite", polite), program("deaf", deaf))
+def stop_when_up(folder: Path, code: str) -> str:
+    """Starts a program that says "up" and sleeps, and stops it; returns its log. Afterwards it is gone."""
+    crew = Crew(folder, program("engine", f"import signal, sys, time\n{code}\nprint('up')\ntime.sleep(600)"))
+    log = folder / "logs/engine.log"
     processes: list[psutil.Process] = []
 
     async def scenario() -> None:
-        for name in ("polite", "deaf"):
-            log = tmp_path / "logs" / f"{name}.log"
-            await until(lambda log=log: log.exists() and log.read_text() == "up\n", f"{name} to be up")  # type: ignore[misc]
-            processes.append(crew.process(name))
+        await until(lambda: log.exists() and log.read_text() == "up\n", "it to be up")
+        processes.append(crew.process("engine"))
 
     run(crew, scenario)
-    assert (tmp_path / "logs" / "polite.log").read_text() == "up\nbye\n"
-    assert not any(process.is_running() for process in processes)
+    assert not processes[0].is_running()
     assert crew.told == []
+    return log.read_text()
+
+
+def test_a_process_is_terminated_first(tmp_path: Path) -> None:
+    polite = "signal.signal(15, lambda *_: sys.exit(print('bye')))"
+    assert stop_when_up(tmp_path, polite) == "up\nbye\n"
+
+
+def test_a_process_that_does_not_end_when_terminated_is_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
+    assert stop_when_up(tmp_path, "signal.signal(15, signal.SIG_IGN)") == "up\n"
 
 
 def test_children_of_a_process_end_with_it(tmp_path: Path) -> None:

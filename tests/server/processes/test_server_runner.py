@@ -134,7 +134,7 @@ def test_a_later_one_that_cannot_start_is_tried_until_it_can(tmp_path: Path) -> 
     with running(tmp_path) as family:
         (tmp_path / "broken").touch()
         family.kill("mucat-server")
-        wait(lambda: (tmp_path / "broken").read_text() == "xxx", "three tries")
+        wait(lambda: len((tmp_path / "broken").read_text()) >= 3, "three tries")
         (tmp_path / "broken").unlink()
         wait(family.whole, "a server")
         assert len(family.servers) == 2

@@ -65,6 +65,7 @@ def check_restored(arduino: EmulatorProcess, reset: str = "dtr") -> None:
             assert session.stage is not SessionStage.REFUSED
 
 
+@pytest.mark.stack
 def test_cells_run_and_the_firmware_comes_back(arduino: EmulatorProcess) -> None:
     faulty = make_test(framing="plain", to_val=21, expected=20, faults=Faults(drop=0.1))
     status, events = run_lab(write_document(SHORT, faulty), "--where", "robot", *place(arduino))
@@ -79,6 +80,7 @@ def test_cells_run_and_the_firmware_comes_back(arduino: EmulatorProcess) -> None
     check_restored(arduino)
 
 
+@pytest.mark.stack
 def test_a_board_whose_reset_pin_is_pulled(bare_arduino: EmulatorProcess) -> None:
     reset = f"board:{bare_arduino.socket}"
     linked = make_test(framing="robot", direction="both", to_val=21, expected=20)
@@ -87,6 +89,7 @@ def test_a_board_whose_reset_pin_is_pulled(bare_arduino: EmulatorProcess) -> Non
     check_restored(bare_arduino, reset)
 
 
+@pytest.mark.stack
 def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: EmulatorProcess) -> None:
     slow = make_test(delay=(10.0,))
     with lab(write_document(slow), "--where", "robot", *place(arduino)) as process:
@@ -96,6 +99,7 @@ def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: EmulatorProces
     check_restored(arduino)
 
 
+@pytest.mark.stack
 def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino: EmulatorProcess) -> None:
     with lab(write_document(SHORT), "--where", "robot", *place(arduino)) as process:
         read_until(process.stdout, event="phase", phase="upload")
@@ -111,6 +115,7 @@ def test_an_invalid_reset_is_refused(spec: str) -> None:
         find_reset(spec)
 
 
+@pytest.mark.stack
 def test_the_boot_loader_of_a_pro_mini_is_refused_before_anything_is_written(
     program: Path, tmp_path: Path
 ) -> None:
@@ -120,11 +125,13 @@ def test_the_boot_loader_of_a_pro_mini_is_refused_before_anything_is_written(
             upload_to(str(arduino.tty), pull, ROBOT, Cancellation())
 
 
+@pytest.mark.stack
 def test_the_boot_loader_is_identified(bare_arduino: EmulatorProcess) -> None:
     pull = find_reset(f"board:{bare_arduino.socket}")
     assert identify(str(bare_arduino.tty), pull) == BootLoader(4, 4, 115200)
 
 
+@pytest.mark.stack
 def test_a_board_without_a_boot_loader_is_not_refused_for_it(program: Path, tmp_path: Path) -> None:
     robot = ROBOT.with_suffix(".elf")
     with EmulatorProcess(program, robot, tmp_path / "tty", tmp_path / "socket") as arduino:

@@ -21,7 +21,6 @@ from tests.stack import Stack
 pytestmark = pytest.mark.stack
 
 TICK = 0.05
-REST_SECONDS, STOP_SECONDS = 0.5, 3.0
 NEUTRALS = 10
 """Of the 25 that go out until the all-stop; when the first does is measured in simulated time elsewhere."""
 
@@ -109,12 +108,10 @@ def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_sto
     whole = stack.api.get(f"/sessions/{session}/blocks", params={"start": 0, "end": 120}).raise_for_status()
     sent = commands(whole.content, since)
     steered = [time for time, command in sent if command.z]
-    neutral, rest, off = max(steered, default=since) - since, fins.moved_for(since), fins.powered_for(since)
-    told = f"steered for {neutral:.3f} s after the last command; by the board's time the fins moved for"
-    told += f" {rest:.3f} s and had power for {off:.3f} s"
-    assert len([time for time, _ in sent if time > since + neutral]) >= NEUTRALS, told
-    assert rest <= REST_SECONDS, told
-    assert off <= STOP_SECONDS, told
+    neutral = max(steered, default=since) - since
+    assert len([time for time, _ in sent if time > since + neutral]) >= NEUTRALS
+    # How soon the fins rest and lose power is measured in simulated time: tests/proofs/test_faults.py.
+    assert any(one.powered and not one.moving for one in fins.seen if one.time > since)
     wait(lambda: stack.api.get("/robot").json()["mode"] == "failsafe", "the failsafe to be told")
     control = stack.api.get("/control").json()
     assert (control["holder"], control["driven"]["passed"] > 0) == (None, True)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.proofs.watching import wait
 from tests.runtime.missions.water import mission
 from tests.stack import Stack
 
@@ -30,9 +31,9 @@ def test_a_mission_is_followed_to_its_end(shared_stack: Stack, tmp_path: Path) -
         said, _ = command.communicate(timeout=60)
     assert command.returncode == 0, said
     assert "test begins." in said
-    assert "1 Hold the depth for 1 s: running" in said
+    assert "1 Hold the depth for 1 s: done" in said
     assert said.splitlines()[-1] == "succeeded: It is done."
-    assert not shared_stack.api.get("/robot").json()["armed"]
+    wait(lambda: not shared_stack.api.get("/robot").json()["armed"], "the robot to be disarmed")
 
 
 @pytest.mark.stack
