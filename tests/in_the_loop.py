@@ -112,7 +112,7 @@ class Dive:
         blocks = [block for block in read_blocks(answer.raise_for_status().content) if block.topic is DEPTH]
         rows = [record for block in blocks for _, record in read_rows(block)]
         depths = [record.depth for record in rows if isinstance(record, Depth)]
-        self._deepest = max(self._deepest, *depths)
+        self._deepest = max([self._deepest, *depths])
         return bool(depths) and depths[-1] < self._deepest - TURN and self._deepest > SET_POINT
 
 
