@@ -136,8 +136,8 @@ def test_a_thumb_drives_on_the_pad(page: Page) -> None:
 
 
 @contextmanager
-def resting_afterwards(stack: Stack, begin: Callable[[], object]) -> Iterator[None]:
-    """Run the block while the fins flap; after it they come to rest while the motors have power.
+def resting_afterwards(stack: Stack, begin: Callable[[], object], *, power: bool = True) -> Iterator[None]:
+    """Run the block while the fins flap; after it they come to rest, with power or without.
 
     How soon is measured in simulated time: tests/proofs/test_faults.py.
     """
@@ -148,7 +148,7 @@ def resting_afterwards(stack: Stack, begin: Callable[[], object]) -> Iterator[No
         yield
         since = time.monotonic()
         until_seen(lambda: fins.seen[-1].time > since and not fins.seen[-1].moving)
-        assert fins.seen[-1].powered
+        assert fins.seen[-1].powered == power
     finally:
         fins.close()
 
@@ -177,7 +177,7 @@ def test_a_lost_gamepad_a_lost_socket_and_escape_stop_driving(page: Page, stack:
     page.keyboard.up("r")
     # While the page has no control, it shows no sticks and takes no keys.
     expect(page.get_by_role("img", name="left stick")).to_be_visible()
-    with resting_afterwards(stack, lambda: page.keyboard.down("r")):
+    with resting_afterwards(stack, lambda: page.keyboard.down("r"), power=False):
         page.keyboard.press("Escape")
 
 
