@@ -28,11 +28,14 @@ COURSE_LEASE = 0.3
 
 @dataclass(slots=True)
 class _Record:
-    """The status of a step, the time (s, mission's clock) since then, and the time that it took."""
+    """The status of a step; s that it takes at most, the mission's clock at its start, and s that it took."""
 
+    longest: float
     status: MissionStatus = "waiting"
     began: float = 0.0
     took: float = 0.0
+    seen: object = None
+    """Its behaviour's status when this was written."""
 
 
 class MissionRun:
@@ -68,7 +71,7 @@ class MissionRun:
         self._course = Course(-inf)
         self._sequence = 0
         self._progress = 0.0
-        self._records = {step.path: _Record() for step in document.root.walk()}
+        self._records = {step.path: _Record(step.longest) for step in document.root.walk()}
         self._tree = MissionTree(document.root, self)
 
     @property
@@ -206,7 +209,7 @@ class MissionRun:
             self._update()
         remaining = self._remaining(self.document.root) if going else 0.0
         if going:
-            self._progress = round(1.0 - remaining / self.document.longest, 4)
+            self._progress = round(1.0 - remaining / self._records[self.document.root.path].longest, 4)
         elif phase == "succeeded":
             self._progress = 1.0
         sequence, self._sequence = self._sequence, self._sequence + 1
@@ -242,10 +245,14 @@ class MissionRun:
     def statuses(self) -> tuple[object, ...]:
         """The statuses of all steps, which change where the next document is due."""
         self._update()
-        return tuple((one.status, self._tree.rounds(path)) for path, one in self._records.items())
+        return *(one.status for one in self._records.values()), *self._tree.all_rounds
 
     def _update(self) -> None:
+        behaviours = self._tree.behaviours
         for path, record in self._records.items():
+            if (seen := behaviours[path].status) is record.seen:
+                continue
+            record.seen = seen
             status = self._tree.status(path)
             if status == "waiting" and record.status in ("running", "stopped"):
                 status = "stopped"
@@ -268,7 +275,7 @@ class MissionRun:
                 note=step.node.note,
                 status=record.status,
                 elapsed=round(elapsed, 3),
-                longest=round(step.longest, 1),
+                longest=round(record.longest, 1),
                 rounds=self._tree.rounds(step.path),
                 text=self._tree.text(step.path),
             )
@@ -277,10 +284,10 @@ class MissionRun:
         """s that a step takes at most from now on."""
         record = self._records[step.path]
         if record.status == "waiting":
-            return step.longest
+            return record.longest
         if record.status != "running":
             return 0.0
-        own = max(step.longest - (self.elapsed - record.began), 0.0)
+        own = max(record.longest - (self.elapsed - record.began), 0.0)
         if isinstance(step.node, Leaf | UntilBranch):
             return own
         below = [self._remaining(one) for one in step.steps]
@@ -288,5 +295,5 @@ class MissionRun:
             return max(below)
         if isinstance(step.node, RepeatBranch):
             rounds = step.node.times - self._tree.rounds(step.path) - 1
-            return rounds * step.longest / step.node.times + sum(below)
+            return rounds * record.longest / step.node.times + sum(below)
         return min(own, sum(below)) if isinstance(step.node, TimeoutBranch) else sum(below)

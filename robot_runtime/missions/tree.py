@@ -136,6 +136,7 @@ class MissionTree:
         self._robot = robot
         self.behaviours: dict[tuple[int, ...], Behaviour] = {}
         self._root = self._make(root)
+        self._repeats = [one for one in self.behaviours.values() if isinstance(one, Repeat)]
 
     def tick(self) -> MissionStatus:
         """Ticks the tree once; returns the status of its root."""
@@ -164,6 +165,11 @@ class MissionTree:
         """The number of times that a `repeat` has done its steps."""
         behaviour = self.behaviours[path]
         return behaviour.success if isinstance(behaviour, Repeat) else 0
+
+    @property
+    def all_rounds(self) -> list[int]:
+        """The rounds of each `repeat`."""
+        return [one.success for one in self._repeats]
 
     def text(self, path: tuple[int, ...]) -> str:
         """The reason why a step failed, where it says so itself."""
