@@ -115,7 +115,7 @@ def test_a_flood_of_a_program_is_slowed_down_and_stop_passes(settings: Settings)
                 await work
         finally:
             flooding = False
-            # Megabytes of it may lie before the door, which reads them slowly; Zenoh waits 10 s for its farewell.
+            # Megabytes may lie before the door, which reads them slowly; Zenoh waits 10 s to say goodbye.
             with suppress(zenoh.ZError):
                 await asyncio.to_thread(session.close)
 
