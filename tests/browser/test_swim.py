@@ -20,8 +20,6 @@ from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 from tests.browser.driving import hold_to_arm, wait_for_depth
 from tests.stack import Stack
 
-REST_MS = 30_000
-
 
 def shown_depth(page: Page) -> tuple[datetime, float]:
     """The shown depth, m, and the time at which it was shown, read in one moment of the page."""
@@ -90,7 +88,7 @@ def wait_for_rest(page: Page) -> None:
             if (now.some(moved)) { globalThis.fins = now; globalThis.since = performance.now(); }
             return now.length === 4 && performance.now() - globalThis.since > 500;
         }""",
-        timeout=REST_MS,
+        timeout=5_000,
     )
 
 

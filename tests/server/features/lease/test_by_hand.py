@@ -107,9 +107,8 @@ def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_sto
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
     whole = stack.api.get(f"/sessions/{session}/blocks", params={"start": 0, "end": 120}).raise_for_status()
     sent = commands(whole.content, since)
-    steered = [time for time, command in sent if command.z]
-    neutral = max(steered, default=since) - since
-    assert len([time for time, _ in sent if time > since + neutral]) >= NEUTRALS
+    steered = max((time for time, command in sent if command.z), default=since)
+    assert sum(time > steered for time, _ in sent) >= NEUTRALS
     # How soon the fins rest and lose power is measured in simulated time: tests/proofs/test_faults.py.
     assert any(one.powered and not one.moving for one in fins.seen if one.time > since)
     wait(lambda: stack.api.get("/robot").json()["mode"] == "failsafe", "the failsafe to be told")
