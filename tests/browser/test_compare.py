@@ -112,9 +112,23 @@ def check_files(page: Page, folder: Path) -> None:
         assert path.read_bytes().startswith(beginning)
 
 
+def below_title(page: Page) -> float:
+    """Pixels from the page's title to the choice of signals."""
+    title, depth = (
+        page.get_by_role("heading", level=1).bounding_box(),
+        page.get_by_role("button", name="Depth", exact=True).bounding_box(),
+    )
+    assert title is not None
+    assert depth is not None
+    return depth["y"] - title["y"]
+
+
 def check_report(page: Page, browser: Browser, path: Path) -> None:
     """The report opens without any network, requests nothing, and has its charts and tables."""
+    before = below_title(page)
     page.get_by_label("Align at").select_option("start")
+    expect(page.get_by_text("It is not drawn.")).to_have_count(0)
+    assert below_title(page) == before, "the controls moved when the answer came: a click could miss them"
     page.get_by_role("button", name="Depth", exact=True).click()
     with page.expect_download(timeout=STEP_MS) as download:
         page.get_by_role("link", name="HTML report").click()

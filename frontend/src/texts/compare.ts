@@ -30,7 +30,6 @@ export const compare = {
   },
   chips: {
     unnamed: (id: number) => `Session ${id}`,
-    notDrawn: (problem: string) => `${problem} It is not drawn.`,
     remove: (name: string) => `Remove ${name}`,
     add: 'Add a session',
     addOption: 'Add a session…',
@@ -38,6 +37,7 @@ export const compare = {
   },
   overTime: 'Over time',
   updating: 'Updating…',
+  notDrawn: (session: string, problem: string) => `${session}: ${problem} It is not drawn.`,
   notAligned: { title: 'No session can be aligned', text: 'No session has the selected moment. Align at the start instead.' },
   noSignal: { title: 'No signal selected', text: 'Select signals under “Signals…”.' },
   noSuchSignal: { title: 'No session has these signals', text: 'Select others under “Signals…”.' },
