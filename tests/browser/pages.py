@@ -58,8 +58,13 @@ def fill(site: Site) -> None:
             continue
         session = site.api.post("/sessions", json={"name": name}).raise_for_status().json()["id"]
         site.api.post(f"/sessions/{session}/markers", json={"text": "here"}).raise_for_status()
-        wait(lambda: samples(site, session) > 0, "samples")  # noqa: B023 - it is called here
+        wait(lambda: "depth" in topics(site, session), "samples of depth")  # noqa: B023 - it is called here
         site.api.post(f"/sessions/{session}/stop").raise_for_status()
+
+
+def topics(site: Site, session: int) -> set[str]:
+    """Names of the topics of which a session holds samples."""
+    return {topic["name"] for topic in site.api.get(f"/sessions/{session}").json()["topics"]}
 
 
 def samples(site: Site, session: int) -> int:

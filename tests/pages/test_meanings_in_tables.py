@@ -5,7 +5,7 @@ import re
 from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSize, expect
 
 from tests.browser.opening import PHONE
-from tests.browser.pages import samples
+from tests.browser.pages import topics
 from tests.browser.site import Site
 from tests.proofs.watching import wait
 
@@ -50,7 +50,7 @@ def ask_by_key(term: Locator, meaning: Locator) -> None:
 
 def test_a_chip_of_the_export_shows_its_meaning_to_a_key(page: Page, site: Site) -> None:
     session = site.api.post("/sessions", json={"name": "chips"}).json()["id"]
-    wait(lambda: samples(site, session) > 0, "samples")
+    wait(lambda: "depth" in topics(site, session), "samples of depth")
     site.api.post(f"/sessions/{session}/stop").raise_for_status()
     page.goto(f"{site.url}/#/sessions/{session}")
     page.get_by_role("radio", name=re.compile("CSV")).first.check(force=True)
