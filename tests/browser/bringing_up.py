@@ -88,7 +88,10 @@ class PagePerson:
         return " ".join(table.locator(".advice").all_inner_texts())
 
     def mend(self) -> None:
-        self.page.get_by_role("button", name="Mend the robot").click()
+        # Mended only once it is answered: the next action may overtake the question.
+        with self.page.expect_response("**/api/bring-up/hands") as answer:
+            self.page.get_by_role("button", name="Mend the robot").click()
+        assert answer.value.ok, answer.value.text()
 
     def skip(self, step: str) -> None:
         self.open(step)

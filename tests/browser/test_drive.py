@@ -23,6 +23,8 @@ from tests.proofs.watching import Fins
 from tests.stack import Stack
 
 NEUTRAL_SECONDS = 0.5
+STILL = 0.25
+"""s of the board's time without motion: at each end of a stroke the fins stand still for a moment, too."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 # A browser's data of a gamepad, in place of a real one.
 GAMEPAD = """
@@ -146,11 +148,14 @@ def resting_afterwards(stack: Stack, begin: Callable[[], object], *, power: bool
         begin()
         until_seen(lambda: fins.seen[-1:] and fins.seen[-1].moving)
         yield
-        since = time.monotonic()
-        until_seen(lambda: fins.seen[-1].time > since and not fins.seen[-1].moving)
-        assert fins.seen[-1].powered == power
+        until_seen(lambda: at_rest(fins) and fins.seen[-1].powered == power)
     finally:
         fins.close()
+
+
+def at_rest(fins: Fins) -> bool:
+    moved = next(one.board for one in reversed(fins.seen) if one.moving)
+    return fins.seen[-1].board - moved > STILL
 
 
 def until_seen(condition: Any) -> None:

@@ -13,6 +13,8 @@ from tests.stack import Stack
 ESCAPE = "\ue00c"
 DEPTH = "Number([...document.querySelectorAll('.reading')].find((one) => one.textContent.includes('Depth'))"
 DEPTH += "?.querySelector('.value')?.textContent.replace('−', '-'))"
+CONNECTED = "/\\d:\\d/.test(document.querySelector('.top time')?.textContent)"
+"""The page tells the robot's time once it hears from it."""
 VIEWS = [view for view in PAGES if "{" not in view.address]
 
 
@@ -48,5 +50,6 @@ def test_firefox_opens_every_page(firefox: Firefox, stack: Stack) -> None:
         firefox.open(f"{stack.url}/#/{view.address}")
         headings = "[...document.querySelectorAll('h1, h2')]"
         firefox.wait_for(f"{headings}.some((one) => one.textContent.includes('{view.shows}'))")
-        # Firefox complains of fonts that are still under way when a page is left.
+        # Firefox complains of fonts and sockets that are still under way when a page is left.
         firefox.wait_for("document.fonts.status === 'loaded'")
+        firefox.wait_for(CONNECTED)

@@ -8,10 +8,19 @@ from playwright.sync_api import Page, expect
 from tests.stack import Stack
 
 
+def open_system(page: Page, stack: Stack) -> None:
+    """Open System, and wait for what comes late: it moves the frames, which stand below all that."""
+    page.goto(f"{stack.url}/#/system")
+    control = page.get_by_role("button", name=re.compile("^Control:"))
+    expect(control).to_have_accessible_name("Control: this page")
+    expect(page.get_by_role("region", name="Other programs").get_by_role("listitem").first).to_be_visible()
+    expect(page.locator("summary", has_text="good check")).to_be_visible()
+
+
 def test_the_last_frames_are_shown_decoded(any_page: Page, stack: Stack) -> None:
     asked: list[str] = []
     any_page.on("request", lambda request: asked.append(request.url))
-    any_page.goto(f"{stack.url}/#/system")
+    open_system(any_page, stack)
     panel = any_page.get_by_label("Frames on the serial line", exact=True)
     expect(panel.get_by_role("button", name="Show frames")).to_be_visible()
     assert not any("/api/link/frames" in url for url in asked)
@@ -41,7 +50,7 @@ def test_the_last_frames_are_shown_decoded(any_page: Page, stack: Stack) -> None
 
 
 def test_a_key_asks_what_a_column_means(page: Page, stack: Stack) -> None:
-    page.goto(f"{stack.url}/#/system")
+    open_system(page, stack)
     page.get_by_role("button", name="Show frames").click()
     frames = page.get_by_role("region", name="Frames, newest first")
     term = frames.get_by_role("columnheader", name="Awaits").locator("summary")

@@ -9,6 +9,7 @@ from tests.proofs.watching import wait
 from tests.stack import Stack
 
 STEP_MS = 20_000
+# It swims until the page has been looked at: what it says meanwhile goes away at the end.
 MISSION = """format = 1
 name = "from_the_page"
 title = "From the page"
@@ -16,7 +17,7 @@ title = "From the page"
 [mission]
 do = "sequence"
 steps = [
-  { do = "swim", x = 0.3, seconds = 3 },
+  { do = "swim", x = 0.3, seconds = 6 },
   { do = "surface" },
 ]
 """

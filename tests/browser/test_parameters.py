@@ -51,6 +51,9 @@ def test_a_gain_is_changed_live_undone_saved_and_restored(any_page: Page, stack:
     page.get_by_role("button", name="Apply 1 change").click()
     row = page.get_by_role("listitem").filter(has=page.get_by_label(AMPLITUDE, exact=True))
     expect(row.get_by_role("button", name="Default 1.6")).to_be_visible()
+    # Each new change moves the profiles down, which are below them.
+    newest = changes.get_by_role("listitem").first
+    expect(newest).to_contain_text("1.6 → 0.9")
     name = f"small strokes {page.viewport_size and page.viewport_size['width']}"
     page.get_by_label("Save present values as").fill(name)
     page.get_by_role("button", name="Save", exact=True).click()
@@ -60,6 +63,7 @@ def test_a_gain_is_changed_live_undone_saved_and_restored(any_page: Page, stack:
     row.get_by_role("button", name="Default 1.6").click()
     page.get_by_role("button", name="Apply 1 change").click()
     expect(page.get_by_label(AMPLITUDE, exact=True)).to_have_value("1.6")
+    expect(newest).to_contain_text("0.9 → 1.6")
     page.get_by_text("Compare", exact=True).click()
     page.get_by_label("Compare this profile").select_option(label=name)
     difference = page.get_by_role("row").filter(has_text=AMPLITUDE)

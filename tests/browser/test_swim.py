@@ -68,6 +68,8 @@ def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
 
     recording.click()
     page.get_by_role("button", name="Stop recording").click()
+    # While it is being stopped, it may be in two lists.
+    expect(page.get_by_role("button", name="Record", exact=True)).to_be_visible()
     page.get_by_role("link", name="Sessions").click()
     page.get_by_role("link", name="figure 14", exact=True).click()
     page.get_by_role("button", name="Create file").click()

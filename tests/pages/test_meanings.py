@@ -10,6 +10,8 @@ def test_a_tap_shows_the_meaning_of_a_gain(browser: Browser, site: Site, cookies
     context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
     page = context.new_page()
     page.goto(site.url)
+    # Until then the reasons against arming change, which moves what stands below them.
+    expect(page.get_by_role("region", name="Arm").get_by_text("Ready to arm")).to_be_visible()
     page.get_by_role("tab", name="Control").tap()
     meaning = page.get_by_text("Set point of the depth", exact=True)
     expect(meaning).to_be_hidden()

@@ -19,6 +19,8 @@ def test_a_finger_asks_what_a_signal_and_an_axis_mean(
     context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
     page = context.new_page()
     page.goto(site.url)
+    # Until then the reasons against arming change, which moves what stands below them.
+    expect(page.get_by_role("region", name="Arm").get_by_text("Ready to arm")).to_be_visible()
     for tab, panel, words in (
         ("Motion", "Depth over time", "depth.depth: "),
         ("Sensors", "Inertial sensor", "Axis pointing forwards"),

@@ -288,6 +288,8 @@ def test_an_older_version_is_taken_back(page: Page, site: Site) -> None:
     card(page, "1").click()
     page.get_by_role("textbox", name=re.compile("^depth")).fill("0.8")
     page.get_by_role("button", name="Save", exact=True).click()
+    # Until then the list has no second version, which moves the first one down.
+    expect(page.get_by_role("button", name="Saved", exact=True)).to_be_visible()
     page.get_by_role("button", name="Versions").click()
     page.get_by_role("button", name="Take this version: 1").click()
     expect(card(page, "1")).to_contain_text("depth 0.5 m")
@@ -307,6 +309,8 @@ def test_what_is_written_while_it_is_saved_stays(page: Page, site: Site) -> None
     page.get_by_role("textbox", name=re.compile("^depth")).fill("0.8")
     page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_role("button", name="Saving…")).to_be_visible()
+    while not held:
+        page.wait_for_timeout(10)  # the page says so before its question has come here
     page.get_by_role("button", name="Undo", exact=True).click()
     expect(card(page, "1")).to_contain_text("depth 0.5 m")
     with page.expect_response(

@@ -44,7 +44,10 @@ def test_signing_in_has_a_title(browser: Browser, site: Site) -> None:
 )
 def test_the_heading_of_the_next_page_gets_the_focus(page: Page, name: str) -> None:
     pages = page.get_by_role("navigation", name="Pages")
-    pages.get_by_role("link", name="Sessions" if name == "System" else "System", exact=True).click()
+    first = "Sessions" if name == "System" else "System"
+    pages.get_by_role("link", name=first, exact=True).click()
+    # A heading gets the focus where one was there before it.
+    expect(page.get_by_role("heading", level=1, name=first)).to_be_visible()
     link = pages.get_by_role("link", name=name, exact=True)
     link.focus()
     link.press("Enter")

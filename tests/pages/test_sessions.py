@@ -9,7 +9,10 @@ from tests.browser.site import Site
 
 def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
     site.api.post("/sessions", json={"name": "another"}).raise_for_status()
+    # The page has to hear of both: what it hears later would empty the form.
+    expect(page.get_by_role("button", name=re.compile("^REC"))).to_be_visible()
     site.api.post(f"/sessions/{newest(site)}/stop").raise_for_status()
+    expect(page.get_by_role("button", name="Record", exact=True)).to_be_visible()
 
     page.get_by_role("link", name="Sessions").click()
     page.get_by_label("Name", exact=True).first.fill("hover")
@@ -23,6 +26,8 @@ def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
     page.get_by_role("button", name="Save").click()
     page.get_by_role("button", name=re.compile("^REC")).click()
     page.get_by_role("button", name="Stop recording").click()
+    # While it is being stopped, it may be in two lists.
+    expect(page.get_by_role("button", name="Record", exact=True)).to_be_visible()
 
     page.get_by_role("link", name="Sessions").click()
     page.get_by_role("link", name="hover", exact=True).click()

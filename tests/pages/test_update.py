@@ -1,5 +1,6 @@
 """The update from the System page: chosen, confirmed, sent, watched to its end."""
 
+import re
 import zipfile
 from collections.abc import Iterator
 from itertools import pairwise
@@ -44,6 +45,9 @@ def fresh(browser: Browser, installed: DiveSite) -> Iterator[Page]:
     """The page of an operator who has just signed in, and so needs no confirmation."""
     with somebody(browser, installed, "operator") as page:
         page.goto(f"{installed.url}/#/system")
+        # Without control another panel says so, above this one, and moves it.
+        control = page.get_by_role("button", name=re.compile("^Control:"))
+        expect(control).to_have_accessible_name("Control: this page")
         yield page
 
 
