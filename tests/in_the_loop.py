@@ -81,13 +81,14 @@ def main() -> None:
             hosts.loss = 0.01
             wait(lambda: len(refusals(stack)) == 1, "the simulator's return", stack)
             told["back"] = state(stack)["mode"]
-            stack.api.post("/robot/commands/acknowledge").raise_for_status()
+            acknowledge = "/robot/commands/acknowledge"
+            wait(lambda: stack.api.post(acknowledge).is_success, "the runtime to be acknowledged", stack)
             wait(lambda: refusals(stack) == [], "the acknowledgement", stack)
             stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
             (data / "session.zip").write_bytes(export_session(stack.api, session["id"]).content)
         finally:
             simulator.terminate()
-            simulator.wait(10)
+            simulator.wait(PATIENCE)
         told["packets"] = hosts.packets
     print(json.dumps(told))  # noqa: T201 - it speaks to the test that started it
 

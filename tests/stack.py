@@ -22,7 +22,7 @@ from tests.shell import ShellToken
 
 ROOT = Path(__file__).resolve().parents[1]
 READY_SECONDS = 40.0
-_STOP_SECONDS = 10.0
+_STOP_SECONDS = 30.0
 _POLL = 0.05
 
 
@@ -48,7 +48,7 @@ class Stack:
         self.log = data / "stack.log"
         self._options = options
         self._process: subprocess.Popen[bytes] | None = None
-        self.api = Commander(base_url=f"{self.url}/api", timeout=5.0, auth=ShellToken(DataFolder(data)))
+        self.api = Commander(base_url=f"{self.url}/api", timeout=20.0, auth=ShellToken(DataFolder(data)))
 
     def __enter__(self) -> Self:
         self.start()
@@ -128,10 +128,10 @@ class Stack:
     def calm(self) -> None:
         """Disarm, acknowledge, end a recording, and wait until every part is well and arming is possible."""
         self.wait_ready()
-        self.api.post("/robot/stop").raise_for_status()
+        self._insist("/robot/stop")
         end = time.monotonic() + READY_SECONDS
         while True:
-            self.api.post("/robot/commands/acknowledge").raise_for_status()
+            self._insist("/robot/commands/acknowledge")
             state = self.api.get("/robot").json()
             recording = [one["id"] for one in self.api.get("/sessions").json() if one["state"] == "recording"]
             if not (state["armed"] or state["refusals"] or recording):
@@ -144,9 +144,13 @@ class Stack:
 
     def arm(self) -> None:
         """Arm as soon as nothing speaks against it; after a start, a sensor or a value may be awaited."""
+        # 409: something speaks against it.
+        self._insist("/robot/commands/arm", 409)
+
+    def _insist(self, path: str, *refusals: int) -> None:
+        """Give a command until it is taken, where it is refused so, or the runtime is silent (503, 504)."""
         end = time.monotonic() + READY_SECONDS
-        # 409: something speaks against it; 503: the runtime does not answer in time.
-        while (answer := self.api.post("/robot/commands/arm")).status_code in (409, 503):
+        while (answer := self.api.post(path)).status_code in (503, 504, *refusals):
             assert time.monotonic() < end, answer.text
             time.sleep(_POLL)
         answer.raise_for_status()

@@ -18,8 +18,8 @@ SKETCHES = ROOT / "build/board_sketches"
 OPTIBOOT = ROOT / "build/firmware/optiboot.hex"
 CLOCK = 16_000_000
 """Hz."""
-PATIENCE = 10.0
-"""s of real time for what the operating system does between two processes."""
+PATIENCE = 30.0
+"""s of real time for what the operating system does between two processes, on a busy computer."""
 
 
 def build(folder: Path, *targets: str) -> None:

@@ -199,13 +199,14 @@ class World:
     def calm(self) -> None:
         """Disarm, acknowledge, and wait until all is well."""
         self.wait_well()
-        self.stack.api.post("/robot/stop").raise_for_status()
+        # Refused where the runtime does not answer in time, on a busy computer.
+        wait(lambda: self.stack.api.post("/robot/stop").is_success, "the robot to be stopped")
         wait(self._is_calm, "no alarm")
 
     def _is_calm(self) -> bool:
         """Acknowledge what there is; on a busy computer another alarm may come after the last one."""
-        self.stack.api.post("/robot/commands/acknowledge").raise_for_status()
-        return not self.viewer.alarms and not self.viewer.state["armed"]
+        acknowledged = self.stack.api.post("/robot/commands/acknowledge").is_success
+        return acknowledged and not self.viewer.alarms and not self.viewer.state["armed"]
 
     def wait_well(self) -> None:
         """Wait until all is well, by data from now on."""

@@ -4,6 +4,7 @@ import ctypes
 import zlib
 from pathlib import Path
 
+import pytest
 from cobs import cobs
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -18,6 +19,8 @@ HOST, BOARD = 5, 6
 KEY = session_key(HOST, BOARD)
 
 
+# On a busy computer it takes minutes.
+@pytest.mark.timeout(900)
 def test_the_firmware_survives_any_input(tmp_path: Path) -> None:
     fuzz.prepare(tmp_path / "corpus")
     assert fuzz.run(tmp_path / "corpus", f"-runs={EXECUTIONS}", "-seed=1") == EXECUTIONS

@@ -38,7 +38,7 @@ def test_the_canary_detects_an_executed_command(tmp_path: Path) -> None:
     words = Words(canary, secret, 1)
     for _ in range(100):
         word = words.word().replace("\0", "")
-        subprocess.run(f"true {word}", shell=True, capture_output=True, cwd=tmp_path, timeout=10)
+        subprocess.run(f"true {word}", shell=True, capture_output=True, cwd=tmp_path, timeout=60)
         if canary.exists():
             return
     pytest.fail("no word of a hundred made the canary, in a shell that obeyed them")

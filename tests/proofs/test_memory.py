@@ -9,8 +9,9 @@ LEAK = 300_000
 """bytes"""
 
 
+# On a busy computer it takes minutes.
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize(("part", "minutes"), [("runtime", 3), ("server", 10)])
-@pytest.mark.timeout(300)
 def test_memory_does_not_grow(part: str, minutes: int) -> None:
     held = measure(part, minutes)
     assert judge(LIMITS[part], held) == "", f"MB after each minute: {held}"

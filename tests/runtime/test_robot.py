@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
@@ -41,7 +41,7 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
-from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.transport.zenoh_transport import Answer, ZenohTransport
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 pytestmark = pytest.mark.stack
@@ -212,6 +212,16 @@ class Rig:
         told = [document for name, document in self.listener.documents if name == "parameters"]
         return {one["name"]: one for one in told[-1]["parameters"]} if told else {}
 
+    def settled_state(self) -> dict[str, Any]:
+        """The state but for its time, once nothing speaks against arming.
+
+        For a moment a board that is late does, as this one is where this process is held.
+        """
+        end = time.monotonic() + DEADLINE
+        while (state := self.query("query/state"))["refusals"]:
+            assert time.monotonic() < end, state["refusals"]
+        return {**state, "time": 0}
+
     def alarms(self) -> list[str]:
         """The faults of the newest state's alarms."""
         return [alarm["fault"] for alarm in self.listener.newest_state().get("alarms", [])]
@@ -227,7 +237,10 @@ class Rig:
         self.listener.wait(lambda: bool(self.listener.newest_state()["armed"]))
 
     def ask(self, name: str, /, **question: Any) -> None:
-        self.messages.query(f"command/{name}", question)
+        self.query(f"command/{name}", question)
+
+    def query(self, name: str, question: Mapping[str, Any] | None = None) -> Answer:
+        return self.messages.query(name, question or {}, DEADLINE)
 
 
 @pytest.fixture
@@ -251,11 +264,15 @@ def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
         types = [type_ for _, type_, _ in rig.board.heard]
         return types[types.index(Stop.type, types.index(Start.type)) :] if Stop.type in types else []
 
+    def times() -> list[float]:
+        # The runtime's own: this process may be held, and reads many at once then.
+        return [at for name, at, _ in rig.listener.rows if name == "navigation"]
+
     rig.ready()
     rig.arm()
     rig.board.wait(lambda: rig.board.count(Navigation.type) >= 21)
-    times = [at for at, type_, _ in rig.board.heard if type_ == Navigation.type]
-    gaps = [after - before for before, after in pairwise(times)]
+    rig.listener.wait(lambda: len(times()) >= 21)
+    gaps = [after - before for before, after in pairwise(times())]
     # A busy computer is late now and then: the median does not see it.
     assert median(gaps) == pytest.approx(0.1, rel=0.1)
     newest = [payload for _, type_, payload in rig.board.heard if type_ == Navigation.type][-1]
@@ -265,7 +282,9 @@ def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
     rig.board.wait(lambda: len(since_stop()) > 5)
     # The tick during which STOP went out may have ended after it.
     assert since_stop().count(Navigation.type) <= 1
-    assert rig.listener.texts("event")[-1] == "Stopped by the operator."
+    # After some seconds, that there is no scene for the camera is an event as well.
+    events = [text for text in rig.listener.texts("event") if not text.startswith("Camera: ")]
+    assert events[-1] == "Stopped by the operator."
 
 
 def test_packets_of_the_board_are_published_unchanged(rig: Rig) -> None:
@@ -276,8 +295,10 @@ def test_packets_of_the_board_are_published_unchanged(rig: Rig) -> None:
     depths = [(at, record) for name, at, record in rig.listener.rows if name == "depth"]
     assert {record.depth for _, record in depths} == {0.2}
     # This board's clock is the host's, so that the estimate can be judged: never early, hardly late. A busy
-    # machine delays the first packets by any time; the first that arrives at once mends the rest.
-    late = [(at - record.time * 1e-6) % (2**32 * 1e-6) for at, record in depths]
+    # machine delays the first packets by any time; the first that arrives at once mends the rest. After four
+    # seconds the clocks' drift is estimated, too, and delays are taken for some.
+    began = depths[0][0]
+    late = [(at - record.time * 1e-6) % (2**32 * 1e-6) for at, record in depths if at < began + 3]
     assert max(late) < 2**31 * 1e-6
     assert min(late) < 0.05
 
@@ -309,10 +330,10 @@ def test_packets_of_the_board_are_published_unchanged(rig: Rig) -> None:
 def test_bad_commands_are_refused_with_the_reason(
     shared: Rig, name: str, question: dict[str, Any], why: str
 ) -> None:
-    before = {**shared.messages.query("query/state", {}), "time": 0}
+    before = shared.settled_state()
     with pytest.raises(RefusedError, match=why):
         shared.ask(name, **question)
-    assert {**shared.messages.query("query/state", {}), "time": 0} == before
+    assert shared.settled_state() == before
 
 
 @pytest.fixture(scope="module")
@@ -336,14 +357,14 @@ def test_vision_settings_survive_a_restart_of_the_runtime(tmp_path: Path) -> Non
     first = Rig(tmp_path)
     first.ready()
     first.ask("vision_settings", **changed.table())
-    assert first.messages.query("query/vision", {})["settings"] == changed.table()
+    assert first.query("query/vision")["settings"] == changed.table()
     with pytest.raises(RefusedError, match="colour is 'yellow'; it must be one of buoy"):
         first.ask("vision", colour="yellow")
     first.close()
 
     second = Rig(tmp_path)
     second.ready()
-    told = second.messages.query("query/vision", {})
+    told = second.query("query/vision")
     assert (told["settings"], told["configured"]) == (changed.table(), usual.table())
     assert second.listener.newest_state()["vision_colour"] == "buoy"
     second.ask("vision_settings", **usual.table())
@@ -353,13 +374,13 @@ def test_vision_settings_survive_a_restart_of_the_runtime(tmp_path: Path) -> Non
 
 def test_the_last_frames_are_returned_on_request(rig: Rig) -> None:
     rig.ready()
-    answer = rig.messages.query("query/frames", {})
+    answer = rig.query("query/frames")
     assert answer["fault"] is None
     kinds = {(frame["sent"], kind) for frame in answer["frames"] for kind in frame["kinds"]}
     assert {(True, "Hello"), (False, "Depth"), (False, "Status")} <= kinds
     rig.board.close()
     rig.listener.wait(lambda: not rig.listener.newest_state()["connected"])
-    fault = rig.messages.query("query/frames", {})["fault"]
+    fault = rig.query("query/frames")["fault"]
     assert fault["text"] == "the port went away"
     assert any("Depth" in frame["kinds"] for frame in fault["frames"])
     rig.board = Board(rig.board.path)
@@ -399,8 +420,8 @@ def test_a_silent_board_is_a_fault_that_stops_the_robot(rig: Rig) -> None:
     rig.arm()
     rig.board.silent = True
     rig.board.wait(lambda: rig.board.count(Stop.type) >= 1)
-    rig.listener.wait(lambda: "board_silent" in rig.alarms())
-    assert not rig.listener.newest_state()["armed"]
+    # A state that is put together while the robot is stopped may hold the alarm and be armed still.
+    rig.listener.wait(lambda: "board_silent" in rig.alarms() and not rig.listener.newest_state()["armed"])
 
 
 def test_without_the_server_s_heartbeat_an_armed_robot_is_stopped(tmp_path: Path) -> None:
@@ -415,8 +436,9 @@ def test_without_the_server_s_heartbeat_an_armed_robot_is_stopped(tmp_path: Path
             rig.ready()
             rig.arm()
             rig.listener.wait(lambda: armed_for() > 2.5)
-        rig.listener.wait(lambda: rig.alarms() == ["server_silent"])
-        assert rig.listener.newest_state()["mode"] == "failsafe"
+        # The alarm may be told just before the mode.
+        rig.listener.wait(lambda: rig.listener.newest_state()["mode"] == "failsafe")
+        assert rig.alarms() == ["server_silent"]
         rig.board.wait(lambda: rig.board.count(Stop.type) >= 1)
     finally:
         rig.close()
@@ -433,9 +455,8 @@ def test_a_server_that_has_just_started_is_sent_everything_at_once(rig: Rig) -> 
         rig.listener.wait(lambda known=known: len(link_times()) > known)  # type: ignore[misc]
     known = len(link_times())
     rig.messages.publish(HEARTBEAT, b"")
-    rig.listener.wait(lambda: len(link_times()) > known)
-    before, after = link_times()[known - 1 : known + 1]
-    assert after - before < 0.9
+    # Where this process was held, the one that was due comes first.
+    rig.listener.wait(lambda: any(b - a < 0.9 for a, b in pairwise(link_times()[known - 1 :])))
 
 
 def test_the_pilot_s_input_reaches_the_board_and_its_end_stops_the_robot(rig: Rig) -> None:
@@ -480,7 +501,7 @@ def test_a_bad_configuration_is_one_clear_line(tmp_path: Path) -> None:
 def test_parameters_are_changed_together_listed_and_sent_to_the_board(rig: Rig) -> None:
     rig.ready()
     rig.ask("controller", name="pid", gains={"kp": 7.0})
-    answer = rig.messages.query(
+    answer = rig.query(
         "command/parameters", {"values": {"fins.amplitude": 0.8, "depth.pid.kp": 4, "vision.rate": 4.0}}
     )
     assert answer["changed"] == {"depth.pid.kp": [7.0, 4.0], "fins.amplitude": [1.6, 0.8]}
@@ -491,7 +512,7 @@ def test_parameters_are_changed_together_listed_and_sent_to_the_board(rig: Rig) 
     assert (listed["depth.pid.kp"]["value"], listed["depth.pid.kp"]["default"]) == (4.0, 3.0)
     assert listed["depth.controller"]["value"] == "pid"
     partly = {"values": {"nothing": 1, "depth.pid.kp": 5, "vision.rate": 99}, "partly": True}
-    answer = rig.messages.query("command/parameters", partly)
+    answer = rig.query("command/parameters", partly)
     assert answer["changed"] == {"depth.pid.kp": [4.0, 5.0]}
     assert answer["left_out"].keys() == {"nothing", "vision.rate"}
 

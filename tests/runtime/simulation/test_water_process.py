@@ -24,10 +24,11 @@ from robot_runtime.simulation.boards.stepped_board import PERIOD
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.blocks import read_blocks, read_rows
-from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.transport.zenoh_transport import Answer, ZenohTransport
 from tests.runtime.simulation.water.harness import QUIET
 
-DEADLINE = 10.0
+DEADLINE = 30.0
+"""s until what must come is given up, on a busy computer."""
 RESTING = b"fins 0 0 0 0 0 0 0 0 0 0 0 0 0 1 1\n"
 DIVING = b"fins 0 -1.57 -1.57 -1.57 -1.57 12 12 12 12 40 40 40 40 1 1\n"
 
@@ -37,6 +38,10 @@ def wait_for(condition: Callable[[], bool], what: str) -> None:
     while not condition():
         assert time.monotonic() < end, f"no {what} within {DEADLINE} s"
         time.sleep(0.005)
+
+
+def ask(messages: ZenohTransport, name: str, question: dict[str, object]) -> Answer:
+    return messages.query(f"simulator/{name}", question, DEADLINE)
 
 
 class Board:
@@ -238,11 +243,11 @@ class TestAttached:
         surface = board.exchange()[0]
         for _ in range(200):
             board.exchange(DIVING)
-        assert messages.query("simulator/reset", {}) == {"accepted": True}
+        assert ask(messages, "reset", {}) == {"accepted": True}
         assert board.exchange()[0] == pytest.approx(surface, abs=5)
 
     def test_current_carries_it_away(self, board: Board, messages: ZenohTransport) -> None:
-        answer = messages.query("simulator/current", {"north": 1, "east": -0.5, "down": 0.0})
+        answer = ask(messages, "current", {"north": 1, "east": -0.5, "down": 0.0})
         assert answer == {"accepted": True}
         board.accept()
         forces = [board.exchange()[2] for _ in range(5)]
@@ -265,19 +270,19 @@ class TestAttached:
         self, messages: ZenohTransport, question: dict[str, object]
     ) -> None:
         with pytest.raises(RefusedError, match=r"is missing|is not known here|number|at most 2 m/s"):
-            messages.query("simulator/current", question)
+            ask(messages, "current", question)
 
     def test_bus_errors_are_sent_once_to_each_board(self, board: Board, messages: ZenohTransport) -> None:
         board.accept()
-        messages.query("simulator/fault", {"sensor": "gyroscope", "kind": "bus"})
-        messages.query("simulator/fault", {"sensor": "encoder1", "kind": "bus"})
+        ask(messages, "fault", {"sensor": "gyroscope", "kind": "bus"})
+        ask(messages, "fault", {"sensor": "encoder1", "kind": "bus"})
         board.line.sendall(RESTING)
         assert board.hear() == "fault encoder1 absent"
         assert board.hear() == "fault imu absent"
         assert board.hear().startswith("sense ")
         board.line.sendall(b"ok\nok\n")
         board.exchange()
-        messages.query("simulator/fault", {"sensor": "gyroscope", "kind": "none"})
+        ask(messages, "fault", {"sensor": "gyroscope", "kind": "none"})
         board.line.sendall(RESTING)
         assert board.hear() == "fault imu none"
         assert board.hear().startswith("sense ")
@@ -299,13 +304,13 @@ class TestAttached:
     def test_every_request_works_over_zenoh(
         self, messages: ZenohTransport, name: str, question: dict[str, object]
     ) -> None:
-        assert messages.query(f"simulator/{name}", question) == {"accepted": True}
+        assert ask(messages, name, question) == {"accepted": True}
         with pytest.raises(RefusedError, match="is missing"):
-            messages.query(f"simulator/{name}", {})
+            ask(messages, name, {})
 
     def test_reset_takes_no_depth(self, messages: ZenohTransport) -> None:
         with pytest.raises(RefusedError, match="'depth' is not known here"):
-            messages.query("simulator/reset", {"depth": 1})
+            ask(messages, "reset", {"depth": 1})
 
 
 def command(folder: Path, *more: str) -> list[str]:

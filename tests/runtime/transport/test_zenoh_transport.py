@@ -14,6 +14,9 @@ from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.stack import ROOT
 
+DEADLINE = 30.0
+"""s until what must come is given up, on a busy computer."""
+
 
 @pytest.fixture
 def ends() -> Iterator[tuple[ZenohTransport, ZenohTransport]]:
@@ -31,33 +34,36 @@ def heard(by: ZenohTransport, of: ZenohTransport) -> float:
     arrived, began = threading.Event(), time.monotonic()
     subscription = by.subscribe("word", lambda *_: arrived.set())
     while not arrived.wait(0.01):
-        assert time.monotonic() < began + 10
+        assert time.monotonic() < began + DEADLINE
         of.publish("word", b"")
     subscription.close()
     return time.monotonic() - began
 
 
 def test_a_peer_does_not_wait_for_missing_peers(tmp_path: Path) -> None:
-    seconds = []
-    for number in range(3):
+    def opening() -> float:
         began = time.monotonic()
-        with ZenohTransport("turtle", connect=[f"unixsock-stream/{tmp_path}/nobody{number}"]):
-            seconds.append(time.monotonic() - began)
-    assert min(seconds) < 0.25
+        with ZenohTransport("turtle", connect=[f"unixsock-stream/{tmp_path}/nobody"]):
+            return time.monotonic() - began
+
+    # A busy computer delays any of them; one that is quick shows that none waits.
+    end = time.monotonic() + DEADLINE
+    while opening() >= 0.25:
+        assert time.monotonic() < end
 
 
 def test_a_peer_reconnects_soon() -> None:
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         endpoint = f"unixsock-stream/{folder}/zenoh"
-        seconds = []
+        seconds: list[float] = []
         with ZenohTransport("turtle", connect=[endpoint]) as staying:
-            for _ in range(4):
+            # A busy computer delays some of them.
+            while len(seconds) < 4 or min(seconds[1:]) >= 0.5:
+                assert len(seconds) < 12, seconds
                 with ZenohTransport("turtle", listen=[endpoint]) as coming_and_leaving:
                     seconds.append(heard(staying, coming_and_leaving))
                 # Pauses between retries grow to a limit, which is reached by now.
                 time.sleep(1.8)
-        # A busy computer delays some of them.
-        assert min(seconds[1:]) < 0.5
 
 
 def ask(asking: ZenohTransport, name: str, payload: bytes) -> bytes:

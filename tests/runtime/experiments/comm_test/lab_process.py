@@ -12,8 +12,8 @@ from typing import IO, Any
 from robot_runtime.experiments.comm_test.document import CommTest
 from tests.board.rig import ROOT
 
-LIMIT = 110.0
-"""s of real time for its end."""
+LIMIT = 240.0
+"""s of real time for its end, on a busy computer that has to compile the sketches first."""
 COMMAND = [sys.executable, "-m", "robot_runtime.experiments.comm_test", "--build", str(ROOT / "build")]
 Event = dict[str, Any]
 

@@ -1,6 +1,5 @@
 """Cells on the emulated board: arrivals, losses and their causes."""
 
-import time
 from pathlib import Path
 
 import pytest
@@ -93,10 +92,10 @@ def test_a_board_that_does_not_understand_is_a_lost_result(
 
 def test_closing_the_iterator_cancels_the_run(builder: Builder, program: Path) -> None:
     test = make_test(delay=tuple(number / 10 for number in range(100)))
-    cells = Runner(builder, program, 1).run(test)
-    before = time.monotonic()
+    begun: set[int] = set()
+    cells = Runner(builder, program, 1).run(test, lambda number, _: begun.add(number))
     assert next(cells).cell == test.cells[0]
     cells.close()  # type: ignore[attr-defined]
-    # All of the cells are 13 emulated hours, many minutes of computing.
-    assert time.monotonic() - before < 60
+    # Those under way end. All of the hundred are 13 emulated hours, many minutes of computing.
+    assert len(begun) < 50
     assert next(cells, None) is None

@@ -67,6 +67,12 @@ class Ends:
             time.sleep(0.01)
 
 
+@pytest.fixture(autouse=True)
+def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The scene may take as long as the tests wait, not only as long as a camera does."""
+    monkeypatch.setattr(process_module, "ANSWER_TIMEOUT", SLOW)
+
+
 def patiently(ask: Callable[[], Any]) -> Any:
     while True:
         try:
