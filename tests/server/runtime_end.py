@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
+import zenoh
+
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.commands import COMMANDS
 from robot_runtime.contract.topics import Kind
@@ -22,6 +24,21 @@ def stream_of(block: Block) -> str:
     return SIMULATOR_STREAM if block.topic.sender == "simulator" else STREAM
 
 
+class PatientTransport(ZenohTransport):
+    """Waits where the way is full.
+
+    Zenoh drops a message after a millisecond, of which its own thread may get nothing on a busy computer; a
+    test would wait for a picture in vain.
+    """
+
+    def _publisher(self, name: str) -> zenoh.Publisher:
+        if name not in self._publishers:
+            block = zenoh.CongestionControl.BLOCK
+            publisher = self._session.declare_publisher(self._prefix + name, congestion_control=block)
+            self._publishers[name] = publisher
+        return self._publishers[name]
+
+
 class RuntimeEnd:
     """A Zenoh peer in place of the runtime.
 
@@ -35,7 +52,7 @@ class RuntimeEnd:
         self.driven: list[dict[str, Any]] = []
         self.refusal: str | None = None
         self.gates = {name: threading.Event() for name in COMMANDS if name != "lease"}
-        self._messages = ZenohTransport(robot, listen=[f"unixsock-stream/{socket}"])
+        self._messages = PatientTransport(robot, listen=[f"unixsock-stream/{socket}"])
         for name, gate in self.gates.items():
             gate.set()
             self._answer(name, gate)

@@ -5,8 +5,8 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import click
@@ -19,7 +19,8 @@ from server import VERSION, cli
 from server.platform.folder_lock import runner_of
 from server.platform.pidfile import pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
-from tests.server.waiting import alive
+from tests.server.ports import reserved_port
+from tests.server.waiting import SECONDS, alive
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -32,7 +33,7 @@ def mucat(*arguments: str, **environment: str) -> subprocess.CompletedProcess[st
         env=os.environ | environment,
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=SECONDS,
         check=False,
     )
 
@@ -57,11 +58,11 @@ def running(settings: Settings, port: int) -> Iterator[subprocess.Popen[str]]:
         finally:
             # In order: a real robot's runtime outlives a server that is killed.
             process.terminate()
-            process.wait(15)
+            process.wait(SECONDS)
 
 
 def wait_for_answer(port: int, process: subprocess.Popen[str] | None) -> None:
-    end = time.monotonic() + 20
+    end = time.monotonic() + SECONDS
     while time.monotonic() < end and (process is None or process.poll() is None):
         try:
             httpx.get(f"http://127.0.0.1:{port}/api/health")
@@ -74,12 +75,27 @@ def wait_for_answer(port: int, process: subprocess.Popen[str] | None) -> None:
     raise AssertionError(f"the server did not answer: {process.stdout and process.stdout.read()}")
 
 
+def wait(condition: Callable[[], object], what: str) -> None:
+    end = time.monotonic() + SECONDS
+    while not condition():
+        assert time.monotonic() < end, f"waited in vain for {what}"
+        time.sleep(0.02)
+
+
+def group_of(process: subprocess.Popen[str]) -> list[int]:
+    """The server and what belongs to it; the runtime is in a group of its own."""
+    found: list[int] = []
+    for one in psutil.Process(process.pid).children(recursive=True):
+        with suppress(ProcessLookupError):
+            if os.getpgid(one.pid) == process.pid:
+                found.append(one.pid)
+    return found
+
+
 @pytest.fixture
-def port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        number: int = probe.getsockname()[1]
-        return number
+def port() -> Iterator[int]:
+    with reserved_port() as number:
+        yield number
 
 
 def test_the_version_is_the_project_s() -> None:
@@ -95,12 +111,10 @@ def test_it_ends_in_order_and_leaves_nothing_behind(
 ) -> None:
     with running(settings, port) as process:
         mine = psutil.Process(process.pid)
-        end = time.monotonic() + 10
-        while not (children := mine.children(recursive=True)):
-            assert time.monotonic() < end
-            time.sleep(0.02)
+        wait(lambda: mine.children(recursive=True), "the server")
+        children = mine.children(recursive=True)
         process.send_signal(number)
-        output, _ = process.communicate(timeout=15)
+        output, _ = process.communicate(timeout=SECONDS)
         assert (process.returncode, "Traceback" in output) == (0, False)
         assert f"http://localhost:{port}/" in output
         assert not any(child.is_running() for child in children)
@@ -108,13 +122,12 @@ def test_it_ends_in_order_and_leaves_nothing_behind(
 
 def test_the_runtime_of_a_killed_server_is_adopted_by_the_next(settings: Settings, port: int) -> None:
     with running(settings, port) as process:
-        end = time.monotonic() + 10
-        while "runtime" not in running_parts(settings.data.run):
-            assert time.monotonic() < end
-            time.sleep(0.02)
-        runtime = running_parts(settings.data.run)["runtime"].pid
+        wait(lambda: "runtime" in running_parts(settings.data.run), "the runtime")
+        runtime, group = running_parts(settings.data.run)["runtime"].pid, group_of(process)
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
+        # On a busy computer a killed server lives for a moment, and has its port and its folder till then.
+        wait(lambda: not any(map(alive, group)), "the server's end")
     with running(settings, port):
         assert running_parts(settings.data.run)["runtime"].pid == runtime
         assert alive(runtime)
@@ -123,13 +136,11 @@ def test_the_runtime_of_a_killed_server_is_adopted_by_the_next(settings: Setting
 
 def test_processes_of_a_killed_runner_are_adopted_by_the_next_start(settings: Settings, port: int) -> None:
     with running(settings, port) as process:
-        end = time.monotonic() + 10
-        while "runtime" not in running_parts(settings.data.run):
-            assert time.monotonic() < end
-            time.sleep(0.02)
-        runtime = running_parts(settings.data.run)["runtime"].pid
+        wait(lambda: "runtime" in running_parts(settings.data.run), "the runtime")
+        runtime, group = running_parts(settings.data.run)["runtime"].pid, group_of(process)
         process.kill()
         process.wait()
+        wait(lambda: not any(map(alive, group)), "the server's end")
     with running(settings, port) as process:
         assert runner_of(settings.data) == process.pid
         assert running_parts(settings.data.run)["runtime"].pid == runtime

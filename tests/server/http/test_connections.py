@@ -97,7 +97,7 @@ async def has_ended(connection: Connection) -> bool:
     """True where the server closes this connection, soon."""
     reader, _ = connection
     try:
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(30):
             return await reader.read() == b""
     except ConnectionResetError:
         return True

@@ -3,7 +3,7 @@
 import asyncio
 import re
 import socket
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from ipaddress import ip_network
@@ -22,6 +22,7 @@ from server.platform.audit_file import AuditEntry, read_entries
 from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.reverse_proxy import read_proxies, read_public_url
 from server.platform.settings import Settings
+from tests.server.ports import reserved_port
 from tests.server.serving import Served, next_text, serve
 from tests.server.sign_in.browsers import browser
 from tests.server.waiting import until
@@ -32,12 +33,6 @@ CLIENT = "203.0.113.9"
 TABLET = "127.0.0.2"
 PAIRED = "Sign this browser in with a code"
 PAGE = "<!doctype html><title>page</title>"
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as one:
-        port: int = one.getsockname()[1]
-    return port
 
 
 def write_configuration(folder: Path, settings: Settings, port: int) -> Path:
@@ -95,8 +90,13 @@ async def audited(served: Served, action: str) -> AuditEntry:
     return found[0]
 
 
-def test_behind_nginx_as_the_manual_has_it(settings: Settings, tmp_path: Path) -> None:
-    port = free_port()
+@pytest.fixture
+def port() -> Iterator[int]:
+    with reserved_port() as number:
+        yield number
+
+
+def test_behind_nginx_as_the_manual_has_it(settings: Settings, tmp_path: Path, port: int) -> None:
     origin = f"https://{NAME}:{port}"
     settings.page.mkdir()
     (settings.page / "index.html").write_text(PAGE)

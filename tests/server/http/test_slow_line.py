@@ -15,7 +15,7 @@ from tests.stack import ROOT, Stack
 pytestmark = pytest.mark.stack
 
 BAUD = 9600
-PATIENCE = 20.0
+PATIENCE = 60.0
 DEEP = 0.4
 """m; its set point is 0.5."""
 

@@ -18,15 +18,15 @@ from server.platform.pidfile import end_parts, pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.processes.managed_process import ProcessCommand
 from tests.server.processes.test_parts import Crew, run
-from tests.server.waiting import alive, until
+from tests.server.waiting import SECONDS, alive, until
 from tests.stack import ROOT
 
 CONFIG = '[robot]\nname = "tested"\nmode = "robot"\n[link]\nport = "/nowhere"\n'
 WAITS = b"READY=1\nWATCHDOG_USEC=60000000\nWATCHDOG=1"
 
 
-def wait_for(condition: Callable[[], bool], seconds: float = 20.0) -> None:
-    end = time.monotonic() + seconds
+def wait_for(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + SECONDS
     while not condition():
         assert time.monotonic() < end
         time.sleep(0.02)
@@ -58,7 +58,7 @@ def service(settings: Settings, notify: Path | None = None) -> Iterator[subproce
             yield process
         finally:
             process.terminate()
-            process.wait(15)
+            process.wait(SECONDS)
 
 
 def external(name: str = "engine") -> ProcessCommand:
@@ -124,7 +124,7 @@ def test_a_pause_ends_it_and_marks_the_folder_until_it_is_resumed(tmp_path: Path
 
     with engine(tmp_path) as one:
         run(crew, scenario)
-        assert one.wait(5) == -signal.SIGTERM
+        assert one.wait(SECONDS) == -signal.SIGTERM
 
 
 def test_it_enters_itself_and_its_number_stays(settings: Settings) -> None:
@@ -140,7 +140,7 @@ def test_there_is_one_at_a_time(settings: Settings) -> None:
     with service(settings) as first:
         wait_for(lambda: runtime_of(settings.data) == first.pid)
         with service(settings) as second:
-            assert second.wait(20) == 1
+            assert second.wait(SECONDS) == 1
             assert second.stderr is not None
             assert "A runtime works on" in second.stderr.read()
         assert alive(first.pid)
@@ -152,11 +152,11 @@ def test_it_waits_while_another_program_uses_its_board(settings: Settings) -> No
         wait_for(lambda: runtime_of(folder) == first.pid)
         with claim(folder):
             end_parts(folder.run)
-            first.wait(10)
+            first.wait(SECONDS)
             path = folder.path.parent / "notify"
             with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
                 manager.bind(str(path))
-                manager.settimeout(20)
+                manager.settimeout(SECONDS)
                 with service(settings, path) as second:
                     assert [manager.recv(100) for _ in range(3)] == [WAITS] * 3
                     assert runtime_of(folder) is None
@@ -174,7 +174,7 @@ def test_it_feeds_systemd_from_the_control_loop(settings: Settings) -> None:
     path = settings.data.path.parent / "notify"
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
         manager.bind(str(path))
-        manager.settimeout(20)
+        manager.settimeout(SECONDS)
         with service(settings, path):
             assert manager.recv(100) == b"READY=1\nWATCHDOG_USEC=5000000"
             assert [manager.recv(100) for _ in range(2)] == [b"WATCHDOG=1"] * 2

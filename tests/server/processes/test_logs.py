@@ -5,6 +5,7 @@ import pytest
 
 import server.processes.logs as logs_module
 from server.processes.logs import ProcessLog
+from tests.server.waiting import SECONDS
 
 
 def test_logs_are_limited_in_size_and_keep_the_newest_lines(
@@ -33,7 +34,7 @@ def test_a_process_goes_on_writing_after_its_file_was_trimmed(
     while log.last(1) != "full":
         pass
     log.trim()
-    process.communicate(b"\n", timeout=10)
+    process.communicate(b"\n", timeout=SECONDS)
     assert (tmp_path / "part.log").read_text() == "after\n"
     assert (tmp_path / "part.log.1").stat().st_size == 100
 

@@ -20,7 +20,7 @@ from server.platform.settings import DataFolder, Settings, make_folders
 from server.processes.logs import ProcessLog
 from server.processes.managed_process import ManagedProcess, ProcessCommand
 from server.processes.supervisor import ProcessSupervisor, plan
-from tests.server.waiting import alive, until
+from tests.server.waiting import SECONDS, alive, until
 
 
 class Crew:
@@ -169,7 +169,9 @@ def stop_when_up(folder: Path, code: str) -> str:
     return log.read_text()
 
 
-def test_a_process_is_terminated_first(tmp_path: Path) -> None:
+def test_a_process_is_terminated_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # It may take its time on a busy computer.
+    monkeypatch.setattr(parts_module, "TERM_SECONDS", SECONDS)
     polite = "signal.signal(15, lambda *_: sys.exit(print('bye')))"
     assert stop_when_up(tmp_path, polite) == "up\nbye\n"
 

@@ -22,7 +22,7 @@ class Browser:
         self._served = served
         self.origin = f"http://127.0.0.1:{served.settings.port}"
         headers = {"origin": self.origin}
-        self.api = httpx.AsyncClient(base_url=f"{self.origin}/api", headers=headers, timeout=10)
+        self.api = httpx.AsyncClient(base_url=f"{self.origin}/api", headers=headers, timeout=SECONDS)
 
     async def pair(self, code: str) -> httpx.Response:
         answer = await self.api.post("/access/pair", json={"code": code, "name": self.name})

@@ -19,7 +19,7 @@ from server.platform.store import Store
 from tests.server.blocks import state_block
 from tests.server.serving import Served, next_text, play, serve
 from tests.server.sign_in.browsers import browser, closing_of, new_code
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 
 
 def test_every_operation_needs_a_sign_in(settings: Settings) -> None:
@@ -69,7 +69,7 @@ def test_a_body_is_not_read_without_a_sign_in(settings: Settings) -> None:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         head = f"POST /api/imports HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 1000000\r\n\r\n"
         writer.write(head.encode())
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(SECONDS):
             assert b" 401 " in await reader.readline()
         writer.close()
 
@@ -397,7 +397,7 @@ def test_events_of_sign_in_are_reported_without_secrets(settings: Settings) -> N
 async def notices(socket: ClientConnection, count: int) -> list[dict[str, Any]]:
     """The next notices about access."""
     found: list[dict[str, Any]] = []
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(SECONDS):
         while len(found) < count:
             message = await socket.recv()
             if isinstance(message, bytes):

@@ -11,6 +11,7 @@ from server.http.sign_in.middleware import SignInMiddleware
 from server.platform.settings import Settings
 from tests.server.serving import Served, play
 from tests.server.sign_in.browsers import Browser, browser
+from tests.server.waiting import SECONDS
 
 
 class HalfSent:
@@ -34,7 +35,7 @@ class HalfSent:
         )
         writer.write("\r\n".join(head).encode())
         # The server says this once it reads the body.
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(SECONDS):
             assert b" 100 " in await reader.readuntil(b"\r\n\r\n")
         writer.write(body[:-1])
         await writer.drain()
@@ -43,7 +44,7 @@ class HalfSent:
     async def end(self) -> tuple[int, str]:
         """Send the last byte; the answer's status and body."""
         self._writer.write(self._rest)
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(SECONDS):
             answer = (await self._reader.read()).decode()
         self._writer.close()
         return int(answer.split(" ", 2)[1]), answer.partition("\r\n\r\n")[2]

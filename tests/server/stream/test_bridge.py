@@ -1,6 +1,5 @@
 import asyncio
 import selectors
-import time
 from collections.abc import Mapping
 
 import pytest
@@ -19,26 +18,31 @@ ANSWER = BacklogReply("0123456789abcdef", {}, [])
 
 
 class Process:
-    """A process that drops the first requests, and takes `needs` s to answer one."""
+    """A process that drops the first requests, and takes `needs` s to answer one, in a time of its own."""
 
     def __init__(self, lost: int = 0, needs: float = 0.0) -> None:
         self.asked: list[float] = []
         self._lost = lost
         self._needs = needs
+        self._now = 0.0
+
+    def time(self) -> float:
+        """s of waiting for it."""
+        return self._now
 
     def answer(self, _question: str, _first_numbers: Mapping[str, int], seconds: float) -> BacklogReply:
         self.asked.append(seconds)
         if len(self.asked) <= self._lost or self._needs > seconds:
-            time.sleep(seconds)
+            self._now += seconds
             raise NoAnswerError("no answer")
-        time.sleep(self._needs)
+        self._now += self._needs
         return ANSWER
 
 
 def fetch(settings: Settings, monkeypatch: pytest.MonkeyPatch, process: Process) -> BacklogReply | None:
     async def scenario() -> BacklogReply | None:
         bridge = Bridge(settings, lambda _: None)
-        bridge._loop = asyncio.get_running_loop()
+        monkeypatch.setattr(bridge, "_loop", process, raising=False)
         monkeypatch.setattr(bridge, "_fetch", process.answer)
         return await bridge._fetch_backlog("runtime", {})
 

@@ -11,7 +11,7 @@ from robot_runtime.transport.blocks import read_blocks
 from server.http.sign_in.identity import SHELL, Identity
 from server.stream.hub import DOCUMENTS_MESSAGES, ROWS_MESSAGES, Client, EvictedError, Hub
 from tests.server.blocks import debug_block, depth_block, picture_block
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 
 
 class Page:
@@ -313,9 +313,9 @@ def test_pages_of_a_device_are_limited_and_some_are_for_operators_alone() -> Non
         pages = [Page(hub, one) for one in viewers[:5] for _ in range(8)]
         await until(lambda: hub.clients == 40, "the viewers' pages")
         with pytest.raises(EvictedError, match="This device has 8 pages open"):
-            await asyncio.wait_for(Page(hub, viewers[0]).task, 10)
+            await asyncio.wait_for(Page(hub, viewers[0]).task, SECONDS)
         with pytest.raises(EvictedError, match="40 pages are open already"):
-            await asyncio.wait_for(Page(hub, viewers[5]).task, 10)
+            await asyncio.wait_for(Page(hub, viewers[5]).task, SECONDS)
         operators = [Identity(number, "bridge", "operator", "browser") for number in (7, 8)]
         pages += [Page(hub, one) for one in operators for _ in range(5)]
         await until(lambda: hub.clients == 50, "the operators' pages")

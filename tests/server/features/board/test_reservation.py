@@ -214,7 +214,8 @@ def test_after_an_interrupted_test_the_firmware_is_restored_before_the_runtime_s
     robot.marker.touch()
 
     async def scenario(served: Served) -> None:
-        await until(robot.started.exists, "the runtime")
+        # The file is there a moment before its text.
+        await until(lambda: robot.started.exists() and robot.started.read_text(), "the runtime")
         assert robot.started.read_text() == "True"
         assert not robot.marker.exists()
         assert (await served.api.post("/robot/commands/arm")).status_code == 204

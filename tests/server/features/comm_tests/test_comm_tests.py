@@ -137,7 +137,8 @@ def test_a_damaged_database_is_reported(
 def test_the_cells_of_an_interrupted_run_stay_stored(
     settings: Settings, options: list[str], tmp_path: Path
 ) -> None:
-    delays = [number / 100 for number in range(100)]
+    # From the third cell on each takes a while, so that the interruption does not come after the last one.
+    delays = [0.0, 0.01, *(9 + number / 100 for number in range(98))]
     document = write(tmp_path, ENTRY | {"delay": delays, "arduinodelay": [0]})
     command = [sys.executable, "-m", "server.cli", "commtest", "run", document, *options]
     # In a group of its own, so that the interruption reaches the emulated board too, as from a terminal.

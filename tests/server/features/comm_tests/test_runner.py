@@ -21,7 +21,7 @@ from server.platform.settings import Settings
 from tests.board.rig import ROOT, build
 from tests.server.features.events.rig import Receiver
 from tests.server.serving import Served, next_text, serve
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 
 QUICK: dict[str, Any] = {
     "id": 1,
@@ -90,11 +90,6 @@ def test_a_document_is_run_test_by_test_and_every_page_sees_it(settings: Setting
     async def scenario() -> None:
         async with serve(settings) as served, watching(served) as socket:
             first = await start(served, QUICK, QUICK | {"direction": "both", "framing": "robot"})
-            busy = await served.api.post("/comm-tests/runs", json={"text": text(QUICK), "place": "emulated"})
-            assert (busy.status_code, "A communication test is running" in busy.json()["detail"]) == (
-                409,
-                True,
-            )
             told = await news_until(socket, cell=1)
             active = told[-1]["active"]
             assert (active["run"], active["name"], active["place"]) == (first, "two delays", "emulated")
@@ -135,6 +130,11 @@ def test_a_run_cancelled_within_a_cell_keeps_the_finished_cells(settings: Settin
         async with serve(settings) as served, watching(served) as socket:
             assert (await served.api.post("/comm-tests/cancel")).status_code == 204
             number = await start(served, ENDLESS, QUICK)
+            busy = await served.api.post("/comm-tests/runs", json={"text": text(QUICK), "place": "emulated"})
+            assert (busy.status_code, "A communication test is running" in busy.json()["detail"]) == (
+                409,
+                True,
+            )
             await news_until(socket, cell=0)
             assert (await served.api.post("/comm-tests/cancel")).status_code == 204
             await until(lambda: not served.container.comm_tests.busy, "the end")
@@ -187,8 +187,9 @@ def test_the_end_of_the_server_cancels_the_run(settings: Settings) -> None:
             await news_until(socket, cell=0)
         async with serve(settings) as served:
             assert (await get(served, f"runs/{number}"))["state"] == "cancelled"
+        # The server waits for it, but not longer than 2 s.
+        _, _, event = await asyncio.to_thread(receiver.requests.get, timeout=SECONDS)
         await asyncio.to_thread(receiver.close)
-        _, _, event = receiver.requests.get_nowait()
         assert (event["event"], event["id"], event["state"]) == ("comm_test_ended", number, "cancelled")
 
     asyncio.run(scenario())

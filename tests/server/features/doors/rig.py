@@ -2,10 +2,14 @@
 
 import asyncio
 import json
+import time
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
+import pytest
 from websockets.asyncio.client import ClientConnection, connect
 
 from robot_runtime.config import DoorsConfig
@@ -14,11 +18,16 @@ from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, row
+from server.features.doors import subscriptions
+from server.features.doors.subscriptions import DoorClient
 from server.platform.settings import Settings
+from server.stream import socket_ends
 from tests.server.serving import Served, play
 from tests.server.waiting import SECONDS
 
 OPEN = DoorsConfig(rosbridge=True, foxglove=True)
+LIFE = 3600.0
+"""s; a token's whole time, see `TokenTime`."""
 
 
 def play_open(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
@@ -32,6 +41,49 @@ async def make_token(served: Served, scope: str = "operate", name: str = "Progra
     answer = await served.api.post("/access/tokens", json=said)
     answer.raise_for_status()
     return str(answer.json()["token"])
+
+
+class TokenTime:
+    """The time of one program's token: it goes on when the test says so, however slow the computer is."""
+
+    def __init__(self, served: Served, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+        self._date = time.time()
+        self._waiting: list[asyncio.Timeout] = []
+        devices = served.container.access.devices
+        (self._device,) = (one for one in devices.all() if one.name == name)
+        self._ends = self._device.ends = self._date + LIFE
+        monkeypatch.setattr(devices, "_utc", lambda: self._date)
+        monkeypatch.setattr(socket_ends, "asyncio", SimpleNamespace(timeout=self._limit))
+
+    def end(self) -> None:
+        """Let the token's time pass, also for who waits for its end."""
+        self._date += LIFE
+        assert self._waiting
+        for limit in self._waiting:
+            with suppress(RuntimeError):  # that connection is over
+                limit.reschedule(asyncio.get_running_loop().time())
+
+    def _limit(self, seconds: float | None) -> asyncio.Timeout:
+        limit = asyncio.timeout(seconds)
+        if seconds == self._ends - self._date:
+            self._waiting.append(limit)
+        return limit
+
+
+def hurry(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """Disconnect a program of this name that reads nothing for a second.
+
+    Others have their time: the process in which they read is the server's own, and may be held for as long.
+    """
+    monkeypatch.setattr(subscriptions, "STALL_SECONDS", SECONDS)
+    send = DoorClient._send
+
+    async def send_to(client: DoorClient, message: bytes | str) -> None:
+        # It is read before anything is awaited.
+        vars(subscriptions)["STALL_SECONDS"] = 1.0 if client.identity.name == name else SECONDS
+        await send(client, message)
+
+    monkeypatch.setattr(DoorClient, "_send", send_to)
 
 
 async def acts_of(served: Served) -> set[tuple[str, str, str]]:

@@ -13,7 +13,8 @@ from typing import Any
 import pytest
 
 from tests.server.features.doors.ros2_rig import start_peer
-from tests.stack import Stack, free_port
+from tests.server.ports import reserved_port
+from tests.stack import Stack
 
 CLIENTS = Path(__file__).parents[3] / "clients"
 SECONDS = 120
@@ -23,9 +24,9 @@ pytestmark = pytest.mark.stack
 
 @pytest.fixture(scope="module")
 def _robot() -> Iterator[Stack]:
-    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name, reserved_port() as port:
         config = Path(name) / "robot.toml"
-        ros2 = f'ros2 = true\nros2_listen = "tls/127.0.0.1:{free_port()}"\n'
+        ros2 = f'ros2 = true\nros2_listen = "tls/127.0.0.1:{port}"\n'
         config.write_text(f"[doors]\nrosbridge = true\nfoxglove = true\n{ros2}", encoding="utf-8")
         with Stack(Path(name) / "data", "--config", str(config)) as stack:
             yield stack

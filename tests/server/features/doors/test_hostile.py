@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from struct import pack
@@ -17,6 +16,7 @@ from server.features.doors.commands import RELEASE, STOP, TAKE
 from server.platform.settings import Settings
 from tests.server.features.doors.rig import (
     RosbridgeClient,
+    TokenTime,
     acts_of,
     make_token,
     open_rosbridge,
@@ -127,19 +127,21 @@ def test_a_message_that_is_too_large_ends_its_connection(
 
 
 @DOORS
-def test_a_token_that_ends_while_its_program_drives_ends_control(settings: Settings, open_door: Open) -> None:
+def test_a_token_that_ends_while_its_program_drives_ends_control(
+    settings: Settings, open_door: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
     async def scenario(served: Served) -> None:
         await served.api.post("/control/release")
         token = await make_token(served)
-        (device,) = (one for one in served.container.access.devices.all() if one.name == "Program")
-        device.ends = time.time() + 3
+        lasting = TokenTime(served, monkeypatch, "Program")
         async with open_door(served, token) as socket:
             await take_control(socket)
             await until(lambda: served.container.arbiter.lease.holder is not None, "control")
             await send_twist(socket)
             await until(lambda: served.runtime.driven, "the command")
+            assert await is_answered(socket)
+            lasting.end()
             assert await closing_code(socket) == 1008
-        assert time.time() >= device.ends
         await until(lambda: served.container.arbiter.lease.holder is None, "control to be free")
         async with open_door(served, token) as socket:
             with pytest.raises(ConnectionClosed):

@@ -17,9 +17,9 @@ from tests.server.features.doors.ros2_rig import (
     ros2_peer,
     tls_settings,
 )
+from tests.server.ports import reserved_port
 from tests.server.serving import Served
 from tests.server.waiting import SECONDS, until
-from tests.stack import free_port
 
 TWIST = "geometry_msgs/msg/Twist"
 EMPTY = "std_msgs/msg/Empty"
@@ -73,7 +73,6 @@ def test_a_viewer_behind_a_router_stops_the_robot_and_does_nothing_else(settings
 
     async def scenario(served: Served) -> None:
         folder = await issue(served, "read")
-        address = f"tcp/127.0.0.1:{free_port()}"
         own = {"mode": "router", "listen/endpoints": [address]}
         router = await asyncio.to_thread(open_zenoh, own | tls_settings(served, folder))
         try:
@@ -89,7 +88,9 @@ def test_a_viewer_behind_a_router_stops_the_robot_and_does_nothing_else(settings
             await asyncio.to_thread(router.close)
         await until(lambda: not served.container.doors.doors["ros2"].clients, "the end")
 
-    play_ros2(settings, scenario)
+    with reserved_port() as port:
+        address = f"tcp/127.0.0.1:{port}"
+        play_ros2(settings, scenario)
 
 
 async def steer(peer: Ros2Peer, wheel: Any) -> None:

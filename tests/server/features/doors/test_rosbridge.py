@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+import server.stream.bridge as bridge_module
 from robot_runtime.contract.packets import Beacon, Depth
 from server.features.doors.session import INVALID_MAX
 from server.platform.settings import Settings
@@ -16,6 +17,7 @@ from tests.server.blocks import debug_block, picture_block, state_block
 from tests.server.features.doors.rig import (
     RosbridgeClient,
     acts_of,
+    hurry,
     imu,
     make_token,
     open_rosbridge,
@@ -273,8 +275,12 @@ def test_a_program_drives_with_control_and_not_without(settings: Settings) -> No
     ],
     ids=["message", "service"],
 )
-def test_stop_goes_on_where_its_program_leaves_at_once(settings: Settings, message: dict[str, Any]) -> None:
+def test_stop_goes_on_where_its_program_leaves_at_once(
+    settings: Settings, message: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
     async def scenario(served: Served) -> None:
+        # The answer comes late, but not too late, however busy the computer is.
+        monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", SECONDS)
         answered = served.runtime.gates["stop"]
         answered.clear()
         async with open_rosbridge(served, await make_token(served)) as socket:
@@ -410,12 +416,12 @@ def test_an_invalid_operation_is_answered_in_words(settings: Settings) -> None:
 def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("server.features.doors.subscriptions.STALL_SECONDS", 1.0)
+    hurry(monkeypatch, "Stalled")
 
     async def scenario(served: Served) -> None:
-        token = await make_token(served, "read")
+        token, other = await make_token(served, "read"), await make_token(served, "read", "Stalled")
         async with (
-            open_rosbridge(served, token, max_queue=1) as stalled,
+            open_rosbridge(served, other, max_queue=1) as stalled,
             open_rosbridge(served, token) as well,
         ):
             stalled.transport.pause_reading()

@@ -21,13 +21,6 @@ from tests.server.waiting import SECONDS
 BROKER = shutil.which("mosquitto") or "/usr/sbin/mosquitto"
 
 
-def free_port() -> int:
-    """A port that was free just now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 def wait_for(condition: Callable[[], object], what: str) -> None:
     """Wait in this thread until the condition holds."""
     end = time.monotonic() + SECONDS

@@ -52,8 +52,6 @@ def test_an_export_is_written_with_a_checksum_downloaded_in_ranges_and_deleted(
         api = served.api
         job = await start(api, session)
         assert (job["session_name"], job["sha256"]) == ("Dive no. 1: Öresund/../x", None)
-        early = await api.get(f"/exports/{job['id']}/file")
-        assert (early.status_code, "not finished" in early.json()["detail"]) == (409, True)
         job = await ended(served, job)
         assert (job["state"], job["progress"], job["problem"]) == ("done", 1.0, "")
         assert [one["id"] for one in (await api.get("/exports")).json()] == [job["id"]]
@@ -183,6 +181,9 @@ def test_the_next_job_starts_after_a_cancelled_one(
         first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
         await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
         assert (await served.api.get(f"/exports/{second['id']}")).json()["state"] == "waiting"
+        for job in (first, second):
+            early = await served.api.get(f"/exports/{job['id']}/file")
+            assert (early.status_code, "not finished" in early.json()["detail"]) == (409, True)
         monkeypatch.setattr(child_module, "sys", sys)
         assert (await served.api.delete(f"/exports/{first['id']}")).status_code == 204
         assert (await ended(served, second))["state"] == "done"
@@ -238,7 +239,7 @@ def test_a_full_disk_is_reported_and_no_data_is_lost(
         job = await ended(served, await start(served.api, session, format="jsonl"))
         assert job["state"] == "failed"
         assert job["problem"].endswith("is full. Free some space, and try again.")
-        assert list(settings.data.exports.iterdir()) == []
+        await until(lambda: not list(settings.data.exports.iterdir()), "the half file to go")
         assert (await served.api.get(f"/exports/{job['id']}/file")).status_code == 409
         assert (await served.api.get(f"/sessions/{session}")).json()["samples"] == 5002
 

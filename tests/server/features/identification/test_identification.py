@@ -62,7 +62,6 @@ def test_a_fitted_craft_is_adopted_and_the_adoption_undone(
         before = (await state(served))["craft"]
         assert (before["title"], before["can_undo"], before["problem"]) == ("", False, "")
         assert await start(served, sessions=[1], left_out=2) == 201
-        assert await start(served, sessions=[1]) == 409
         async with asyncio.timeout(60):
             while (found := await state(served))["active"] is not None:
                 assert found["active"]["sessions"] == [1]
@@ -102,6 +101,7 @@ def test_a_fit_is_cancelled_at_once(
 
     async def scenario(served: Served) -> None:
         assert await start(served, sessions=[1]) == 201
+        assert await start(served, sessions=[1]) == 409
         assert (await served.api.post("/identification/cancel")).status_code == 204
         await until(lambda: served.container.identification._active is None, "the fit to end")
         assert (await state(served))["last"]["problem"] == "It was cancelled."

@@ -4,6 +4,8 @@ from typing import Any
 
 import pytest
 
+import server.features.lease.arbiter as arbiter_module
+import server.features.lease.clients as clients_module
 from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import RefusedError
 from server.features.lease.arbiter import RELOAD_SECONDS, ControlArbiter
@@ -11,6 +13,7 @@ from server.features.lease.clients import PROGRAM_SECONDS
 from server.features.lease.lease import NotInControlError
 from server.http.sign_in.identity import Identity
 from tests.server.features.lease.people import ANNA, BEN, VERA, Seen
+from tests.server.waiting import SECONDS
 
 SCRIPT = Identity(5, "script", "operator", "program")
 
@@ -218,7 +221,9 @@ def test_control_that_nobody_gave_back_is_audited_with_the_reason() -> None:
     assert seen.lost[2:] == [("script", "it asked nothing for 10 s")]
 
 
-def test_the_leaving_of_a_page_is_recorded_in_time() -> None:
+def test_the_leaving_of_a_page_is_recorded_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Who slept for the whole time would be too late however long the test waits.
+    monkeypatch.setattr(arbiter_module, "RELOAD_SECONDS", 10 * SECONDS)
     noted: list[str] = []
 
     async def run() -> None:
@@ -229,7 +234,7 @@ def test_the_leaving_of_a_page_is_recorded_in_time() -> None:
         # As if nearly all of its time had passed.
         arbiter._departure = replace(arbiter._departure, due=SteadyClock().now() + 0.05)
         task = asyncio.create_task(arbiter.run())
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(SECONDS):
             while len(noted) < 2:
                 await asyncio.sleep(0)
         task.cancel()
@@ -239,7 +244,8 @@ def test_the_leaving_of_a_page_is_recorded_in_time() -> None:
     assert noted[-1] == "“Anna” left, and nobody has control now."
 
 
-def test_the_silence_of_a_program_is_recorded_in_time() -> None:
+def test_the_silence_of_a_program_is_recorded_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clients_module, "PROGRAM_SECONDS", 10 * SECONDS)
     told: list[dict[str, Any]] = []
     noted: list[str] = []
 
@@ -253,7 +259,7 @@ def test_the_silence_of_a_program_is_recorded_in_time() -> None:
         # As if nearly all of its time had passed.
         script.until = clock.now() + 0.05
         arbiter.announce()
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(SECONDS):
             while told[-1]["holder"] is not None:
                 await asyncio.sleep(0)
         task.cancel()

@@ -92,6 +92,7 @@ def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_sto
         ) as socket:
             session = stack.api.post("/sessions", json={"name": "by hand"}).raise_for_status().json()["id"]
             driver = Driver(stack, socket)
+            wait(lambda: fins.seen, "the fins to be seen")
             driver.order("POST", "/robot/commands/arm", {"mode": "manual"})
             moved: list[bool] = []
 

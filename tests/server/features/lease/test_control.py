@@ -2,6 +2,7 @@
 
 import json
 
+from robot_runtime.clock import SimulatedClock
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform.settings import Settings
@@ -27,7 +28,8 @@ def test_changes_of_control_are_recorded_in_the_session(settings: Settings) -> N
         (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
         container = served.container
         recording = Recording(container.store, find_row(container.store, session))
-        texts = [one["text"] for one in recording.documents("notice")]
+        # The doctor's words come when its look at the start is done.
+        texts = [one["text"] for one in recording.documents("notice") if one["kind"] == "control"]
         shell = "“the shell of this computer”"
         assert texts[-3:] == [
             f"{shell} took over control from {shell}.",
@@ -138,12 +140,15 @@ def test_only_the_holder_s_driving_commands_reach_the_runtime(settings: Settings
         async with open_page(served) as anna, open_page(served) as ben:
             await anna.ask("/control/take")
             await until(lambda: served.runtime.epochs, "the runtime to be told")
-            await anna.drive(sequence=1)
-            await anna.drive(sequence=2, taken=served.container.clock.now() - 0.4)
+            # A command grows no older on its way, however busy the computer is.
+            clock = SimulatedClock(served.container.clock.now())
+            served.container.arbiter.driving._clock = clock
+            await anna.drive(sequence=1, taken=clock.now())
+            await anna.drive(sequence=2, taken=clock.now() - 0.4)
             await ben.drive(sequence=3)
             await anna.drive(sequence=4, lease=served.container.arbiter.lease.epoch - 1)
             await anna.drive(sequence=1)
-            await anna.drive(sequence=5)
+            await anna.drive(sequence=5, taken=clock.now())
             await until(lambda: len(served.runtime.driven) == 2, "two commands")
             assert [one["sequence"] for one in served.runtime.driven] == [1, 5]
             assert set(served.runtime.driven[0]) == {"lease", "sequence", "taken", "axes"}
@@ -162,7 +167,7 @@ def test_a_restarted_runtime_gets_the_epoch_again(settings: Settings) -> None:
         await until(lambda: served.runtime.epochs[-1:] == [epoch], "the runtime to be told")
         before = len(served.runtime.epochs)
         served.runtime.publish(state_block(0))
-        await until(lambda: len(served.runtime.epochs) == before + 1, "the run that speaks to be told")
+        await until(lambda: len(served.runtime.epochs) > before, "the run that speaks to be told")
         assert served.runtime.epochs[-1] == epoch
 
     play(settings, scenario)

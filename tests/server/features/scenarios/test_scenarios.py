@@ -239,7 +239,7 @@ def test_a_refusal_gives_the_reason(stack: Stack) -> None:
     fast = SHORT.replace("[control]", "[control]\nrate = 20")
     assert refusal(stack, fast).startswith("It needs control at 20 Hz; this robot's runs at 10 Hz")
     session = stack.api.post("/sessions", json={"name": "mine"}).json()["id"]
-    stack.api.post("/robot/commands/arm").raise_for_status()
+    stack.arm()
     wait(lambda: robot(stack)["armed"], "the robot to be armed")
     words = refusal(stack, SHORT)
     assert "“mine” is being recorded." in words

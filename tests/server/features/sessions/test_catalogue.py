@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform.settings import Settings
 from tests.server.blocks import depth_block, state_block, thumbnail_block
@@ -103,11 +104,16 @@ def test_a_session_lists_its_contents(settings: Settings) -> None:
         served.runtime.publish(state_block(0, set_point_default=0.7))
         await until(lambda: served.container.monitor.state() is not None, "the state")
         session = (await served.api.post("/sessions", json={"name": "whole"})).json()["id"]
-        now, recorder = served.container.clock.now(), served.container.recorder
+        now = served.container.clock.now()
         small = [thumbnail_block(n, now + n, bytes([n])) for n in range(2)]
         served.runtime.publish(depth_block(5, 10, start=now - 0.1), depth_block(20, 1, start=now))
         served.runtime.publish_bytes(b"".join(block.data for block in small))
-        await until(lambda: recorder.session is not None and recorder.session.samples >= 14, "the samples")
+        store = served.container.store
+
+        def counts() -> dict[str, int]:
+            return Recording(store, find_row(store, session)).counts()
+
+        await until(lambda: {"depth": 11, "thumbnail": 2}.items() <= counts().items(), "the samples")
         detail = (await served.api.get(f"/sessions/{session}")).json()
         assert detail["robot_state"]["set_point_default"] == 0.7
         assert detail["configuration"] == settings.config.read_text()
@@ -118,7 +124,7 @@ def test_a_session_lists_its_contents(settings: Settings) -> None:
         assert (topics["depth"]["count"], topics["thumbnail"]["kind"]) == (11, "picture")
         assert {"name": "depth", "unit": "m"}.items() <= topics["depth"]["columns"][1].items()
         picture = f"/sessions/{session}/thumbnail"
-        start = find_row(served.container.store, session).started_steady
+        start = find_row(store, session).started_steady
         answer = await served.api.get(picture, params={"time": now - start + 0.5})
         assert (answer.headers["content-type"], answer.content) == ("image/jpeg", b"\1")
         assert (await served.api.get(picture, params={"time": 1e6})).status_code == 404

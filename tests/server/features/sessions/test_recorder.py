@@ -27,7 +27,7 @@ from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.features.sessions.recorder_rig import RecorderRig
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 
 
 @pytest.fixture
@@ -317,7 +317,7 @@ def test_a_cancelled_flush_stores_everything_once(rig: RecorderRig, monkeypatch:
 
     def insert_slowly(*arguments: Any) -> None:
         writing.set()
-        assert gate.wait(10)
+        assert gate.wait(SECONDS)
         insert(*arguments)
 
     monkeypatch.setattr(recorder_module, "_insert", insert_slowly)

@@ -25,6 +25,7 @@ from server.platform.settings import Settings
 from server.platform.store import Store
 from server.platform.wall_clock import DAY
 from tests.server.blocks import depth_block
+from tests.server.waiting import SECONDS
 
 NOW = 1.9e9
 
@@ -295,7 +296,7 @@ def test_the_worker_ends_also_where_it_is_asked_to_run_at_that_moment(
         worker.wake()
         await take_turns(turns)
         running.cancel()
-        done, _ = await asyncio.wait([running], timeout=1.0)
+        done, _ = await asyncio.wait([running], timeout=SECONDS)
         running.cancel()
         assert done
 
