@@ -50,6 +50,17 @@ def test_no_page_has_a_serious_accessibility_violation(seen: Page, stack: Stack,
     assert faults_of_view(seen, stack, view) == []
 
 
+def test_a_saved_profile_has_no_serious_violation(seen: Page, stack: Stack) -> None:
+    stack.wait_ready()
+    saved = stack.api.post("/profiles", json={"name": "seen"}).raise_for_status().json()["id"]
+    (parameters,) = (view for view in LIVE if view.name == "tune-parameters")
+    show(seen, stack, parameters)
+    expect(seen.get_by_role("link", name="Download seen")).to_be_visible()
+    found = faults(seen)
+    stack.api.delete(f"/profiles/{saved}").raise_for_status()
+    assert found == []
+
+
 def test_menus_of_the_bar_have_no_serious_violation(seen: Page, stack: Stack) -> None:
     show(seen, stack, PAGES[0])
     for name in OPENED:

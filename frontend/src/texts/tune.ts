@@ -168,7 +168,6 @@ export const tune = {
     leftOut: 'Not restored:',
     deleteAsk: 'Delete permanently?',
     restoreHint: 'Set all parameters to the values of this profile',
-    file: 'File',
     downloadNamed: (name: string) => `Download ${name}`,
     saveAs: 'Save present values as',
     nameExample: 'calm pool',
