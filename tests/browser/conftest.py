@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.errors import NoAnswerError
-from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.transport.zenoh_transport import join
 from tests.browser.fixtures import _no_page_is_left, any_page, browser, cookies, page
 from tests.browser.pages import stop_recordings
 from tests.stack import Stack
@@ -49,7 +49,7 @@ def _at_rest(stack: Stack) -> Iterator[None]:
 def bring_to_surface(stack: Stack) -> None:
     """Put the robot where every test finds it, wherever the one before has left it."""
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
-    with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
+    with join("turtle", [runtime]) as messages:
         end = time.monotonic() + RESET_SECONDS
         while True:
             # One that has just been started, after a bring-up, is found by others a moment later.

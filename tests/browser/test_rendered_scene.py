@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Browser, expect
 
 from robot_runtime.simulation.scene.availability import missing
-from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.transport.zenoh_transport import join
 from tests.browser.chromium import sign_in
 from tests.browser.opening import DESKTOP
 from tests.stack import Stack
@@ -65,5 +65,5 @@ def test_a_target_in_the_water_is_found_and_changes_the_set_point(browser: Brows
 def put_targets(stack: Stack, *targets: dict[str, object]) -> None:
     """Replace the targets in the water by these."""
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
-    with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
+    with join("turtle", [runtime]) as messages:
         messages.query("scene/targets", {"targets": list(targets)}, 10.0)

@@ -9,7 +9,7 @@ import pytest
 from robot_runtime.contract.packets import Depth
 from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.outbox import STREAM
-from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.transport.zenoh_transport import join
 from tests.stack import ROOT, Stack
 
 pytestmark = pytest.mark.stack
@@ -57,7 +57,7 @@ def wait_for_depth(stack: Stack) -> None:
 
     end = time.monotonic() + PATIENCE
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
-    with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
+    with join("turtle", [runtime]) as messages:
         messages.subscribe(STREAM, take)
         while not depths or depths[-1] < DEEP:
             assert time.monotonic() < end, (depths[-5:], stack.api.get("/robot").json())

@@ -56,7 +56,7 @@ class TokenTime:
         monkeypatch.setattr(socket_ends, "asyncio", SimpleNamespace(timeout=self._limit))
 
     def end(self) -> None:
-        """Let the token's time pass, also for who waits for its end."""
+        """The token's time passes now, also for who waits for its end."""
         self._date += LIFE
         assert self._waiting
         for limit in self._waiting:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from robot_runtime.errors import NoAnswerError
-from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.transport.zenoh_transport import join
 from tests.stack import Stack
 
 pytestmark = pytest.mark.stack
@@ -108,7 +108,7 @@ def begin_long(stack: Stack) -> None:
 def simulator_answers(stack: Stack) -> bool:
     """True where the simulator answers; its process was running a moment before."""
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
-    with ZenohTransport("turtle", connect=[runtime], client=True) as messages, suppress(NoAnswerError):
+    with join("turtle", [runtime]) as messages, suppress(NoAnswerError):
         messages.query("simulator/surroundings", {})
         return True
     return False
