@@ -1,8 +1,14 @@
 """Arms and drives the robot on the page, for all browser tests."""
 
-from playwright.sync_api import Page, expect
+import re
+import time
+
+from playwright.sync_api import Locator, Page, expect
 
 DIVE_MS = 30_000
+HOLD_SECONDS = 40
+REFUSED = (409, 503, 504)
+"""Something speaks against it; the runtime does not answer in time."""
 
 
 def wait_for_depth(page: Page, low: float, high: float) -> None:
@@ -19,14 +25,28 @@ def wait_for_depth(page: Page, low: float, high: float) -> None:
     )
 
 
-def hold_to_arm(page: Page) -> None:
-    """Holds the button until the robot is armed."""
+def hold_to_arm(page: Page, armed: Locator | None = None) -> None:
+    """Holds the button until the robot is armed, which `armed` shows, or the usual words.
+
+    On a busy computer a board may be late at that moment, and the runtime refuses; or news may be, and the
+    button does nothing. Then it is held again, as a person does.
+    """
     button = page.get_by_role("button", name="Hold to arm")
-    expect(button).to_be_enabled()
-    button.hover()
-    page.mouse.down()
-    expect(page.get_by_text("The fins may move")).to_be_visible()
-    page.mouse.up()
+    in_vain = page.get_by_role("button", name=re.compile("^Not now|^Release, then"))
+    answers: list[int] = []
+    page.on("response", lambda one: answers.append(one.status) if one.url.endswith("/commands/arm") else None)
+    end = time.monotonic() + HOLD_SECONDS
+    while not answers or answers[-1] in REFUSED:
+        assert time.monotonic() < end, answers
+        tries = len(answers)
+        expect(button).to_be_enabled()
+        button.hover()
+        page.mouse.down()
+        while len(answers) == tries and not in_vain.is_visible():
+            assert time.monotonic() < end, answers
+            page.wait_for_timeout(20)
+        page.mouse.up()
+    expect(armed or page.get_by_text("The fins may move")).to_be_visible()
 
 
 def arm_by_hand(page: Page) -> None:

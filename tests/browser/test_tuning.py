@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from tests.browser.driving import hold_to_arm
 from tests.browser.people import somebody
 from tests.stack import Stack
 
@@ -14,13 +15,8 @@ RUN_MS = 60_000
 """The emulated robot swims in real time, on a computer that has other work."""
 
 
-def hold_to_arm(page: Page) -> None:
-    button = page.get_by_role("button", name="Hold to arm")
-    expect(button).to_be_enabled()
-    button.hover()
-    page.mouse.down()
-    expect(page.get_by_role("button", name=re.compile("^Run the"))).to_be_enabled()
-    page.mouse.up()
+def arm(page: Page) -> None:
+    hold_to_arm(page, page.get_by_role("button", name=re.compile("^Run the"), disabled=False))
 
 
 def fill(page: Page, **values: str) -> None:
@@ -42,7 +38,7 @@ def test_a_step_is_run_and_stored(empty: Stack, any_page: Page) -> None:
     expect(page.get_by_text("No step response yet")).to_be_visible()
     page.get_by_text("Limits and waiting").click()
     fill(page, Start="0.2", Target="0.4", Duration="3", Longest_wait="1")
-    hold_to_arm(page)
+    arm(page)
     page.get_by_role("button", name="Run the step").click()
     expect(page.get_by_role("progressbar", name="Progress")).to_be_visible()
     figures = page.get_by_role("region", name="Figures of the step responses")
@@ -79,7 +75,7 @@ def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
 ) -> None:
     page.goto(f"{empty.url}/#/tune/relay")
     fill(page, **{"Centre": "0.3", "Command_±": "100", "Cycles": "3"})
-    hold_to_arm(page)
+    arm(page)
     page.get_by_role("button", name="Run the relay").click()
     table = page.get_by_role("region", name="Gains by rule, beside the present ones")
     expect(table).to_be_visible(timeout=RUN_MS)
