@@ -14,9 +14,10 @@ import sys
 from contextlib import ExitStack
 from functools import partial
 from hashlib import sha256
+from io import FileIO, RawIOBase
 from pathlib import Path
 from struct import Struct
-from typing import IO, Any
+from typing import Any
 
 import cv2
 
@@ -39,20 +40,28 @@ BYTES_MAX = 1_000_000_000
 
 
 class RunOutput:
-    """Writes a run's data and events to a stream."""
+    """Writes a run's data and events to a stream without a buffer.
 
-    def __init__(self, stream: IO[bytes]) -> None:
+    Python's buffered writer has lost bytes where a signal, such as that of a cancel, interrupted its write.
+    """
+
+    def __init__(self, stream: RawIOBase) -> None:
         self._stream = stream
 
     def blocks(self, data: bytes) -> None:
         """Writes a message of blocks."""
-        self._stream.write(HEADER.pack(len(data), BLOCKS) + data)
+        self._write(BLOCKS, data)
 
     def event(self, event: str, **more: Any) -> None:
-        """Writes an event and flushes the stream."""
-        data = json.dumps({"event": event, **more}, allow_nan=False, separators=(",", ":")).encode()
-        self._stream.write(HEADER.pack(len(data), EVENTS) + data)
-        self._stream.flush()
+        """Writes an event."""
+        self._write(
+            EVENTS, json.dumps({"event": event, **more}, allow_nan=False, separators=(",", ":")).encode()
+        )
+
+    def _write(self, kind: int, data: bytes) -> None:
+        rest = memoryview(HEADER.pack(len(data), kind) + data)
+        while rest:
+            rest = rest[self._stream.write(rest) or 0 :]
 
 
 def main() -> int:
@@ -69,7 +78,9 @@ def main() -> int:
     limit_memory(BYTES_MAX)
     cv2.setNumThreads(1)
     with ExitStack() as opened:
-        stream = opened.enter_context(options.out.open("wb")) if options.out else sys.stdout.buffer
+        stream = opened.enter_context(
+            FileIO(options.out or sys.stdout.fileno(), "wb", closefd=bool(options.out))
+        )
         messages = RunOutput(stream)
         try:
             file = craft_document_in(options.craft) if options.craft else DEFAULT_DOCUMENT
