@@ -5,7 +5,7 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from server import VERSION, cli
 from server.platform.folder_lock import runner_of
 from server.platform.pidfile import pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
+from tests.proofs.watching import wait
 from tests.server.ports import reserved_port
 from tests.server.waiting import SECONDS, alive
 
@@ -73,13 +74,6 @@ def wait_for_answer(port: int, process: subprocess.Popen[str] | None) -> None:
     assert process is not None, "the server does not answer any more"
     process.terminate()
     raise AssertionError(f"the server did not answer: {process.stdout and process.stdout.read()}")
-
-
-def wait(condition: Callable[[], object], what: str) -> None:
-    end = time.monotonic() + SECONDS
-    while not condition():
-        assert time.monotonic() < end, f"waited in vain for {what}"
-        time.sleep(0.02)
 
 
 def group_of(process: subprocess.Popen[str]) -> list[int]:
