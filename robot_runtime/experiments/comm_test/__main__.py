@@ -9,6 +9,7 @@ On its standard output are JSON objects, one to a line; docs/reference/comm-test
 import argparse
 import signal
 import sys
+from io import FileIO
 from pathlib import Path
 
 from robot_runtime.contract.limits import ConfigError
@@ -26,6 +27,7 @@ from robot_runtime.experiments.comm_test.lab import (
 from robot_runtime.experiments.comm_test.line import Cancellation
 from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
 from robot_runtime.transport.lifetime import end_with_parent, give_way, limit_memory
+from robot_runtime.transport.unbuffered_output import UnbufferedOutput
 
 REFUSED = 2
 """The exit status for a document that cannot be run."""
@@ -51,7 +53,7 @@ def main() -> int:
     stop = Cancellation()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
-    writer = EventWriter(sys.stdout)
+    writer = EventWriter(UnbufferedOutput(FileIO(sys.stdout.fileno(), "wb", closefd=False)))
     try:
         tests = read_document(_decode(sys.stdin.buffer.read(DOCUMENT_BYTES_MAX + 1)))
     except ConfigError as problem:

@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from threading import Lock
-from typing import Any, Protocol, TextIO
+from typing import Any, Protocol
 
 from robot_runtime.experiments.comm_test.boot_loader import refuse_endless_resets
 from robot_runtime.experiments.comm_test.builder import Builder, SketchBuildError, hash_file
@@ -29,6 +29,7 @@ from robot_runtime.experiments.comm_test.upload import (
 from robot_runtime.link.link_driver import PortError
 from robot_runtime.places import EMULATOR_REMEDY, FIRMWARE_REMEDY
 from robot_runtime.simulation.boards.emulator_process import BoardError
+from robot_runtime.transport.unbuffered_output import UnbufferedOutput
 
 TEST_ERRORS = (SketchBuildError, UploadError, ResetError, BoardError, PortError)
 """Errors that end a test early; the texts say why."""
@@ -41,7 +42,7 @@ ATTEMPTS = 3
 class EventWriter:
     """Writes events, one JSON object to a line, at once. May be used by several threads."""
 
-    def __init__(self, output: TextIO) -> None:
+    def __init__(self, output: UnbufferedOutput) -> None:
         self._output = output
         self._lock = Lock()
 
@@ -49,8 +50,7 @@ class EventWriter:
         """Writes one event."""
         line = json.dumps({"event": event, **values}, ensure_ascii=False)
         with self._lock:
-            self._output.write(line + "\n")
-            self._output.flush()
+            self._output.write(line.encode() + b"\n")
 
 
 class CommTestLab(Protocol):

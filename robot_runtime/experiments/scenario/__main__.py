@@ -14,7 +14,7 @@ import sys
 from contextlib import ExitStack
 from functools import partial
 from hashlib import sha256
-from io import FileIO, RawIOBase
+from io import FileIO
 from pathlib import Path
 from struct import Struct
 from typing import Any
@@ -31,6 +31,7 @@ from robot_runtime.link.link_driver import PortError
 from robot_runtime.provenance import HASH_CHARACTERS, hash_software
 from robot_runtime.simulation.boards.emulator_process import BoardError
 from robot_runtime.transport.lifetime import limit_memory
+from robot_runtime.transport.unbuffered_output import UnbufferedOutput
 
 HEADER = Struct("<IB")
 EVENTS, BLOCKS = 0, 1
@@ -40,13 +41,10 @@ BYTES_MAX = 1_000_000_000
 
 
 class RunOutput:
-    """Writes a run's data and events to a stream without a buffer.
+    """Writes a run's data and events."""
 
-    Python's buffered writer has lost bytes where a signal, such as that of a cancel, interrupted its write.
-    """
-
-    def __init__(self, stream: RawIOBase) -> None:
-        self._stream = stream
+    def __init__(self, output: UnbufferedOutput) -> None:
+        self._output = output
 
     def blocks(self, data: bytes) -> None:
         """Writes a message of blocks."""
@@ -59,9 +57,7 @@ class RunOutput:
         )
 
     def _write(self, kind: int, data: bytes) -> None:
-        rest = memoryview(HEADER.pack(len(data), kind) + data)
-        while rest:
-            rest = rest[self._stream.write(rest) or 0 :]
+        self._output.write(HEADER.pack(len(data), kind) + data)
 
 
 def main() -> int:
@@ -81,7 +77,7 @@ def main() -> int:
         stream = opened.enter_context(
             FileIO(options.out or sys.stdout.fileno(), "wb", closefd=bool(options.out))
         )
-        messages = RunOutput(stream)
+        messages = RunOutput(UnbufferedOutput(stream))
         try:
             file = craft_document_in(options.craft) if options.craft else DEFAULT_DOCUMENT
             scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"), file.craft)

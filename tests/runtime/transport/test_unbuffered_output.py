@@ -1,22 +1,20 @@
-"""Messages of a scenario's process arrive whole, also where signals interrupt it while it writes."""
+"""Output arrives whole, also where signals interrupt the process that writes it."""
 
 import signal
 import subprocess
 import sys
 from threading import Thread
 
-from robot_runtime.experiments.scenario.__main__ import BLOCKS, HEADER
-
 MESSAGES = 500
 SIZE = 30_000
 WRITER = f"""
 import signal
 from io import FileIO
-from robot_runtime.experiments.scenario.__main__ import RunOutput
+from robot_runtime.transport.unbuffered_output import UnbufferedOutput
 signal.signal(signal.SIGTERM, lambda *_: None)
-output = RunOutput(FileIO(1, "wb", closefd=False))
+output = UnbufferedOutput(FileIO(1, "wb", closefd=False))
 for number in range({MESSAGES}):
-    output.blocks(bytes([number % 251]) * {SIZE})
+    output.write(bytes([number % 251]) * {SIZE})
 """
 
 
@@ -29,8 +27,7 @@ def test_no_byte_is_lost_where_signals_come_while_it_writes() -> None:
                 process.send_signal(signal.SIGTERM)
 
         for number in range(MESSAGES):
-            header, data = process.stdout.read(HEADER.size), process.stdout.read(SIZE)
-            assert HEADER.unpack(header) == (SIZE, BLOCKS)
+            data = process.stdout.read(SIZE)
             assert data == bytes([number % 251]) * SIZE
             if number == 0:
                 # Not before: it would end by one that comes before it has said what it does then.
