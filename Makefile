@@ -152,8 +152,8 @@ fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on
 soak: setup-test ## prove the link at length: corrupted frames by the million, a thousand resets
 	@nice $(PYTHON) -m tests.proofs
 
-services: setup-test build/.packages-packages ## install, update and roll back on a computer with systemd, and cut its power (needs root)
-	@nice $(PYTHON) -m tests.proofs.services
+services: setup-test build/.packages-packages ## install, update and roll back on computers with systemd, and cut their power (needs root; one with ONLY=name)
+	@nice $(PYTHON) -m tests.proofs.services $(ONLY)
 
 bring-ups: setup-test host-firmware ## bring up a robot with each mistake of wiring and parts, on the page and from a shell
 	@nice $(PYTHON) -W ignore -m tests.proofs.bring_ups

@@ -20,6 +20,7 @@ from robot_runtime.simulation.boards.firmware import build_firmware, firmware_pa
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import make_card
 from server.platform.settings import DataFolder
+from tests.browser.site import Site
 from tests.shell import shell_headers
 from tests.stack import Stack
 
@@ -54,8 +55,7 @@ class RealRobot(Stack):
         with ExitStack() as opened:
             port = self._start_board(opened)
             picture = self.data / "card.png"
-            camera = CardCamera(320, 240, SteadyClock(), lambda: None)
-            cv2.imwrite(str(picture), camera.draw(0.0, make_card("yellow", {})))
+            store_picture(picture)
             text = _CONFIG.format(profile=self._profile, port=port, baud=_BAUD, picture=picture)
             self._config.write_text(text)
             super().__enter__()
@@ -88,17 +88,23 @@ class RealRobot(Stack):
         return str(tty.resolve())
 
 
+def store_picture(file: Path) -> None:
+    """Writes the picture of a yellow card."""
+    camera = CardCamera(320, 240, SteadyClock(), lambda: None)
+    cv2.imwrite(str(file), camera.draw(0.0, make_card("yellow", {})))
+
+
 class LiveViewer:
     """A client that reads everything, as a page does."""
 
-    def __init__(self, stack: Stack) -> None:
+    def __init__(self, site: Site) -> None:
         self.bytes = 0
         self.lost = 0
         """Messages that say that samples were left out."""
         self._socket = connect(
-            f"ws://127.0.0.1:{stack.port}/api/live",
-            origin=Origin(stack.url),
-            additional_headers=shell_headers(DataFolder(stack.data)),
+            f"{site.url.replace('http', 'ws', 1)}/api/live",
+            origin=Origin(site.url),
+            additional_headers=shell_headers(DataFolder(site.data)),
             max_size=None,
             proxy=None,
         )

@@ -2,7 +2,10 @@
 
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
+
+from packaging.requirements import Requirement
 
 from packages.architectures import PackagingError
 from robot_runtime.places import PACKAGES
@@ -12,28 +15,39 @@ DEBIAN = PACKAGES / "packages/debian-13.txt"
 """Versions that fit the packages of a 32-bit Debian 13, for which pip finds no wheels."""
 FROM_APT = ("numpy", "opencv-python-headless", "pydantic", "pydantic-core")
 """What apt installs there, in whatever version it has."""
-PYTHON = "3.13"
-"""Debian 13's."""
+SMALL = {"platform_machine": "armv6l", "python_version": "3.13", "python_full_version": "3.13.0"}
+"""What tells 32-bit computers from others in requirements; Debian 13's Python."""
 
 
 def write_constraints(dist: Path) -> list[Path]:
     """Writes `constraints.txt` and `constraints-32bit.txt` into `dist`. Raises PackagingError."""
     dist.mkdir(exist_ok=True)
-    pins = PACKAGES / "constraints.txt"
     extras = [word for extra in EXTRAS for word in ("--extra", extra)]
     whole = dist / "constraints.txt"
-    whole.write_text(_resolve(["--universal", *extras, "--constraints", str(pins)]))
-    own = {_name(line): line for line in DEBIAN.read_text().splitlines()}
-    others = [line for line in pins.read_text().splitlines() if _name(line) not in (*own, *FROM_APT)]
-    merged = dist / "constraints-32bit.unfinished"
-    merged.write_text("\n".join([*others, *own.values()]) + "\n")
-    try:
-        resolved = _resolve(["--python-version", PYTHON, "--constraints", str(merged)])
-    finally:
-        merged.unlink()
+    whole.write_text(_resolve([*extras, "--constraints", str(PACKAGES / "constraints.txt")]))
     small = dist / "constraints-32bit.txt"
-    small.write_text("".join(f"{line}\n" for line in resolved.splitlines() if _name(line) not in FROM_APT))
+    small.write_text("".join(f"{line}\n" for line in small_requirements()))
     return [whole, small]
+
+
+def small_requirements() -> list[str]:
+    """Returns what mucat needs on a 32-bit Debian 13 besides apt's packages, as `NAME==VERSION`.
+
+    Raises PackagingError.
+    """
+    pins = (PACKAGES / "constraints.txt").read_text().splitlines()
+    own = {_name(line): line for line in DEBIAN.read_text().splitlines()}
+    others = [line for line in pins if _name(line) not in (*own, *FROM_APT)]
+    with tempfile.NamedTemporaryFile("w", suffix=".txt") as merged:
+        merged.write("\n".join([*others, *own.values()]) + "\n")
+        merged.flush()
+        resolved = _resolve(["--python-version", SMALL["python_version"], "--constraints", merged.name])
+    needed = [Requirement(line) for line in resolved.splitlines()]
+    return [
+        f"{one.name}{one.specifier}"
+        for one in needed
+        if one.name not in FROM_APT and (one.marker is None or one.marker.evaluate(dict(SMALL)))
+    ]
 
 
 def _name(line: str) -> str:
@@ -42,7 +56,7 @@ def _name(line: str) -> str:
 
 def _resolve(options: list[str]) -> str:
     command = [str(Path(sys.executable).with_name("uv")), "pip", "compile", "--quiet", "--no-header"]
-    command += ["--no-annotate", str(PACKAGES / "pyproject.toml"), *options]
+    command += ["--no-annotate", "--universal", str(PACKAGES / "pyproject.toml"), *options]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise PackagingError(f"The versions do not fit together: {done.stderr.strip()}")

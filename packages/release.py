@@ -2,7 +2,7 @@
 
 A release is a folder with the wheel of mucat, those of everything that it needs on such a computer, their
 checksums, the signature, the public key, and `install.sh`; beside it lies the same as a ZIP file.
-A robot needs no network to install it.
+A robot needs no network to install it. One with 32 bits has NumPy, OpenCV and pydantic from apt.
 """
 
 import argparse
@@ -14,25 +14,33 @@ import zipfile
 from pathlib import Path
 
 from packages.architectures import ARCHITECTURES, PackagingError
+from packages.constraints import SMALL, small_requirements
 from packages.signing import PUBLIC_KEY, make_key, sign_folder, write_public_key
 from packages.wheels import DIST, build_emulator, build_mucat
 from robot_runtime.places import PACKAGES
 from server import VERSION
 
-PLATFORMS = ("manylinux_2_34", "manylinux_2_28", "manylinux_2_17", "manylinux2014")
-PURE = ("cobs",)
+PLATFORMS = ("manylinux_2_34", "manylinux_2_28", "manylinux_2_17", "manylinux2014", "linux")
+MACHINES = ("x86_64", "aarch64")
+SMALL_MACHINES = ("armv6l", "armv7l", "i686")
+"""With 32 bits."""
+PURE: tuple[str, ...] = ("cobs",)
 """Packages without wheels for every computer, which are plain Python where there is no C compiler."""
+SMALL_PURE = (*PURE, "markupsafe")
+"""The same with 32 bits."""
 
 
 def main() -> int:
     """Builds the release. Returns 1 where it cannot."""
     parser = argparse.ArgumentParser(prog="python -m packages.release", description=__doc__)
     parser.add_argument("key", type=Path, help="the secret key; made where there is none")
-    parser.add_argument("--machine", default=platform.machine(), choices=("x86_64", "aarch64"))
-    parser.add_argument("--python", default=".".join(platform.python_version_tuple()[:2]))
+    parser.add_argument("--machine", default=platform.machine(), choices=(*MACHINES, *SMALL_MACHINES))
+    parser.add_argument("--python", help="3.11, ...; without it this computer's, for 32 bits Debian 13's")
     options = parser.parse_args()
+    own = ".".join(platform.python_version_tuple()[:2])
+    python = options.python or (SMALL["python_version"] if options.machine in SMALL_MACHINES else own)
     try:
-        print(build_release(options.key, options.machine, options.python, DIST))
+        print(build_release(options.key, options.machine, python, DIST))
     except PackagingError as problem:
         print(problem, file=sys.stderr)
         return 1
@@ -47,6 +55,10 @@ def build_release(secret: Path, machine: str, python: str, dist: Path) -> Path:
 
     Raises PackagingError, CalledProcessError.
     """
+    if machine in SMALL_MACHINES and python != SMALL["python_version"]:
+        raise PackagingError(
+            f"Computers with 32 bits need Debian 13, whose Python is {SMALL['python_version']}."
+        )
     folder = dist / f"mucat-{VERSION}-{machine}-python{python}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -71,12 +83,18 @@ def _gather(folder: Path, wheel: Path, machine: str, python: str) -> None:
     """Put the wheels of what mucat needs into the folder, in the pinned versions."""
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
     pins = ["--constraint", str(PACKAGES / "constraints.txt")]
-    for package in PURE:
-        command = [*pip, "wheel", "--no-deps", "--no-cache-dir", *pins, "--wheel-dir", str(folder), package]
+    if machine in SMALL_MACHINES:
+        # pip would take what mucat needs on this computer.
+        pure, wanted = SMALL_PURE, ["--no-deps", *small_requirements()]
+    else:
+        pure, wanted = PURE, [*pins, f"{wheel}[pi]"]
+    for package in pure:
+        command = [*pip, "wheel", "--no-deps", "--no-cache-dir", "--no-binary", package, *pins]
+        command += ["--wheel-dir", str(folder), package]
         subprocess.run(["env", "CC=/bin/false", *command], check=True, capture_output=True)
     tags = [word for tag in PLATFORMS for word in ("--platform", f"{tag}_{machine}")]
-    command = [*pip, "download", "--only-binary", ":all:", *tags, "--python-version", python, *pins]
-    command += ["--find-links", str(folder), "--dest", str(folder), f"{wheel}[pi]"]
+    command = [*pip, "download", "--only-binary", ":all:", *tags, "--python-version", python]
+    command += ["--find-links", str(folder), "--dest", str(folder), *wanted]
     subprocess.run(command, check=True, capture_output=True)
 
 

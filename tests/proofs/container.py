@@ -11,15 +11,14 @@ from typing import Self
 
 import psutil
 
-from tests.proofs.roots import FOLDER, PYTHON, RootSystem
+from tests.proofs.roots import FOLDER, PYTHON, SMALL, RootSystem
 
-SYSTEM = RootSystem(
-    "amd64-bookworm-services",
-    "amd64",
-    "bookworm",
-    "As services",
-    (*PYTHON, "systemd", "systemd-sysv", "dbus", "openssl", "procps", "avrdude"),
+INSTALLED = (*PYTHON, "systemd", "systemd-sysv", "dbus", "openssl", "procps", "avrdude")
+SYSTEMS = (
+    RootSystem("amd64-bookworm-services", "amd64", "bookworm", "As services", INSTALLED),
+    RootSystem("i386-trixie-services", "i386", "trixie", "As services", (*INSTALLED, *SMALL)),
 )
+"""The second stands for a robot with 32 bits."""
 START_SECONDS = 60.0
 CARD_BYTES = 200_000_000
 ORDER_SECONDS = 300.0
@@ -35,16 +34,18 @@ class Container:
     It has a network of its own; `options` are systemd-nspawn's.
     """
 
-    def __init__(self, releases: Path, *options: str) -> None:
-        SYSTEM.make()
+    def __init__(self, system: RootSystem, releases: Path, *options: str) -> None:
+        system.make()
+        self._system = system
         self.root = FOLDER / "services"
-        self._options = (f"--bind-ro={releases}:/releases", *options)
+        personality = "x86" if system.is_small else "x86-64"
+        self._options = (f"--personality={personality}", f"--bind-ro={releases}:/releases", *options)
         self._nspawn: subprocess.Popen[bytes] | None = None
         self._kills = 0
 
     def __enter__(self) -> Self:
         subprocess.run(["rm", "-rf", "--one-file-system", str(self.root)], check=True)
-        subprocess.run(["cp", "-a", str(SYSTEM.path), str(self.root)], check=True)
+        subprocess.run(["cp", "-a", str(self._system.path), str(self.root)], check=True)
         image = self.root.with_name("card.img")
         with image.open("wb") as file:
             file.truncate(CARD_BYTES)

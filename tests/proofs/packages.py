@@ -1,8 +1,9 @@
 """`python -m tests.proofs.packages [ROOT ...]`: the wheels in fresh systems of other architectures.
 
 In each root file system: install by pip; `mucat run` in mode robot, its serial port the line of the emulated
-board outside; arm, record, export; the page fetched by Chromium from outside. Where the emulated board is
-packaged for the system, a second run swims with that. Prints figures; status 1 where something fails.
+board outside; arm, record, export; the page fetched by Chromium from outside; processor time and memory with
+one viewer; `mucat doctor`. Where the emulated board is packaged for the system, a second run swims with
+that. Prints figures; status 1 where something fails.
 """
 
 import json
@@ -18,12 +19,16 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import httpx
+import psutil
 from playwright.sync_api import expect
 
+from bench.processes import anonymous_mb, cpu_seconds
+from bench.real_robot import LiveViewer, store_picture
 from robot_runtime.places import BUILD
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
 from server import VERSION
+from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
 from tests.browser.opening import DESKTOP, launched, opened_page, signed_in
 from tests.control import Commander
@@ -38,6 +43,8 @@ PATIENCE = 300.0
 """s; a foreign processor is emulated, some fifteen times slower."""
 ARMED = 20.0
 """s of recording."""
+SETTLE, MEASURED = 5.0, 30.0
+"""s with a viewer, before and while processor time is measured."""
 PLACE = "/opt/release"
 ENVIRONMENT = f"{PLACE}/mucat"
 MUCAT = f"{ENVIRONMENT}/bin/mucat"
@@ -51,8 +58,10 @@ port = "{port}"
 baud = {baud}
 reset = "dtr"
 [vision]
-camera = "card"
+camera = "file"
+file = "/etc/card.png"
 """
+"""The camera shows one picture: to draw others is no work of a robot."""
 
 
 @dataclass
@@ -68,9 +77,13 @@ class Figures:
     """From the start to a health of ok, by mode."""
     samples: dict[str, int] = field(default_factory=dict)
     alarms: dict[str, list[str]] = field(default_factory=dict)
+    percent: dict[str, float] = field(default_factory=dict)
+    """Of a core, by process of a robot: armed, recording, one viewer."""
+    anonymous: dict[str, float] = field(default_factory=dict)
+    """MB of anonymous memory at the end of that; with the emulator of the processor, where there is one."""
     exported: int = 0
     """Bytes of the exported file."""
-    camera: str = ""
+    camera: dict[str, str] = field(default_factory=dict)
     firmware: str = ""
     problem: str = ""
 
@@ -86,6 +99,7 @@ class InstalledRobot:
         words = [MUCAT, "run", "--port", str(self.port), "--data", f"/{DATA}"]
         if config is not None:
             (root.path / "etc/robot.toml").write_text(config)
+            store_picture(root.path / "etc/card.png")
             words += ["--config", "/etc/robot.toml"]
         self._log = (root.path / "var/log/mucat.log").open("wb")
         self._began = time.monotonic()
@@ -107,6 +121,13 @@ class InstalledRobot:
             assert time.monotonic() < end, f"no {what} within {PATIENCE:g} s: {said}"
             time.sleep(0.2)
 
+    def processes(self) -> dict[str, psutil.Process]:
+        """The processes that a robot has, by name."""
+        runner = psutil.Process(self._process.pid)
+        (server,) = [one for one in runner.children() if one.name() == "mucat-server"]
+        runtime = psutil.Process(running_parts(DataFolder(self.data).run)["runtime"].pid)
+        return {"runner": runner, "server": server, "runtime": runtime}
+
     def end(self) -> None:
         """Presses Ctrl-C."""
         self.api.close()
@@ -126,7 +147,8 @@ def prove(root: RootSystem) -> Figures:
         _install(root, figures)
         with _board() as port:
             _swim(root, figures, "robot", CONFIG.format(port=port, baud=BAUD))
-        if list(Path("dist").glob(f"mucat_emulator-*{EMULATORS.get(root.architecture, '?')}.whl")):
+        machine = EMULATORS.get(root.architecture)
+        if machine and list(Path("dist").glob(f"mucat_emulator-*_{machine}.whl")):
             pip = [f"{ENVIRONMENT}/bin/pip", "install", "--quiet", "--no-deps", "--find-links", "/wheels"]
             root.run(*pip, f"mucat-emulator=={VERSION}")
             if not root.interpreter:  # two emulators within each other are too slow for real time
@@ -198,10 +220,14 @@ def _swim(root: RootSystem, figures: Figures, mode: str, config: str | None) -> 
 
         robot.wait(has_recorded, f"recording of {ARMED:g} s")
         _look(robot)
+        if mode == "robot":
+            _measure(robot, figures)
         state = robot.api.get("/robot").json()
         assert state["armed"], f"disarmed by itself: {state}"
-        figures.camera = state["camera"]
+        figures.camera[mode] = state["camera"]
         robot.api.post("/robot/stop").raise_for_status()
+        if config is not None:
+            root.run(MUCAT, "doctor", "--config", "/etc/robot.toml", "--data", f"/{DATA}")
         session = robot.api.get(f"/sessions/{recording['id']}").json()
         figures.samples[mode] = session["samples"]
         figures.firmware = session["firmware"]
@@ -211,6 +237,19 @@ def _swim(root: RootSystem, figures: Figures, mode: str, config: str | None) -> 
         figures.exported = (root.path / "tmp/dive.zip").stat().st_size
     finally:
         robot.end()
+
+
+def _measure(robot: InstalledRobot, figures: Figures) -> None:
+    """Processor time and memory while a viewer reads everything."""
+    viewer = LiveViewer(robot)
+    processes = robot.processes()
+    time.sleep(SETTLE)
+    before = {name: cpu_seconds(process) for name, process in processes.items()}
+    time.sleep(MEASURED)
+    for name, process in processes.items():
+        figures.percent[name] = round((cpu_seconds(process) - before[name]) / MEASURED * 100, 1)
+        figures.anonymous[name] = round(anonymous_mb(process), 1)
+    viewer.close()
 
 
 def _look(robot: InstalledRobot) -> None:

@@ -15,7 +15,7 @@ from packages.mirror import find_mirror
 FOLDER = Path("build/roots").absolute()
 DIST = Path("dist").absolute()
 PYTHON = ("python3", "python3-venv", "ca-certificates")
-SMALL = ("python3-numpy", "python3-pydantic", "python3-pydantic-core")
+SMALL = ("python3-numpy", "python3-opencv", "python3-pydantic", "python3-pydantic-core")
 """What a 32-bit system has from apt: pip finds no wheels of them."""
 PIP_FILES = (Path("/etc/pip.conf"), Path.home() / ".config/pip/pip.conf", Path.home() / ".pip/pip.conf")
 PI_64 = "Raspberry Pi OS 12 or 13, 64 bits"
@@ -107,9 +107,7 @@ def _enable(interpreter: str) -> None:
 
 ROOTS = (
     RootSystem("amd64-trixie", "amd64", "trixie", "Any Linux"),
-    RootSystem(
-        "i386-trixie", "i386", "trixie", PI_32, (*PYTHON, *SMALL, "python3-opencv"), setarch=("linux32",)
-    ),
+    RootSystem("i386-trixie", "i386", "trixie", PI_32, (*PYTHON, *SMALL), setarch=("linux32",)),
     RootSystem("arm64-bookworm", "arm64", "bookworm", PI_64, interpreter="qemu-aarch64"),
     RootSystem("arm64-trixie", "arm64", "trixie", PI_64, interpreter="qemu-aarch64"),
     RootSystem("armhf-trixie", "armhf", "trixie", PI_32, (*PYTHON, *SMALL), interpreter="qemu-arm"),

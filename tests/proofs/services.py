@@ -1,7 +1,8 @@
-"""`python -m tests.proofs.services`: install, update, roll back and uninstall on a computer with systemd.
+"""`python -m tests.proofs.services [SYSTEM ...]`: install, update, roll back, uninstall, with systemd.
 
-Three signed releases: of this version, a later one, and one whose server does not start. The power is cut
-after the switch to that one. Prints a line for each step; status 1 where one does not end as it must.
+On a Debian 12, and on a Debian 13 with 32 bits. Three signed releases: of this version, a later one, and one
+whose server does not start. The power is cut after the switch to that one. Prints a line for each step;
+status 1 where one does not end as it must.
 """
 
 import shutil
@@ -11,17 +12,21 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from packages.constraints import SMALL
 from packages.release import build_release
 from packages.signing import make_key, sign_folder, write_public_key
 from robot_runtime.config import LinkConfig
 from robot_runtime.places import BUILD
 from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
-from tests.proofs.container import Container
+from tests.proofs.container import SYSTEMS, Container
 from tests.proofs.real_board import board, mark_firmware, update_with_board
+from tests.proofs.roots import RootSystem
 from tests.proofs.small_computer import RECORDING, live
 from tests.proofs.steps import Steps, ask_server
 
+TARGETS = {"amd64": ("x86_64", "3.11"), "i386": ("i686", SMALL["python_version"])}
+"""Machine and Python of a release, by Debian's name of the architecture."""
 LATER, BROKEN = "98.0.0", "99.0.0"
 BREAK = 'raise SystemExit("This release does not work.")\n'
 SEND = """
@@ -35,16 +40,23 @@ print(ask(data, "GET", "/update")["text"])
 
 
 def main() -> int:
-    """Run all steps; returns 1 where one failed."""
+    """Run all steps on each system; returns 1 where one failed."""
+    systems = [system for system in SYSTEMS if not sys.argv[1:] or system.name in sys.argv[1:]]
+    return 1 if sum(map(prove, systems)) or not systems else 0
+
+
+def prove(system: RootSystem) -> int:
+    """The number of steps that did not end as they must."""
+    print(f"     {system.name}", flush=True)
     with tempfile.TemporaryDirectory() as name:
         releases = Path(name)
         # The user of the data sends one.
         releases.chmod(0o755)
-        make_releases(releases)
+        make_releases(system, releases)
         place = releases / "board"
         place.mkdir()
-        with board(place) as options, Container(releases, *options) as container:
-            return 1 if try_all(container) else 0
+        with board(place) as options, Container(system, releases, *options) as container:
+            return try_all(container)
 
 
 def try_all(container: Container) -> int:
@@ -112,10 +124,10 @@ def tells(container: Container, words: str) -> bool:
     return words in container.order(ask_server(WATCH))[1]
 
 
-def make_releases(folder: Path) -> None:
+def make_releases(system: RootSystem, folder: Path) -> None:
     """Build the releases, all signed with one key but "other"."""
     key = folder / "key.pem"
-    built = build_release(key, "x86_64", "3.11", folder / "dist")
+    built = build_release(key, *TARGETS[system.architecture], folder / "dist")
     first = folder / "first"
     built.rename(first)
     firmware = folder / "robot.hex"

@@ -35,7 +35,7 @@ def check_versions(machine: Machine) -> Finding | None:
     found = f"Python {machine.python[0]}.{machine.python[1]}, {machine.system or 'unknown system'}"
     if machine.python < PYTHON_LEAST:
         return report.wrong(f"{found}: µ-CAT needs Python 3.11.", "Install Raspberry Pi OS 12 or newer.")
-    if machine.architecture in ("armv6l", "armv7l"):
+    if machine.bits == 32:
         text = f"{found}, {machine.architecture}: a 32-bit system, without rendered water and MCAP files."
         return report.look(text, "On a 64-bit Raspberry Pi, install the 64-bit Raspberry Pi OS.")
     return report.ok(f"{found}, {machine.architecture}.")

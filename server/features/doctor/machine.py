@@ -19,6 +19,7 @@ from server.platform.disk_space import free_bytes
 from server.platform.settings import Settings
 from server.platform.supply_voltage import read_throttled
 from server.platform.wall_clock import is_synchronised
+from server.platform.word_size import BITS
 
 GPIO_GET_CHIPINFO = 0x8044B401
 """ioctl of a GPIO character device (linux/gpio.h): name and label, 32 bytes each, and a number."""
@@ -41,6 +42,7 @@ class Machine:
     python: tuple[int, int] = (3, 11)
     system: str = ""
     architecture: str = ""
+    bits: int = 64
     model: str = ""
     """Name of the Raspberry Pi; empty for another computer."""
     broken_libraries: dict[str, str] | None = field(default_factory=dict)
@@ -124,6 +126,7 @@ def read_machine(
         python=sys.version_info[:2],
         system=_pretty_name(_read(root / "etc/os-release")),
         architecture=platform.machine(),
+        bits=BITS,
         model=_read(root / "proc/device-tree/model").strip("\0\n "),
         broken_libraries=_try_libraries() if thorough else None,
         configuration_problem=settings.configuration_problem,

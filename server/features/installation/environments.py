@@ -6,7 +6,11 @@ from server.features.installation.effects import CommandFailedError, Effects
 from server.features.installation.places import COMPLETE, InstallPlaces
 from server.features.installation.release import WHEEL, Release
 from server.platform.settings import SetupError
+from server.platform.word_size import BITS
 
+SYSTEM_PACKAGES = "usr/lib/python3/dist-packages"
+FROM_APT = ("numpy", "pydantic")
+"""Packages without wheels for computers with 32 bits."""
 BUILD_SECONDS = 3600.0
 """A Raspberry Pi Zero unpacks some 300 MB on a slow card."""
 WHEELS = "wheels"
@@ -22,12 +26,16 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
     if places.is_complete(environment):
         effects.say(f"{environment} is there")
         return environment
+    if BITS == 32:
+        _check_system_packages(places)
     effects.remove(environment)
     shared = [places.current / WHEELS] if (places.current / WHEELS).is_dir() else []
     system = ["--system-site-packages"] if _needs_system_packages(places) else []
     effects.run("/usr/bin/python3", "-m", "venv", *system, environment, seconds=BUILD_SECONDS)
     python = environment / "bin/python"
-    pip: list[str | Path] = [python, "-m", "pip", "--disable-pip-version-check", "--no-input"]
+    # A kernel with 64 bits then names the machine that its programs are for.
+    machine = ["linux32"] if BITS == 32 else []
+    pip: list[str | Path] = [*machine, python, "-m", "pip", "--disable-pip-version-check", "--no-input"]
     sources: list[str | Path] = [
         word for folder in (release.folder, *shared) for word in ("--find-links", folder)
     ]
@@ -62,8 +70,18 @@ def _packages(release: Release) -> list[str]:
 
 
 def _needs_system_packages(places: InstallPlaces) -> bool:
-    """True on a Raspberry Pi, whose camera library comes by apt alone."""
-    return (places.root / "usr/lib/python3/dist-packages/picamera2").exists()
+    """True on a Raspberry Pi, whose camera library comes by apt alone, and with 32 bits."""
+    return BITS == 32 or (places.root / SYSTEM_PACKAGES / "picamera2").exists()
+
+
+def _check_system_packages(places: InstallPlaces) -> None:
+    """With 32 bits some packages come by apt alone. Raises SetupError where they are missing."""
+    missing = [name for name in FROM_APT if not (places.root / SYSTEM_PACKAGES / name).exists()]
+    if missing:
+        raise SetupError(
+            f"With 32 bits {' and '.join(missing)} must come from Debian: sudo apt install "
+            f"{' '.join(f'python3-{name}' for name in missing)} python3-opencv. Nothing was changed."
+        )
 
 
 def _keep_wheels(effects: Effects, environment: Path, release: Release, shared: list[Path]) -> None:

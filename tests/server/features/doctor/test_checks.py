@@ -44,7 +44,7 @@ EMULATED = replace(
 CASES: dict[str, tuple[dict[str, Any], str, str]] = {
     "configuration: broken": ({"configuration_problem": "robot.toml cannot be read"}, "wrong", "robot.toml"),
     "versions: old Python": ({"python": (3, 9)}, "wrong", "needs Python 3.11"),
-    "versions: 32 bits": ({"architecture": "armv6l"}, "look", "32-bit"),
+    "versions: 32 bits": ({"architecture": "armv6l", "bits": 32}, "look", "armv6l: a 32-bit system"),
     "libraries: wrong wheel": ({"broken_libraries": {"cv2": "no libGL"}}, "wrong", "cv2: no libGL"),
     "data: read-only": ({"disk_read_only": True}, "wrong", "read-only"),
     "data: no right": ({"data_writable": False}, "wrong", "cannot be written"),

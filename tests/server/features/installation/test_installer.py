@@ -179,6 +179,23 @@ def test_a_disk_without_room_is_refused_before_anything(
     assert computer.tree() == before
 
 
+def test_with_32_bits_some_packages_are_those_of_the_system(
+    tmp_path: Path, release: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.features.installation.environments.BITS", 32)
+    computer = Computer(tmp_path / "pi")
+    (tmp_path / "pi/usr/lib/python3/dist-packages/numpy").mkdir(parents=True)
+    with pytest.raises(SetupError, match="32 bits pydantic must come from Debian: sudo apt"):
+        install(computer, release)
+    assert not computer.places.software.exists()
+    (tmp_path / "pi/usr/lib/python3/dist-packages/pydantic").mkdir()
+    install(computer, release)
+    (made,) = [one for one in computer.commands if "-m venv" in one]
+    assert "--system-site-packages" in made
+    (installed,) = [one for one in computer.commands if " install --quiet" in one]
+    assert installed.startswith("linux32 ")
+
+
 def test_a_server_that_does_not_start_is_one_line(
     tmp_path: Path, release: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
