@@ -373,7 +373,7 @@ class Core:
             self.bus.publish_document("parameters", now)
 
     def _arming_obstacles(self) -> list[str]:
-        return self.calibrator.board.refusals() or self.board_parameters.refusals()
+        return self.calibrator.board.refusals() or self.board_parameters.refusals() or self.vision.refusals()
 
     def _publish_statistics(self) -> None:
         self.bus.publish_row("link", self.clock.now(), self.line.statistics().to_bytes())

@@ -104,6 +104,7 @@ class VisionNode:
         self._camera: Camera | None = None
         self._failure: str | None = None
         self._missing = ""
+        self._loading = False
         self._failing_since: float | None = None
         self._retry_at = clock.now()
         self._ending = False
@@ -173,8 +174,13 @@ class VisionNode:
             raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
         return propose(Detector(self._settings).balance(frame.picture), place)
 
+    def refusals(self) -> list[str]:
+        """Returns the reason against arming while OpenCV is loaded: a slow computer then holds up control."""
+        return ["The camera's software is being loaded. Wait a moment."] if self._loading else []
+
     def start(self) -> None:
         """Starts the thread."""
+        self._loading = True
         self._thread.start()
 
     def close(self) -> None:
@@ -210,7 +216,9 @@ class VisionNode:
         return 0.0
 
     def _run(self) -> None:
-        if not self._load():
+        is_loaded = self._load()
+        self._loading = False
+        if not is_loaded:
             return
         while not self._ending:
             remaining = self.tick()

@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -42,6 +42,7 @@ from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.zenoh_transport import Answer, ZenohTransport
+from robot_runtime.vision.node import VisionNode
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 pytestmark = pytest.mark.stack
@@ -529,3 +530,16 @@ def test_a_restarted_board_gets_its_parameters_again_before_arming(rig: Rig) -> 
     rig.board.deaf_to_parameters = False
     rig.ready()
     assert rig.board.told("fins.amplitude")[-1] == pytest.approx(0.8)
+
+
+def test_while_opencv_is_loaded_it_is_not_armed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    loads, load = threading.Event(), VisionNode._load
+    monkeypatch.setattr(VisionNode, "_load", lambda node: loads.wait(DEADLINE) and load(node))
+    words = "The camera's software is being loaded. Wait a moment."
+    with closing(Rig(tmp_path)) as rig:
+        rig.listener.wait(lambda: rig.listener.newest_state().get("refusals") == [words])
+        with pytest.raises(RefusedError, match="being loaded"):
+            rig.ask("arm")
+        loads.set()
+        rig.ready()
+        rig.arm()
