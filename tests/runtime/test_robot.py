@@ -42,7 +42,6 @@ from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.zenoh_transport import Answer, ZenohTransport
-from robot_runtime.vision.node import VisionNode
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 pytestmark = pytest.mark.stack
@@ -532,14 +531,27 @@ def test_a_restarted_board_gets_its_parameters_again_before_arming(rig: Rig) -> 
     assert rig.board.told("fins.amplitude")[-1] == pytest.approx(0.8)
 
 
+SLOW_OPENCV = """
+import sys
+open({signal!r}).close()
+sys.path.remove({folder!r})
+del sys.modules["cv2"]
+import cv2
+"""
+"""Loads the real one once somebody writes to the pipe."""
+
+
 def test_while_opencv_is_loaded_it_is_not_armed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    loads, load = threading.Event(), VisionNode._load
-    monkeypatch.setattr(VisionNode, "_load", lambda node: loads.wait(DEADLINE) and load(node))
+    slow, signal_ = tmp_path / "slow", tmp_path / "signal"
+    slow.mkdir()
+    os.mkfifo(signal_)
+    (slow / "cv2.py").write_text(SLOW_OPENCV.format(signal=str(signal_), folder=str(slow)))
+    monkeypatch.setenv("PYTHONPATH", str(slow))
     words = "The camera's software is being loaded. Wait a moment."
     with closing(Rig(tmp_path)) as rig:
         rig.listener.wait(lambda: rig.listener.newest_state().get("refusals") == [words])
         with pytest.raises(RefusedError, match="being loaded"):
             rig.ask("arm")
-        loads.set()
+        signal_.write_text("go on")
         rig.ready()
         rig.arm()
