@@ -65,8 +65,8 @@ MOTION = f"""async (chart, seconds) => {{
 }}"""
 """The motion of a chart in some seconds: redraws, frames of the browser, and its trace before and after."""
 
-DRAWN = 20
-"""Redraws of the robot, during which other drawings are watched."""
+DRAWN, WINDOWS = 20, 3
+"""Redraws of the robot, during which other drawings are watched, and how often."""
 CHANGES = f"""() => new Promise((done) => {{
     const drawn = ['attitude', 'fins', 'robot'].map((name) => `[data-panel=${{name}}] [role=img] > *`);
     const parts = document.querySelectorAll(drawn);
@@ -118,9 +118,10 @@ def test_instruments_move_without_a_change_of_any_element(moving: Page) -> None:
     """Each change would have the browser lay out the page anew, with every frame."""
     hold_to_arm(moving)
     wait_for_depth(moving, 0.2, 1.0)
-    seen = moving.evaluate(CHANGES)
-    assert seen["parts"] >= 3
-    assert seen["changes"] == []
+    # A message that comes or goes moves the panels once; a drawing would change its elements each time.
+    seen = [moving.evaluate(CHANGES) for _ in range(WINDOWS)]
+    assert all(one["parts"] >= 3 for one in seen)
+    assert [] in [one["changes"] for one in seen]
 
 
 def find_shift(before: NDArray[np.float64], after: NDArray[np.float64]) -> int:
