@@ -16,7 +16,7 @@ DEBIAN = PACKAGES / "packages/debian-13.txt"
 FROM_APT = ("numpy", "opencv-python-headless", "pydantic", "pydantic-core")
 """What apt installs there, in whatever version it has."""
 SMALL = {"platform_machine": "armv6l", "python_version": "3.13", "python_full_version": "3.13.0"}
-"""What tells 32-bit computers from others in requirements; Debian 13's Python."""
+"""The computer for which markers of requirements are evaluated: one with 32 bits and Debian 13."""
 
 
 def write_constraints(dist: Path) -> list[Path]:

@@ -533,7 +533,7 @@ def test_a_restarted_board_gets_its_parameters_again_before_arming(rig: Rig) -> 
 
 SLOW_OPENCV = """
 import sys
-open({signal!r}).close()
+open({pipe!r}).close()
 sys.path.remove({folder!r})
 del sys.modules["cv2"]
 import cv2
@@ -542,16 +542,16 @@ import cv2
 
 
 def test_while_opencv_is_loaded_it_is_not_armed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    slow, signal_ = tmp_path / "slow", tmp_path / "signal"
+    slow, pipe = tmp_path / "slow", tmp_path / "signal"
     slow.mkdir()
-    os.mkfifo(signal_)
-    (slow / "cv2.py").write_text(SLOW_OPENCV.format(signal=str(signal_), folder=str(slow)))
+    os.mkfifo(pipe)
+    (slow / "cv2.py").write_text(SLOW_OPENCV.format(pipe=str(pipe), folder=str(slow)))
     monkeypatch.setenv("PYTHONPATH", str(slow))
     words = "The camera's software is being loaded. Wait a moment."
     with closing(Rig(tmp_path)) as rig:
         rig.listener.wait(lambda: rig.listener.newest_state().get("refusals") == [words])
         with pytest.raises(RefusedError, match="being loaded"):
             rig.ask("arm")
-        signal_.write_text("go on")
+        pipe.write_text("go on")
         rig.ready()
         rig.arm()
