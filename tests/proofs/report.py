@@ -1,9 +1,9 @@
 """`python -m tests.proofs.report [PROOF ...]`: every long proof, with one report.
 
-Proofs that mostly wait run beside others that only compute, which get what processor time is left; those that
-measure speed run alone at the end. The report, build/proofs/report.md, is written anew after each proof, also
-where one fails. Interrupted, it goes on where it stopped: what has a result on the same commit is not run
-again, unless it is named.
+Proofs that mostly wait run beside others that only compute, which get what processor time is left. Those
+whose robot needs the whole computer, and those that measure speed, run alone at the end. The report,
+build/proofs/report.md, is written anew after each proof, also where one fails. Interrupted, it goes on where
+it stopped: what has a result on the same commit is not run again, unless it is named.
 """
 
 import json
@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -25,6 +26,8 @@ from tests import beside
 FOLDER = Path("build/proofs")
 LINES = 30
 """Last lines of a proof's output that stand in the report."""
+ENDING = (signal.SIGINT, signal.SIGTERM)
+"""Ctrl-C, and what make passes on to its command when it is told to end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +79,6 @@ STAGES: tuple[Stage, ...] = (
                 Proof("fuzz", "No bytes bring down the firmware's end of the line."),
                 Proof("control", "The depth controllers, on each craft."),
                 Proof("missions", "Each leaf of a mission, and random missions, end safely."),
-                Proof("image-swims", "The container image starts, and its robot swims."),
-                Proof("packages", "The wheels install and swim on fresh systems of each architecture."),
             ),
             at_once=2,
             prefix=("nice", sys.executable, beside.__file__),
@@ -91,6 +92,8 @@ STAGES: tuple[Stage, ...] = (
                     "services", "Installation, updates and the way back, with systemd and a cut of the power."
                 ),
                 Proof("bring-ups", "Each mistake of a new robot is found and named, on page and shell."),
+                Proof("image-swims", "The container image starts, and its robot swims."),
+                Proof("packages", "The wheels install and swim on fresh systems of each architecture."),
             )
         ),
     ),
@@ -124,7 +127,7 @@ class Run:
 
     @property
     def is_interrupted(self) -> bool:
-        """True after Ctrl-C."""
+        """True after Ctrl-C, or when it was told to end."""
         return self._ending.is_set()
 
     def perform(self, named: Sequence[str]) -> int:
@@ -137,12 +140,13 @@ class Run:
         for proof in self._proofs:
             if not named and proof.target not in wanted:
                 print(f"{proof.target}: has a result on {self._now} already", flush=True)
-        before = signal.signal(signal.SIGINT, lambda *_: self._end())
+        before = {number: signal.signal(number, lambda *_: self._end()) for number in ENDING}
         try:
             for stage in self._stages:
                 self._perform_stage(stage, wanted)
         finally:
-            signal.signal(signal.SIGINT, before)
+            for number, handler in before.items():
+                signal.signal(number, handler)
         return sum(one.status != 0 for one in self._outcomes.values() if one.commit == self._now)
 
     def _is_known(self, target: str) -> bool:
@@ -166,7 +170,7 @@ class Run:
         """Ends what runs, of which nothing is stored."""
         self._ending.set()
         for process in list(self._running.values()):
-            process.terminate()
+            _interrupt(process)
 
     def _perform(self, proof: Proof, prefix: Sequence[str]) -> None:
         if self._ending.is_set():
@@ -194,12 +198,17 @@ class Run:
         with (
             (FOLDER / f"{proof.target}.log").open("w") as output,
             subprocess.Popen(
-                command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=_environment()
+                command,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                env=_environment(),
+                process_group=0,
             ) as process,
         ):
             self._running[proof.target] = process
             if self._ending.is_set():
-                process.terminate()
+                _interrupt(process)
             assert process.stdout is not None
             for line in process.stdout:
                 output.write(line)
@@ -259,6 +268,12 @@ def _environment() -> dict[str, str]:
     """The environment without make's own variables, and without ONLY, which chooses parts of a proof."""
     dropped = {"MAKEFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "MFLAGS", "ONLY"}
     return {name: value for name, value in os.environ.items() if name not in dropped}
+
+
+def _interrupt(process: subprocess.Popen[str]) -> None:
+    """As Ctrl-C does: make does not pass it on, and a proof that is killed leaves its robots behind."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGINT)
 
 
 def _verdict(outcome: Outcome | None) -> str:

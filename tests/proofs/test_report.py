@@ -27,7 +27,7 @@ part:
 idle:
 	@nice; cut -d' ' -f6 /proc/$$$$/stat
 halted:
-	@kill -INT $(PROOF_PID); exec sleep 60
+	@trap 'echo robots ended > ended; exit 1' INT; kill -$(PROOF_SIGNAL) $(PROOF_PID); sleep 60
 """
 PROOFS = (Proof("good", "It works."), Proof("bad", "It never fails."), Proof("later", "It goes on."))
 
@@ -144,13 +144,16 @@ def test_the_next_stage_begins_when_all_of_the_first_has_ended(
     assert (first.target, second.target, second.status) == ("bad", "later", 0)
 
 
-def test_an_interrupted_proof_has_no_result_and_none_begins_after_it(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("signal", ["INT", "TERM"])
+def test_an_interrupted_proof_ends_its_robots_has_no_result_and_none_begins_after_it(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], signal: str
 ) -> None:
+    monkeypatch.setenv("PROOF_SIGNAL", signal)
     monkeypatch.setenv("PROOF_PID", f"{os.getpid()}")
     stages = one_lane(Proof("good", "It works."), Proof("halted", "It waits."), Proof("later", "It goes on."))
     monkeypatch.setattr(report, "STAGES", stages)
     assert report.main() == 1
+    assert (folder / "ended").exists()
     assert set(outcomes(folder)) == {"good"}
     assert not (folder / "ran").exists()
     assert "Interrupted; the same command goes on." in capsys.readouterr().out
