@@ -33,7 +33,7 @@ from server.platform.settings import DataFolder
 from tests.browser.opening import DESKTOP, launched, opened_page, signed_in
 from tests.control import Commander
 from tests.documents.blocks import read_blocks
-from tests.proofs.roots import ROOTS, RootSystem, environment
+from tests.proofs.roots import ROOTS, RootSystem
 from tests.shell import ShellToken
 from tests.stack import free_port
 
@@ -104,7 +104,7 @@ class InstalledRobot:
         self._log = (root.path / "var/log/mucat.log").open("wb")
         self._began = time.monotonic()
         self._process = subprocess.Popen(
-            root.command(words), stdout=self._log, stderr=subprocess.STDOUT, env=environment(root.path)
+            root.command(words), stdout=self._log, stderr=subprocess.STDOUT, env=root.environment()
         )
 
     def wait(self, condition: Callable[[], object], what: str) -> float:
