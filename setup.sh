@@ -51,9 +51,11 @@ if [ "${1:-run}" = test ]; then
     need clang clang
     ls /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*.a >/dev/null 2>&1 || missing="$missing libclang-rt-dev"
 fi
-# What builds the emulated board for other computers, and runs the packages in systems of their own.
+# What makes systems of other computers; then what builds the emulated board for them, and runs the packages there.
+case ${1:-run} in
+    test | packages) need mmdebstrap mmdebstrap ;;
+esac
 if [ "${1:-run}" = packages ]; then
-    need mmdebstrap mmdebstrap
     need systemd-container systemd-nspawn
     need gcc-aarch64-linux-gnu aarch64-linux-gnu-gcc
     need g++-aarch64-linux-gnu aarch64-linux-gnu-g++

@@ -13,7 +13,7 @@ import psutil
 
 from bench.connected_programs import ConnectedPrograms, ProgramDoor
 from bench.hub import process
-from bench.processes import cpu_seconds
+from bench.processes import core_percent, cpu_seconds
 from bench.ros2_programs import Ros2Door
 from bench.websocket_programs import foxglove_door, rosbridge_door
 from robot_runtime.config import DoorsConfig
@@ -64,9 +64,7 @@ def measure() -> dict[str, float]:
 
 
 def _idle(server: psutil.Process) -> float:
-    before = cpu_seconds(server)
-    sleep(_SECONDS)
-    return 100 * (cpu_seconds(server) - before) / _SECONDS
+    return core_percent({"server": server}, _SECONDS)["server"]
 
 
 class _Count:

@@ -24,6 +24,7 @@ PARTS = {
         # The longest first, so that no core waits for one at the end.
         Part("firmware", is_emulated=True, is_long=True, prefix="firmware.missed_ticks"),
         Part("comm_test", is_emulated=True, is_long=True, prefix="link.table6"),
+        Part("identify", is_emulated=True),
         Part("heap", is_emulated=True),
         Part("hostile", is_emulated=True),
         Part("control", is_emulated=True),
@@ -32,7 +33,6 @@ PARTS = {
         Part("chip", is_emulated=True),
         Part("hour", is_emulated=True),
         Part("setpoint", is_emulated=True),
-        Part("identify", is_emulated=True),
         Part("tuning", is_emulated=True),
         Part("link", is_emulated=True),
         Part("emulator"),

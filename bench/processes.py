@@ -1,5 +1,7 @@
 """Processor time and memory of the processes of a robot, as the kernel counts them."""
 
+import time
+from collections.abc import Mapping
 from pathlib import Path
 
 import psutil
@@ -9,6 +11,15 @@ def cpu_seconds(process: psutil.Process) -> float:
     """s on a processor. The scheduler's own count: the usual one sees only who runs when the clock ticks."""
     tasks = Path(f"/proc/{process.pid}/task").iterdir()
     return sum(int((task / "schedstat").read_text().split()[0]) for task in tasks) * 1e-9
+
+
+def core_percent(processes: Mapping[str, psutil.Process], seconds: float) -> dict[str, float]:
+    """Waits that long. Returns the processor time that each process used meanwhile, in % of a core."""
+    before = {name: cpu_seconds(process) for name, process in processes.items()}
+    time.sleep(seconds)
+    return {
+        name: (cpu_seconds(process) - before[name]) / seconds * 100 for name, process in processes.items()
+    }
 
 
 def anonymous_mb(process: psutil.Process) -> float:

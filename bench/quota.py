@@ -16,7 +16,7 @@ from statistics import quantiles
 
 from sqlmodel import col, select
 
-from bench.processes import anonymous_mb, cpu_seconds
+from bench.processes import anonymous_mb, core_percent
 from bench.real_robot import LiveViewer, RealRobot
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
@@ -57,15 +57,13 @@ def measure() -> dict[str, float]:
 def _dive(robot: RealRobot) -> dict[str, float]:
     viewer = LiveViewer(robot)
     time.sleep(_SETTLE)
-    processes = robot.robot_processes.values()
-    began, before = time.monotonic(), sum(map(cpu_seconds, processes))
-    time.sleep(_SECONDS)
-    spent = sum(map(cpu_seconds, processes)) - before
-    memory = sum(map(anonymous_mb, processes))
+    began = time.monotonic()
+    percent = core_percent(robot.robot_processes, _SECONDS)
+    memory = sum(map(anonymous_mb, robot.robot_processes.values()))
     viewer.close()
     return {
         "began": began,
-        "cpu_percent": 100 * spent / _SECONDS,
+        "cpu_percent": sum(percent.values()),
         "anonymous_mb": memory,
         "viewer_lost": viewer.lost,
     }

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from bench import jitter
 from bench.hour import copy_hours
-from bench.processes import anonymous_mb, cpu_seconds
+from bench.processes import anonymous_mb, core_percent
 from bench.real_robot import LiveViewer, RealRobot
 from tests.stack import Stack
 
@@ -31,13 +31,8 @@ def _load() -> dict[str, float]:
         robot.arm()
         time.sleep(_SETTLE)
         processes = robot.robot_processes | robot.outside
-        before = {name: cpu_seconds(process) for name, process in processes.items()}
         received = viewer.bytes
-        time.sleep(_SECONDS)
-        cpu = {
-            name: (cpu_seconds(process) - before[name]) / _SECONDS * 100
-            for name, process in processes.items()
-        }
+        cpu = core_percent(processes, _SECONDS)
         figures = {f"cpu.{name}_percent": value for name, value in cpu.items()}
         figures["cpu.robot_stack_percent"] = sum(cpu[name] for name in robot.robot_processes)
         figures["stream.viewer_kb_per_s"] = (viewer.bytes - received) / _SECONDS / 1000

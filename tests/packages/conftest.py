@@ -9,14 +9,17 @@ from tests.packages.installation import Installation
 
 
 @pytest.fixture(scope="session")
-def installation(tmp_path_factory: pytest.TempPathFactory) -> Installation:
-    """The wheels of this source, built now and installed."""
-    folder = tmp_path_factory.mktemp("wheels")
-    wheels = [
-        build_mucat(folder),
-        build_emulator(ARCHITECTURES[platform.machine()], folder),
-    ]
-    return Installation(folder / "environment", wheels)
+def mucat_wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel `mucat` of this source, built now, alone in its folder."""
+    return build_mucat(tmp_path_factory.mktemp("wheels"))
+
+
+@pytest.fixture(scope="session")
+def installation(mucat_wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Installation:
+    """The wheels of this source, installed."""
+    folder = tmp_path_factory.mktemp("installation")
+    emulator = build_emulator(ARCHITECTURES[platform.machine()], folder)
+    return Installation(folder / "environment", [mucat_wheel, emulator])
 
 
 @pytest.fixture

@@ -13,10 +13,10 @@ import psutil
 
 from tests.proofs.roots import FOLDER, PYTHON, SMALL, RootSystem
 
-INSTALLED = (*PYTHON, "systemd", "systemd-sysv", "dbus", "openssl", "procps", "avrdude")
+SYSTEMD = ("systemd", "systemd-sysv", "dbus", "openssl", "procps", "avrdude")
 SYSTEMS = (
-    RootSystem("amd64-bookworm-services", "amd64", "bookworm", "As services", INSTALLED),
-    RootSystem("i386-trixie-services", "i386", "trixie", "As services", (*INSTALLED, *SMALL)),
+    RootSystem("amd64-bookworm-services", "amd64", "bookworm", "As services", (*PYTHON, *SYSTEMD)),
+    RootSystem("i386-trixie-services", "i386", "trixie", "As services", (*SMALL, *SYSTEMD)),
 )
 """The second stands for a robot with 32 bits."""
 START_SECONDS = 60.0

@@ -7,61 +7,28 @@ that. Prints figures; status 1 where something fails.
 """
 
 import json
-import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 import httpx
-import psutil
 from playwright.sync_api import expect
 
-from bench.processes import anonymous_mb, cpu_seconds
-from bench.real_robot import LiveViewer, store_picture
-from robot_runtime.places import BUILD
-from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
-from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
+from bench.processes import anonymous_mb, core_percent
+from bench.real_robot import LiveViewer
 from server import VERSION
-from server.platform.pidfile import running_parts
-from server.platform.settings import DataFolder
 from tests.browser.opening import DESKTOP, launched, opened_page, signed_in
-from tests.control import Commander
-from tests.documents.blocks import read_blocks
+from tests.proofs.installed import DATA, ENVIRONMENT, MUCAT, InstalledRobot, board_outside, install_wheels
 from tests.proofs.roots import ROOTS, RootSystem
-from tests.shell import ShellToken
-from tests.stack import free_port
 
-BAUD = 115_200
-"""bit/s; qemu's emulation of Linux cannot set 250000."""
-PATIENCE = 300.0
-"""s; a foreign processor is emulated, some fifteen times slower."""
 ARMED = 20.0
 """s of recording."""
 SETTLE, MEASURED = 5.0, 30.0
 """s with a viewer, before and while processor time is measured."""
-PLACE = "/opt/release"
-ENVIRONMENT = f"{PLACE}/mucat"
-MUCAT = f"{ENVIRONMENT}/bin/mucat"
-DATA = "var/lib/mucat"
 COMMANDS: tuple[tuple[str, ...], ...] = (("--version",), ("sessions", "list"))
 """Commands of mucat that must work in each root, after the run."""
-CONFIG = """[robot]
-mode = "robot"
-[link]
-port = "{port}"
-baud = {baud}
-reset = "dtr"
-[vision]
-camera = "file"
-file = "/etc/card.png"
-"""
-"""The camera shows one picture: to draw others is no work of a robot."""
 
 
 @dataclass
@@ -88,65 +55,15 @@ class Figures:
     problem: str = ""
 
 
-class InstalledRobot:
-    """`mucat run` in a root, seen from outside."""
-
-    def __init__(self, root: RootSystem, config: str | None) -> None:
-        self.port = free_port()
-        self.url = self.first = f"http://127.0.0.1:{self.port}"
-        self.data = root.path / DATA
-        self.api = Commander(base_url=f"{self.url}/api", timeout=60.0, auth=ShellToken(DataFolder(self.data)))
-        words = [MUCAT, "run", "--port", str(self.port), "--data", f"/{DATA}"]
-        if config is not None:
-            (root.path / "etc/robot.toml").write_text(config)
-            store_picture(root.path / "etc/card.png")
-            words += ["--config", "/etc/robot.toml"]
-        self._log = (root.path / "var/log/mucat.log").open("wb")
-        self._began = time.monotonic()
-        self._process = subprocess.Popen(
-            root.command(words), stdout=self._log, stderr=subprocess.STDOUT, env=root.environment()
-        )
-
-    def wait(self, condition: Callable[[], object], what: str) -> float:
-        """Waits until the condition holds. Returns s since the start."""
-        end = time.monotonic() + PATIENCE
-        while True:
-            try:
-                if condition():
-                    return time.monotonic() - self._began
-            except httpx.TransportError:
-                pass
-            said = Path(self._log.name).read_text(errors="replace")[-1500:]
-            assert self._process.poll() is None, f"mucat run ended: {said}"
-            assert time.monotonic() < end, f"no {what} within {PATIENCE:g} s: {said}"
-            time.sleep(0.2)
-
-    def processes(self) -> dict[str, psutil.Process]:
-        """The processes that a robot has, by name."""
-        runner = psutil.Process(self._process.pid)
-        (server,) = [one for one in runner.children() if one.name() == "mucat-server"]
-        runtime = psutil.Process(running_parts(DataFolder(self.data).run)["runtime"].pid)
-        return {"runner": runner, "server": server, "runtime": runtime}
-
-    def end(self) -> None:
-        """Presses Ctrl-C."""
-        self.api.close()
-        self._process.send_signal(signal.SIGINT)
-        try:
-            self._process.wait(60.0)
-        finally:
-            self._process.kill()
-            self._log.close()
-
-
 def prove(root: RootSystem) -> Figures:
     """Installs, runs and judges one root."""
     figures = Figures(root.name)
     try:
         root.make()
-        _install(root, figures)
-        with _board() as port:
-            _swim(root, figures, "robot", CONFIG.format(port=port, baud=BAUD))
+        figures.installed = install_wheels(root)
+        figures.megabytes = _megabytes(root)
+        with board_outside() as config:
+            _swim(root, figures, "robot", config)
         machine = EMULATORS.get(root.architecture)
         if machine and list(Path("dist").glob(f"mucat_emulator-*_{machine}.whl")):
             pip = [f"{ENVIRONMENT}/bin/pip", "install", "--quiet", "--no-deps", "--find-links", "/wheels"]
@@ -163,62 +80,18 @@ def prove(root: RootSystem) -> Figures:
 EMULATORS = {"amd64": "x86_64", "i386": "i686", "arm64": "aarch64"}
 
 
-def _install(root: RootSystem, figures: Figures) -> None:
-    began = time.monotonic()
-    root.run("rm", "-rf", PLACE, f"/{DATA}")
-    root.run("mkdir", "-p", PLACE)
-    (block,) = [one for one in read_blocks("run/packages.md") if one.title == root.page]
-    # apt has installed its part when the root was made.
-    lines = [line for line in block.text.splitlines() if not line.startswith(("sudo apt", "mucat/bin/mucat"))]
-    assert len(lines) == 2, f"the page has {lines}"
-    root.run("sh", "-euc", "\n".join([f"cd {PLACE}", "ln -s /wheels/* .", *lines]))
-    figures.installed = time.monotonic() - began
+def _megabytes(root: RootSystem) -> float:
     compilers = root.run("sh", "-c", "command -v gcc node cc || true")
     assert not compilers, f"there is {compilers}"
-    size = root.run("du", "-sm", ENVIRONMENT)
-    figures.megabytes = float(size.split()[0])
-
-
-@contextmanager
-def _board() -> Iterator[str]:
-    """The emulated board and its water, outside; yields the serial port."""
-    build_firmware(BUILD, BAUD)
-    elf = firmware_path(BUILD, BAUD, ".elf")
-    with TemporaryDirectory(prefix="mucat-") as name:
-        tty, socket = Path(name) / "tty", Path(name) / "socket"
-        with EmulatorProcess(BUILD / "board", elf, tty, socket, "--with-parent"):
-            water = [
-                sys.executable,
-                "-m",
-                "robot_runtime.simulation",
-                "--board",
-                str(socket),
-                "--with-parent",
-            ]
-            with subprocess.Popen(water) as simulator:
-                try:
-                    yield str(tty.resolve())
-                finally:
-                    simulator.terminate()
+    return float(root.run("du", "-sm", ENVIRONMENT).split()[0])
 
 
 def _swim(root: RootSystem, figures: Figures, mode: str, config: str | None) -> None:
     robot = InstalledRobot(root, config)
     try:
-        figures.page[mode] = robot.wait(lambda: httpx.get(robot.url, timeout=30).status_code == 200, "page")
-        figures.ready[mode] = robot.wait(
-            lambda: robot.api.get("/health").json()["status"] == "ok", "health of ok"
-        )
-        robot.wait(lambda: robot.api.post("/robot/commands/arm").status_code == 204, "arming")
-        recording: dict[str, Any] = {}
-
-        def has_recorded() -> bool:
-            for session in robot.api.get("/sessions").json():
-                if session["state"] == "recording":
-                    recording.update(session)
-            return float(recording.get("duration") or 0.0) >= ARMED
-
-        robot.wait(has_recorded, f"recording of {ARMED:g} s")
+        figures.page[mode] = robot.wait_for_page()
+        figures.ready[mode] = robot.wait_for_health()
+        recording = robot.record(ARMED)
         _look(robot)
         if mode == "robot":
             _measure(robot, figures)
@@ -245,10 +118,9 @@ def _measure(robot: InstalledRobot, figures: Figures) -> None:
     viewer = LiveViewer(robot)
     processes = robot.processes()
     time.sleep(SETTLE)
-    before = {name: cpu_seconds(process) for name, process in processes.items()}
-    time.sleep(MEASURED)
+    percent = core_percent(processes, MEASURED)
     for name, process in processes.items():
-        figures.percent[name] = round((cpu_seconds(process) - before[name]) / MEASURED * 100, 1)
+        figures.percent[name] = round(percent[name], 1)
         figures.anonymous[name] = round(anonymous_mb(process), 1)
     viewer.close()
 

@@ -15,8 +15,9 @@ from packages.mirror import find_mirror
 FOLDER = Path("build/roots").absolute()
 DIST = Path("dist").absolute()
 PYTHON = ("python3", "python3-venv", "ca-certificates")
-SMALL = ("python3-numpy", "python3-opencv", "python3-pydantic", "python3-pydantic-core")
-"""What a 32-bit system has from apt: pip finds no wheels of them."""
+NO_CAMERA = (*PYTHON, "python3-numpy", "python3-pydantic", "python3-pydantic-core")
+SMALL = (*NO_CAMERA, "python3-opencv")
+"""What a 32-bit system has from apt: pip finds no wheels of it. The robot swims without OpenCV, too."""
 PIP_FILES = (Path("/etc/pip.conf"), Path.home() / ".config/pip/pip.conf", Path.home() / ".pip/pip.conf")
 PI_64 = "Raspberry Pi OS 12 or 13, 64 bits"
 PI_32 = "Raspberry Pi OS 13, 32 bits"
@@ -50,11 +51,13 @@ class RootSystem:
     Debian 13 is twelve times slower than on the processor of a Raspberry Pi, which has none."""
     setarch: tuple[str, ...] = ()
     """Makes the kernel of this computer name the architecture."""
+    wheels: Path = DIST
+    """The folder of the wheels."""
 
     @property
     def is_small(self) -> bool:
         """True where wheels of NumPy and others are missing."""
-        return SMALL[0] in self.packages
+        return set(NO_CAMERA) <= set(self.packages)
 
     @property
     def path(self) -> Path:
@@ -79,7 +82,7 @@ class RootSystem:
     def command(self, words: Sequence[str]) -> list[str]:
         """The command line that runs `words` in the root; its mounts end with it."""
         enter = ["unshare", "--mount", "--propagation", "private", "sh", "-c", ENTER, "enter"]
-        return [*self.setarch, *enter, str(self.path), str(DIST), *words]
+        return [*self.setarch, *enter, str(self.path), str(self.wheels), *words]
 
     def run(self, *words: str) -> str:
         """Runs a command in the root; returns what it printed. Fails where the command does."""
@@ -108,11 +111,12 @@ def _enable(interpreter: str) -> None:
         subprocess.run(["update-binfmts", "--enable", interpreter], check=True)
 
 
+I386 = RootSystem("i386-trixie", "i386", "trixie", PI_32, SMALL, setarch=("linux32",))
 # Processors of the Raspberry Pi 3 and Zero 2 W, and of the 2.
 ROOTS = (
     RootSystem("amd64-trixie", "amd64", "trixie", "Any Linux"),
-    RootSystem("i386-trixie", "i386", "trixie", PI_32, (*PYTHON, *SMALL), setarch=("linux32",)),
+    I386,
     RootSystem("arm64-bookworm", "arm64", "bookworm", PI_64, PYTHON, "qemu-aarch64", "cortex-a53"),
     RootSystem("arm64-trixie", "arm64", "trixie", PI_64, PYTHON, "qemu-aarch64", "cortex-a53"),
-    RootSystem("armhf-trixie", "armhf", "trixie", PI_32, (*PYTHON, *SMALL), "qemu-arm", "cortex-a7"),
+    RootSystem("armhf-trixie", "armhf", "trixie", PI_32, SMALL, "qemu-arm", "cortex-a7"),
 )

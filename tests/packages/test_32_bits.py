@@ -1,0 +1,38 @@
+"""The wheel on a 32-bit Debian 13 without OpenCV: a root file system of i386, made once, in build/roots."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from packages.constraints import write_constraints
+from tests.proofs.installed import InstalledRobot, board_outside, install_wheels
+from tests.proofs.roots import I386, NO_CAMERA
+
+RECORDED = 5.0
+"""s"""
+
+
+@pytest.mark.stack
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may make and enter a root file system")
+def test_it_swims_without_a_camera_and_says_so(mucat_wheel: Path) -> None:
+    root = replace(I386, name="i386-trixie-small", packages=NO_CAMERA, wheels=mucat_wheel.parent)
+    root.make()
+    write_constraints(root.wheels)
+    install_wheels(root)
+    assert root.run("python3", "-c", "import struct; print(struct.calcsize('P'))") == "4\n"
+    with board_outside() as config:
+        robot = InstalledRobot(root, config)
+        try:
+            robot.wait_for_page()
+            recording = robot.record(RECORDED)
+            state = robot.api.get("/robot").json()
+            robot.api.post("/robot/stop").raise_for_status()
+            session = robot.api.get(f"/sessions/{recording['id']}").json()
+        finally:
+            robot.end()
+    assert state["armed"]
+    assert "install them (Debian: sudo apt install python3-opencv)" in state["camera"]
+    assert len(session["firmware"]) == 16
+    assert session["samples"] > 0

@@ -1,0 +1,148 @@
+"""The wheels in a root file system: installed as docs/run/packages.md says, and run on a board outside."""
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import httpx
+import psutil
+
+from bench.real_robot import store_picture
+from robot_runtime.places import BUILD
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
+from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
+from server.platform.pidfile import running_parts
+from server.platform.settings import DataFolder
+from tests.control import Commander
+from tests.documents.blocks import read_blocks
+from tests.proofs.roots import RootSystem
+from tests.shell import ShellToken
+from tests.stack import free_port
+
+BAUD = 115_200
+"""bit/s; qemu's emulation of Linux cannot set 250000."""
+PATIENCE = 300.0
+"""s; a foreign processor is emulated, some fifteen times slower."""
+PLACE = "/opt/release"
+ENVIRONMENT = f"{PLACE}/mucat"
+MUCAT = f"{ENVIRONMENT}/bin/mucat"
+DATA = "var/lib/mucat"
+CONFIG = """[robot]
+mode = "robot"
+[link]
+port = "{port}"
+baud = {baud}
+reset = "dtr"
+[vision]
+camera = "file"
+file = "/etc/card.png"
+"""
+"""The camera shows one picture: to draw others is no work of a robot."""
+
+
+def install_wheels(root: RootSystem) -> float:
+    """Installs the wheels in place of those before, by the commands of the page. Returns s it took."""
+    began = time.monotonic()
+    root.run("rm", "-rf", PLACE, f"/{DATA}")
+    root.run("mkdir", "-p", PLACE)
+    (block,) = [one for one in read_blocks("run/packages.md") if one.title == root.page]
+    # apt has installed its part when the root was made.
+    lines = [line for line in block.text.splitlines() if not line.startswith(("sudo apt", "mucat/bin/mucat"))]
+    assert len(lines) == 2, f"the page has {lines}"
+    root.run("sh", "-euc", "\n".join([f"cd {PLACE}", "ln -s /wheels/* .", *lines]))
+    return time.monotonic() - began
+
+
+@contextmanager
+def board_outside() -> Iterator[str]:
+    """An emulated board and its water; yields the configuration of a robot whose port is the board's line."""
+    build_firmware(BUILD, BAUD)
+    elf = firmware_path(BUILD, BAUD, ".elf")
+    with TemporaryDirectory(prefix="mucat-") as name:
+        tty, socket = Path(name) / "tty", Path(name) / "socket"
+        with EmulatorProcess(BUILD / "board", elf, tty, socket, "--with-parent"):
+            water = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(socket)]
+            with subprocess.Popen([*water, "--with-parent"]) as simulator:
+                try:
+                    yield CONFIG.format(port=tty.resolve(), baud=BAUD)
+                finally:
+                    simulator.terminate()
+
+
+class InstalledRobot:
+    """`mucat run` in a root, seen from outside."""
+
+    def __init__(self, root: RootSystem, config: str | None) -> None:
+        self.port = free_port()
+        self.url = self.first = f"http://127.0.0.1:{self.port}"
+        self.data = root.path / DATA
+        self.api = Commander(base_url=f"{self.url}/api", timeout=60.0, auth=ShellToken(DataFolder(self.data)))
+        words = [MUCAT, "run", "--port", str(self.port), "--data", f"/{DATA}"]
+        if config is not None:
+            (root.path / "etc/robot.toml").write_text(config)
+            store_picture(root.path / "etc/card.png")
+            words += ["--config", "/etc/robot.toml"]
+        self._log = (root.path / "var/log/mucat.log").open("wb")
+        self._began = time.monotonic()
+        self._process = subprocess.Popen(
+            root.command(words), stdout=self._log, stderr=subprocess.STDOUT, env=root.environment()
+        )
+
+    def wait(self, condition: Callable[[], object], what: str) -> float:
+        """Waits until the condition holds. Returns s since the start."""
+        end = time.monotonic() + PATIENCE
+        while True:
+            try:
+                if condition():
+                    return time.monotonic() - self._began
+            except httpx.TransportError:
+                pass
+            said = Path(self._log.name).read_text(errors="replace")[-1500:]
+            assert self._process.poll() is None, f"mucat run ended: {said}"
+            assert time.monotonic() < end, f"no {what} within {PATIENCE:g} s: {said}"
+            time.sleep(0.2)
+
+    def wait_for_page(self) -> float:
+        """Returns s from the start to the page."""
+        return self.wait(lambda: httpx.get(self.url, timeout=30).status_code == 200, "page")
+
+    def wait_for_health(self) -> float:
+        """Returns s from the start to a health of ok."""
+        return self.wait(lambda: self.api.get("/health").json()["status"] == "ok", "health of ok")
+
+    def record(self, seconds: float) -> dict[str, Any]:
+        """Arms. Returns the session once so much of it is recorded."""
+        self.wait(lambda: self.api.post("/robot/commands/arm").status_code == 204, "arming")
+        recording: dict[str, Any] = {}
+
+        def has_recorded() -> bool:
+            for session in self.api.get("/sessions").json():
+                if session["state"] == "recording":
+                    recording.update(session)
+            return float(recording.get("duration") or 0.0) >= seconds
+
+        self.wait(has_recorded, f"recording of {seconds:g} s")
+        return recording
+
+    def processes(self) -> dict[str, psutil.Process]:
+        """The processes that a robot has, by name."""
+        runner = psutil.Process(self._process.pid)
+        (server,) = [one for one in runner.children() if one.name() == "mucat-server"]
+        runtime = psutil.Process(running_parts(DataFolder(self.data).run)["runtime"].pid)
+        return {"runner": runner, "server": server, "runtime": runtime}
+
+    def end(self) -> None:
+        """Presses Ctrl-C."""
+        self.api.close()
+        self._process.send_signal(signal.SIGINT)
+        try:
+            self._process.wait(60.0)
+        finally:
+            self._process.kill()
+            self._log.close()
