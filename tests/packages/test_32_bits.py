@@ -26,13 +26,15 @@ def test_it_swims_without_a_camera_and_says_so(mucat_wheel: Path) -> None:
         robot = InstalledRobot(root, config)
         try:
             robot.wait_for_page()
-            recording = robot.record(RECORDED)
-            state = robot.api.get("/robot").json()
+            robot.wait_for_health()
+            robot.api.post("/sessions", json={"name": "32 bits"}).raise_for_status()
+            robot.arm()
+            recording = robot.wait_for_recording(RECORDED)
+            camera = robot.api.get("/robot").json()["camera"]
             robot.api.post("/robot/stop").raise_for_status()
             session = robot.api.get(f"/sessions/{recording['id']}").json()
         finally:
             robot.end()
-    assert state["armed"]
-    assert "install them (Debian: sudo apt install python3-opencv)" in state["camera"]
+    assert "install them (Debian: sudo apt install python3-opencv)" in camera
     assert len(session["firmware"]) == 16
     assert session["samples"] > 0

@@ -116,9 +116,12 @@ class InstalledRobot:
         """Returns s from the start to a health of ok."""
         return self.wait(lambda: self.api.get("/health").json()["status"] == "ok", "health of ok")
 
-    def record(self, seconds: float) -> dict[str, Any]:
-        """Arms. Returns the session once so much of it is recorded."""
+    def arm(self) -> None:
+        """Arms as soon as it may."""
         self.wait(lambda: self.api.post("/robot/commands/arm").status_code == 204, "arming")
+
+    def wait_for_recording(self, seconds: float) -> dict[str, Any]:
+        """Returns the session that is recorded, once it is so long."""
         recording: dict[str, Any] = {}
 
         def has_recorded() -> bool:

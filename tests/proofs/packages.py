@@ -91,7 +91,8 @@ def _swim(root: RootSystem, figures: Figures, mode: str, config: str | None) -> 
     try:
         figures.page[mode] = robot.wait_for_page()
         figures.ready[mode] = robot.wait_for_health()
-        recording = robot.record(ARMED)
+        robot.arm()
+        recording = robot.wait_for_recording(ARMED)
         _look(robot)
         if mode == "robot":
             _measure(robot, figures)
