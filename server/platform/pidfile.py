@@ -22,7 +22,8 @@ def started_at(pid: int) -> int | None:
     PIDs are reused; PID and start time together are unique.
     """
     try:
-        status = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
+        # Not /proc/PID/stat, in which an emulator of processors (qemu-user) tells a process another time of its own.
+        status = Path(f"/proc/{pid}/task/{pid}/stat").read_text(encoding="utf-8", errors="replace")
     except OSError:
         return None
     # Behind the program's name in brackets, which may hold brackets itself.

@@ -30,7 +30,7 @@ def test_it_swims_without_a_camera_and_says_so(mucat_wheel: Path) -> None:
     write_constraints(root.wheels)
     install_wheels(root)
     assert root.run("python3", "-c", "import struct; print(struct.calcsize('P'))") == "4\n"
-    with board_outside() as config:
+    with board_outside(root.baud) as config:
         robot = InstalledRobot(root, config)
         try:
             robot.wait_for_page()

@@ -17,9 +17,20 @@ SYSTEMD = ("systemd", "systemd-sysv", "dbus", "openssl", "procps", "avrdude")
 SYSTEMS = (
     RootSystem("amd64-bookworm-services", "amd64", "bookworm", "As services", (*PYTHON, *SYSTEMD)),
     RootSystem("i386-trixie-services", "i386", "trixie", "As services", (*SMALL, *SYSTEMD)),
+    RootSystem(
+        "arm64-bookworm-services",
+        "arm64",
+        "bookworm",
+        "As services",
+        (*PYTHON, *SYSTEMD),
+        "qemu-aarch64",
+        "cortex-a53",
+    ),
 )
-"""The second stands for a robot with 32 bits."""
+"""The second stands for a robot with 32 bits; the third is one on an emulated processor."""
 START_SECONDS = 60.0
+EMULATED = 10.0
+"""An emulated processor takes so many times as long."""
 CARD_BYTES = 200_000_000
 ORDER_SECONDS = 300.0
 GROUP = Path("/sys/fs/cgroup/memory/mucat-proof")
@@ -36,16 +47,19 @@ class Container:
 
     def __init__(self, system: RootSystem, releases: Path, *options: str) -> None:
         system.make()
-        self._system = system
+        self.system = system
         self.root = FOLDER / "services"
+        self.patience = EMULATED if system.interpreter else 1.0
+        """How many times longer than on this computer's processor to wait for something."""
         personality = "x86" if system.is_small else "x86-64"
-        self._options = (f"--personality={personality}", f"--bind-ro={releases}:/releases", *options)
+        own = () if system.interpreter else (f"--personality={personality}",)
+        self._options = (*own, f"--bind-ro={releases}:/releases", *options)
         self._nspawn: subprocess.Popen[bytes] | None = None
         self._kills = 0
 
     def __enter__(self) -> Self:
         subprocess.run(["rm", "-rf", "--one-file-system", str(self.root)], check=True)
-        subprocess.run(["cp", "-a", str(self._system.path), str(self.root)], check=True)
+        subprocess.run(["cp", "-a", str(self.system.path), str(self.root)], check=True)
         image = self.root.with_name("card.img")
         with image.open("wb") as file:
             file.truncate(CARD_BYTES)
@@ -95,7 +109,7 @@ class Container:
         join = f"echo $$ | tee {GROUP}/cgroup.procs {DISK_GROUP}/cgroup.procs >/dev/null"
         enter = ["sh", "-c", f'{join}; exec "$@"', "sh"]
         self._nspawn = subprocess.Popen([*enter, *command], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
-        end = time.monotonic() + START_SECONDS
+        end = time.monotonic() + START_SECONDS * self.patience
         while self.order("systemctl is-system-running")[1].strip() not in ("running", "degraded"):
             assert time.monotonic() < end, "systemd does not come up"
             time.sleep(_POLL)
@@ -127,7 +141,7 @@ class Container:
         words = (GROUP / "memory.oom_control").read_text().split()
         return int(words[words.index("oom_kill") + 1]) - self._kills
 
-    def order(self, words: str, seconds: float = ORDER_SECONDS) -> tuple[int, str]:
+    def order(self, words: str) -> tuple[int, str]:
         """Run a line of shell in it; its status, and what it printed."""
         found = self._init()
         if not found:
@@ -141,7 +155,7 @@ class Container:
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=seconds,
+            timeout=ORDER_SECONDS * self.patience,
             check=False,
         )
         return done.returncode, done.stdout + done.stderr

@@ -25,8 +25,6 @@ from tests.proofs.roots import RootSystem
 from tests.shell import ShellToken
 from tests.stack import free_port
 
-BAUD = 115_200
-"""bit/s; qemu's emulation of Linux cannot set 250000."""
 PATIENCE = 300.0
 """s; a foreign processor is emulated, some fifteen times slower."""
 PLACE = "/opt/release"
@@ -60,17 +58,17 @@ def install_wheels(root: RootSystem) -> float:
 
 
 @contextmanager
-def board_outside() -> Iterator[str]:
+def board_outside(baud: int) -> Iterator[str]:
     """An emulated board and its water; yields the configuration of a robot whose port is the board's line."""
-    build_firmware(BUILD, BAUD)
-    elf = firmware_path(BUILD, BAUD, ".elf")
+    build_firmware(BUILD, baud)
+    elf = firmware_path(BUILD, baud, ".elf")
     with TemporaryDirectory(prefix="mucat-") as name:
         tty, socket = Path(name) / "tty", Path(name) / "socket"
         with EmulatorProcess(BUILD / "board", elf, tty, socket, "--with-parent"):
             water = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(socket)]
             with subprocess.Popen([*water, "--with-parent"]) as simulator:
                 try:
-                    yield CONFIG.format(port=tty.resolve(), baud=BAUD)
+                    yield CONFIG.format(port=tty.resolve(), baud=baud)
                 finally:
                     simulator.terminate()
 

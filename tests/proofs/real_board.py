@@ -4,11 +4,11 @@ An update whose firmware differs puts it onto the board, and the way back puts t
 """
 
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from robot_runtime.config import LinkConfig
 from robot_runtime.places import BUILD
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
@@ -22,20 +22,14 @@ DIALOUT = 20
 """The group's number in Debian."""
 WORDS, MARK = b"power on", b"POWER on"
 """Words of the firmware, and how the later one spells them."""
-CONFIGURE = f"""
-sed -i -e 's|^mode = .*|mode = "robot"|' -e 's|^port = "/dev/serial0"|port = "{PORT}"|' \
-    -e 's|^reset = .*|reset = "board:/board/socket"|' {CONFIG}
-systemctl restart {SERVICES}
-"""
 LINK = """
 print(*(one["state"] for one in ask(data, "GET", "/health")["parts"] if one["name"] == "link"))
 """
 
 
 @contextmanager
-def board(folder: Path) -> Iterator[list[str]]:
+def board(folder: Path, baud: int) -> Iterator[list[str]]:
     """Run the board; yields the options by which systemd-nspawn gives it to a container."""
-    baud = LinkConfig().baud
     build_firmware(BUILD, baud)
     tty, socket = folder / "tty", folder / "socket"
     loader = ("--bootloader", str(BUILD / "firmware/optiboot.hex"))
@@ -48,6 +42,20 @@ def board(folder: Path) -> Iterator[list[str]]:
         yield [f"--bind={port}:{PORT}", f"--bind={folder}:/board"]
 
 
+def connect(config: str, baud: int) -> str:
+    """The configuration of a robot that is connected to the board; a container has no camera."""
+    values = {
+        "mode": '"robot"',
+        "port": f'"{PORT}"',
+        "baud": baud,
+        "reset": '"board:/board/socket"',
+        "camera": '"card"',
+    }
+    for name, value in values.items():
+        config = re.sub(rf"^{name} = \S+", f"{name} = {value}", config, count=1, flags=re.MULTILINE)
+    return config
+
+
 def mark_firmware(path: Path) -> None:
     """Make another firmware of this one, which the robot runs as well."""
     program = read_program(path)
@@ -57,12 +65,14 @@ def mark_firmware(path: Path) -> None:
 
 def update_with_board(container: Container, steps: Steps, older: str, later: str) -> None:
     """Connect the board, and let an update and the way back change its firmware."""
+    config = container.root / CONFIG.lstrip("/")
+    config.write_text(connect(config.read_text(), container.system.baud))
     previous = container.root / DATA.lstrip("/") / "firmware-previous.hex"
 
     def is_linked() -> bool:
         return container.order(ask_server(LINK))[1].strip() == "ok"
 
-    steps.take("a robot with a board", CONFIGURE, "")
+    steps.take("a robot with a board", f"systemctl restart {SERVICES}", "")
     steps.wait("it is linked", is_linked)
     steps.take(
         "update with other firmware", f"mucat update /releases/{later}.zip", f"µ-CAT {later} is in use"

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from packages.mirror import find_mirror
+from robot_runtime.config import LinkConfig
 
 FOLDER = Path("build/roots").absolute()
 DIST = Path("dist").absolute()
@@ -60,6 +61,11 @@ class RootSystem:
         return set(NO_CAMERA) <= set(self.packages)
 
     @property
+    def baud(self) -> int:
+        """bit/s of its serial port; qemu's emulation of Linux cannot set 250000."""
+        return 115_200 if self.interpreter else LinkConfig().baud
+
+    @property
     def path(self) -> Path:
         """The root folder."""
         return FOLDER / self.name
@@ -76,7 +82,8 @@ class RootSystem:
         subprocess.run(["rm", "-rf", "--one-file-system", str(part)], check=True)
         command = ["mmdebstrap", "--quiet", "--variant=minbase", f"--architectures={self.architecture}"]
         command += [f"--include={','.join(self.packages)}", self.suite, str(part)]
-        subprocess.run([*command, f"deb {find_mirror()} {self.suite} main"], check=True)
+        source = f"deb {find_mirror()} {self.suite} main"
+        subprocess.run([*command, source], check=True, env=os.environ | self._emulation())
         part.rename(self.path)
 
     def command(self, words: Sequence[str]) -> list[str]:
@@ -101,7 +108,10 @@ class RootSystem:
         own = {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "SSL_"))}
         path = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
         own |= {"PATH": path, "HOME": str(Path.home()), "LANG": "C.UTF-8", "PYTHONUNBUFFERED": "1"}
-        return own | ({"QEMU_CPU": self.processor} if self.processor else {})
+        return own | self._emulation()
+
+    def _emulation(self) -> dict[str, str]:
+        return {"QEMU_CPU": self.processor} if self.processor else {}
 
 
 def _enable(interpreter: str) -> None:

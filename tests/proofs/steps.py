@@ -36,7 +36,8 @@ class Steps:
     def wait(self, name: str, condition: Callable[[], bool]) -> None:
         """Wait until something is so."""
         began = time.monotonic()
-        while not (good := condition()) and time.monotonic() - began < PATIENCE:
+        patience = PATIENCE * self._container.patience
+        while not (good := condition()) and time.monotonic() - began < patience:
             time.sleep(0.2)
         self._tell(name, good, time.monotonic() - began, "it did not come")
 
