@@ -22,7 +22,7 @@ def started_at(pid: int) -> int | None:
     PIDs are reused; PID and start time together are unique.
     """
     try:
-        # Not /proc/PID/stat, in which an emulator of processors (qemu-user) tells a process another time of its own.
+        # In /proc/PID/stat qemu-user tells a process another start time of its own.
         status = Path(f"/proc/{pid}/task/{pid}/stat").read_text(encoding="utf-8", errors="replace")
     except OSError:
         return None
