@@ -36,7 +36,7 @@ def _grow(page: Page, devtools: CDPSession) -> float:
 
 
 def _read(page: Page, devtools: CDPSession) -> int:
-    """Bytes, and some time before the next reading."""
+    """Waits, and returns the bytes on the heap after a collection of garbage."""
     page.wait_for_timeout(1000 * _EVERY)
     devtools.send("HeapProfiler.collectGarbage")
     return int(devtools.send("Runtime.getHeapUsage")["usedSize"])

@@ -3,7 +3,8 @@
 import subprocess
 import sys
 import threading
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -53,7 +54,7 @@ class RealRobot(Stack):
 
     def __enter__(self) -> Self:
         with ExitStack() as opened:
-            port = self._start_board(opened)
+            port, self.outside = opened.enter_context(board_outside(self.data, _BAUD))
             picture = self.data / "card.png"
             store_picture(picture)
             text = _CONFIG.format(profile=self._profile, port=port, baud=_BAUD, picture=picture)
@@ -73,19 +74,23 @@ class RealRobot(Stack):
         """The processes that a robot has, by name."""
         return {"runner": self.process, "server": self.server, "runtime": self.part("runtime")}
 
-    def _start_board(self, opened: ExitStack) -> str:
-        build_firmware(BUILD, _BAUD)
-        elf = firmware_path(BUILD, _BAUD, ".elf")
-        tty, socket = self.data / "tty", self.data / "board.sock"
-        board = opened.enter_context(EmulatorProcess(BUILD / "board", elf, tty, socket, "--with-parent"))
-        water = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(socket), "--with-parent"]
-        simulator = opened.enter_context(subprocess.Popen(water))
-        opened.callback(simulator.terminate)
-        self.outside = {
-            "board": psutil.Process(board.process.pid),
-            "simulator": psutil.Process(simulator.pid),
-        }
-        return str(tty.resolve())
+
+@contextmanager
+def board_outside(folder: Path, baud: int) -> Iterator[tuple[str, dict[str, psutil.Process]]]:
+    """An emulated board and its water; yields the serial port, and the processes by name."""
+    build_firmware(BUILD, baud)
+    elf = firmware_path(BUILD, baud, ".elf")
+    tty, socket = folder / "tty", folder / "board.sock"
+    water = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(socket), "--with-parent"]
+    with (
+        EmulatorProcess(BUILD / "board", elf, tty, socket, "--with-parent") as board,
+        subprocess.Popen(water) as simulator,
+    ):
+        processes = {"board": board.process.pid, "simulator": simulator.pid}
+        try:
+            yield str(tty.resolve()), {name: psutil.Process(pid) for name, pid in processes.items()}
+        finally:
+            simulator.terminate()
 
 
 def store_picture(file: Path) -> None:

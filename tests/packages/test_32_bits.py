@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from packages.constraints import write_constraints
-from tests.proofs.installed import InstalledRobot, board_outside, install_wheels
+from tests.proofs.installed import InstalledRobot, config_with_board, install_wheels
 from tests.proofs.roots import I386, NO_CAMERA
 
 RECORDED = 5.0
@@ -30,7 +30,7 @@ def test_it_swims_without_a_camera_and_says_so(mucat_wheel: Path) -> None:
     write_constraints(root.wheels)
     install_wheels(root)
     assert root.run("python3", "-c", "import struct; print(struct.calcsize('P'))") == "4\n"
-    with board_outside(root.baud) as config:
+    with config_with_board(root.baud) as config:
         robot = InstalledRobot(root, config)
         try:
             robot.wait_for_page()

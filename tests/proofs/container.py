@@ -30,7 +30,7 @@ SYSTEMS = (
 """The second stands for a robot with 32 bits; the third is one on an emulated processor."""
 START_SECONDS = 60.0
 EMULATED = 10.0
-"""An emulated processor takes so many times as long."""
+"""Factor of the times to wait on an emulated processor."""
 CARD_BYTES = 200_000_000
 ORDER_SECONDS = 300.0
 GROUP = Path("/sys/fs/cgroup/memory/mucat-proof")
@@ -49,10 +49,10 @@ class Container:
         system.make()
         self.system = system
         self.root = FOLDER / "services"
-        self.patience = EMULATED if system.interpreter else 1.0
-        """How many times longer than on this computer's processor to wait for something."""
+        self.patience = EMULATED if system.is_emulated else 1.0
+        """Factor of all times to wait: an emulated processor is slower."""
         personality = "x86" if system.is_small else "x86-64"
-        own = () if system.interpreter else (f"--personality={personality}",)
+        own = () if system.is_emulated else (f"--personality={personality}",)
         self._options = (*own, f"--bind-ro={releases}:/releases", *options)
         self._nspawn: subprocess.Popen[bytes] | None = None
         self._kills = 0

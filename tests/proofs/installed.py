@@ -2,7 +2,6 @@
 
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,10 +12,7 @@ from typing import Any
 import httpx
 import psutil
 
-from bench.real_robot import store_picture
-from robot_runtime.places import BUILD
-from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
-from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
+from bench.real_robot import board_outside, store_picture
 from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
 from tests.control import Commander
@@ -58,19 +54,10 @@ def install_wheels(root: RootSystem) -> float:
 
 
 @contextmanager
-def board_outside(baud: int) -> Iterator[str]:
-    """An emulated board and its water; yields the configuration of a robot whose port is the board's line."""
-    build_firmware(BUILD, baud)
-    elf = firmware_path(BUILD, baud, ".elf")
-    with TemporaryDirectory(prefix="mucat-") as name:
-        tty, socket = Path(name) / "tty", Path(name) / "socket"
-        with EmulatorProcess(BUILD / "board", elf, tty, socket, "--with-parent"):
-            water = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(socket)]
-            with subprocess.Popen([*water, "--with-parent"]) as simulator:
-                try:
-                    yield CONFIG.format(port=tty.resolve(), baud=baud)
-                finally:
-                    simulator.terminate()
+def config_with_board(baud: int) -> Iterator[str]:
+    """The configuration of a robot whose port is the line of an emulated board in water, outside."""
+    with TemporaryDirectory(prefix="mucat-") as name, board_outside(Path(name), baud) as (port, _):
+        yield CONFIG.format(port=port, baud=baud)
 
 
 class InstalledRobot:

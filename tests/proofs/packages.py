@@ -20,7 +20,7 @@ from bench.processes import anonymous_mb, core_percent
 from bench.real_robot import LiveViewer
 from server import VERSION
 from tests.browser.opening import DESKTOP, launched, opened_page, signed_in
-from tests.proofs.installed import DATA, ENVIRONMENT, MUCAT, InstalledRobot, board_outside, install_wheels
+from tests.proofs.installed import DATA, ENVIRONMENT, MUCAT, InstalledRobot, config_with_board, install_wheels
 from tests.proofs.roots import ROOTS, RootSystem
 
 ARMED = 20.0
@@ -62,13 +62,13 @@ def prove(root: RootSystem) -> Figures:
         root.make()
         figures.installed = install_wheels(root)
         figures.megabytes = _megabytes(root)
-        with board_outside(root.baud) as config:
+        with config_with_board(root.baud) as config:
             _swim(root, figures, "robot", config)
         machine = EMULATORS.get(root.architecture)
         if machine and list(Path("dist").glob(f"mucat_emulator-*_{machine}.whl")):
             pip = [f"{ENVIRONMENT}/bin/pip", "install", "--quiet", "--no-deps", "--find-links", "/wheels"]
             root.run(*pip, f"mucat-emulator=={VERSION}")
-            if not root.interpreter:  # two emulators within each other are too slow for real time
+            if not root.is_emulated:  # two emulators within each other are too slow for real time
                 _swim(root, figures, "emulated", None)
         for words in COMMANDS:
             root.run(MUCAT, *words, *(("--data", f"/{DATA}") if words != ("--version",) else ()))

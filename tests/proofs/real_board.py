@@ -4,7 +4,6 @@ An update whose firmware differs puts it onto the board, and the way back puts t
 """
 
 import os
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +12,7 @@ from robot_runtime.places import BUILD
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
 from server.features.board.previous_firmware import read_program, write_program
+from server.features.installation.installer import set_values
 from tests.proofs.container import Container
 from tests.proofs.small_computer import CONFIG, DATA, SERVICES
 from tests.proofs.steps import Steps, ask_server
@@ -47,13 +47,11 @@ def connect(config: str, baud: int) -> str:
     values = {
         "mode": '"robot"',
         "port": f'"{PORT}"',
-        "baud": baud,
+        "baud": str(baud),
         "reset": '"board:/board/socket"',
         "camera": '"card"',
     }
-    for name, value in values.items():
-        config = re.sub(rf"^{name} = \S+", f"{name} = {value}", config, count=1, flags=re.MULTILINE)
-    return config
+    return set_values(config, values)
 
 
 def mark_firmware(path: Path) -> None:

@@ -18,7 +18,7 @@ DIST = Path("dist").absolute()
 PYTHON = ("python3", "python3-venv", "ca-certificates")
 NO_CAMERA = (*PYTHON, "python3-numpy", "python3-pydantic", "python3-pydantic-core")
 SMALL = (*NO_CAMERA, "python3-opencv")
-"""What a 32-bit system has from apt: pip finds no wheels of it. The robot swims without OpenCV, too."""
+"""Packages of apt on a system with 32 bits, for which pip finds no wheels: without OpenCV, and with it."""
 PIP_FILES = (Path("/etc/pip.conf"), Path.home() / ".config/pip/pip.conf", Path.home() / ".pip/pip.conf")
 PI_64 = "Raspberry Pi OS 12 or 13, 64 bits"
 PI_32 = "Raspberry Pi OS 13, 32 bits"
@@ -48,8 +48,8 @@ class RootSystem:
     interpreter: str = ""
     """The emulator of a foreign processor, as update-binfmts names it."""
     processor: str = ""
-    """What it emulates. By itself it emulates all that exists, also signed pointers, with which Python of
-    Debian 13 is twelve times slower than on the processor of a Raspberry Pi, which has none."""
+    """The emulated processor, by qemu's name: that of a Raspberry Pi. Without a name it is one that signs
+    pointers, with which Python of Debian 13 takes twelve times as long."""
     setarch: tuple[str, ...] = ()
     """Makes the kernel of this computer name the architecture."""
     wheels: Path = DIST
@@ -61,9 +61,14 @@ class RootSystem:
         return set(NO_CAMERA) <= set(self.packages)
 
     @property
+    def is_emulated(self) -> bool:
+        """True for a foreign processor."""
+        return bool(self.interpreter)
+
+    @property
     def baud(self) -> int:
         """bit/s of its serial port; qemu's emulation of Linux cannot set 250000."""
-        return 115_200 if self.interpreter else LinkConfig().baud
+        return 115_200 if self.is_emulated else LinkConfig().baud
 
     @property
     def path(self) -> Path:
@@ -72,7 +77,7 @@ class RootSystem:
 
     def make(self) -> None:
         """Makes it, if it does not exist. Raises CalledProcessError."""
-        if self.interpreter:
+        if self.is_emulated:
             _enable(self.interpreter)
         if self.path.exists():
             return

@@ -68,8 +68,7 @@ def try_all(container: Container) -> int:
     """The number of steps that did not end as they must."""
     steps = Steps(container)
     current = container.root / "opt/mucat/current"
-    is_emulated = bool(container.system.interpreter)
-    if is_emulated:
+    if container.system.is_emulated:
         # Two emulators within each other do not swim: its board is outside from the beginning.
         config = container.root / CONFIG.lstrip("/")
         config.parent.mkdir()
@@ -95,7 +94,7 @@ def try_all(container: Container) -> int:
     cut_power(container)
     steps.runs(VERSION)
     steps.take("what was stored is there", f"{stored}; mucat sessions list", "True\n(.|\n)*interrupted")
-    if not is_emulated:
+    if not container.system.is_emulated:
         live(container, steps, VERSION)
     steps.take("a cut ZIP file", "mucat update /releases/cut.zip", "no whole ZIP file", status=1)
     steps.take("another's signature", "mucat update /releases/other", "signature .* is wrong", status=1)

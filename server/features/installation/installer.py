@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from server.features.installation.boot_settings import describe_change, edit_config, edit_kernel_line
@@ -162,7 +162,12 @@ def adapt_config(text: str, *, robot: bool) -> str:
     changes = {"host": '"0.0.0.0"', "tls": "true"}
     if robot:
         changes |= {"mode": '"robot"', "camera": '"pi"'}
-    for name, value in changes.items():
+    return set_values(text, changes)
+
+
+def set_values(text: str, values: Mapping[str, str]) -> str:
+    """A configuration with the first entry of each name set to this value, in TOML's spelling."""
+    for name, value in values.items():
         text = re.sub(rf"^{name} = \S+", f"{name} = {value}", text, count=1, flags=re.MULTILINE)
     return text
 
