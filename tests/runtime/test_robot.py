@@ -533,12 +533,13 @@ def test_a_restarted_board_gets_its_parameters_again_before_arming(rig: Rig) -> 
 
 SLOW_OPENCV = """
 import sys
-open({pipe!r}).close()
+with open({pipe!r}) as pipe:
+    pipe.read()
 sys.path.remove({folder!r})
 del sys.modules["cv2"]
 import cv2
 """
-"""Loads the real one once somebody writes to the pipe."""
+"""Loads the real one once somebody has written to the pipe."""
 
 
 def test_while_opencv_is_loaded_it_is_not_armed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
