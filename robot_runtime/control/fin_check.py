@@ -1,7 +1,8 @@
 """The fin check: moves each axis briefly and compares each fin's angle with its set point."""
 
-from math import sqrt
-from statistics import fmean, linear_regression, pstdev
+from collections.abc import Iterable
+from math import sqrt, tau
+from statistics import fmean
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import FIN_COUNT, Motor, Navigation
@@ -13,36 +14,52 @@ _STEP = 1.3
 """s for each axis: one and a half strokes."""
 _SHARE = 0.5
 _ERROR_MAX = 0.8
-"""Largest error of a sound fin as a share of its set point's motion, both as standard deviations: a lag of
-47° of its stroke makes so much."""
-_SWING_MIN = 0.2
-"""rad; with less commanded swing, the fin counts as not commanded."""
+"""Largest error of a sound fin, as a share of the least that a fin at rest could have: in a stroke about one
+direction, a lag of 47° makes so much."""
+_MOTION_MIN = 0.1
+"""rad; a fin whose set point deviates less counts as not commanded."""
 
 
 class FinTracking:
     """Judges whether a fin follows its set point, by samples of both (rad, -π to π)."""
 
     def __init__(self) -> None:
-        self._unwrapped = 0.0
-        self._set_points: list[float] = []
-        self._errors: list[float] = []
+        self._samples: list[tuple[float, float]] = []
 
     def see(self, set_point: float, angle: float) -> None:
         """Takes a sample."""
-        self._unwrapped += wrap_angle(set_point - self._unwrapped)
-        self._set_points.append(self._unwrapped)
-        self._errors.append(wrap_angle(angle - set_point))
+        self._samples.append((set_point, angle))
 
     def judge(self) -> str:
         """Returns what is wrong with the fin; empty if it follows."""
-        if not self._set_points or max(self._set_points) - min(self._set_points) < _SWING_MIN:
+        samples = list(self._samples)
+        motion = _deviation(set_point for set_point, _ in samples)
+        if motion < _MOTION_MIN:
             return "was not moved"
-        error = sqrt(fmean(one * one for one in self._errors))
-        if error <= _ERROR_MAX * pstdev(self._set_points):
+        error = sqrt(fmean(wrap_angle(angle - set_point) ** 2 for set_point, angle in samples))
+        if error <= _ERROR_MAX * motion:
             return ""
-        # The slope of the angle over the set point is 1 + this; it is -1 where the fin is mirrored.
-        slope = linear_regression(self._set_points, self._errors).slope
-        return "turned against its set point" if slope < -1.2 else f"was off its set point by {error:.2f} rad"
+        if _deviation(angle + set_point for set_point, angle in samples) <= _ERROR_MAX * motion:
+            return "turned against its set point"
+        return f"was off its set point by {error:.2f} rad"
+
+
+def _deviation(angles: Iterable[float]) -> float:
+    """Returns the root mean square distance of angles from the one angle from which it is least (rad).
+
+    The least of the variances with the circle cut open between any two of them: Hotz and Huckemann,
+    Intrinsic means on the circle, 2015. 0 without angles.
+    """
+    ordered = sorted(map(wrap_angle, angles))
+    if not ordered:
+        return 0.0
+    count, total, squares = len(ordered), sum(ordered), sum(angle * angle for angle in ordered)
+    least = squares / count - (total / count) ** 2
+    for angle in ordered:
+        total += tau
+        squares += tau * (2 * angle + tau)
+        least = min(least, squares / count - (total / count) ** 2)
+    return sqrt(max(least, 0.0))
 
 
 class FinCheck:

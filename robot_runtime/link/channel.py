@@ -207,6 +207,10 @@ class Channel:
             self.note_sent(len(data), now)
         return data
 
+    def forget_number(self) -> None:
+        """Takes the next unreliable frame whatever its number: the numbers may have gone round."""
+        self._last_number = None
+
     def note_sent(self, size: int, now: float) -> None:
         """Notes that a frame of this size was written to the line."""
         self._line_free = max(now, self._line_free) + size * self._second_per_byte
@@ -216,7 +220,7 @@ class Channel:
     # Sending
 
     def _patience(self) -> float:
-        """s to wait for news of a frame: the timeout, or a mean round trip where the line would idle."""
+        """s to wait for news of a frame: less than the timeout where the line would idle."""
         if not self._ready:
             return _PROBE
         if self._waiting and self.round_trip.mean > 0 and not self._may_send_new():

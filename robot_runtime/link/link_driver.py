@@ -102,7 +102,8 @@ class LinkDriver:
 
     def statistics(self) -> LinkStatistics:
         """Returns the counters since the line was opened."""
-        return self._session.statistics()
+        with self._writing:
+            return self._session.statistics()
 
     def frames(self) -> list[RecordedFrame]:
         """Returns the last frames in both directions since the line was opened, in order of time."""
@@ -142,7 +143,9 @@ class LinkDriver:
 
     def wait(self) -> float:
         """Returns the s until `poll` must be called, unless bytes come."""
-        return max(min(self._session.due() - self._clock.now(), _POLL), 0.0)
+        with self._writing:
+            due = self._session.due()
+        return max(min(due - self._clock.now(), _POLL), 0.0)
 
     def receive(self, data: bytes) -> None:
         """Handles received bytes."""

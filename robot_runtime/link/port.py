@@ -7,6 +7,7 @@ process was late, though the kernel has taken all bytes.
 
 import os
 import select
+import termios
 import time
 from typing import Self
 
@@ -24,7 +25,7 @@ class Port:
     def __init__(self, path: str, baud: int) -> None:
         try:
             self._serial = serial.Serial(path, baud, timeout=0, exclusive=True)
-        except (OSError, ValueError) as problem:
+        except (OSError, ValueError, termios.error) as problem:
             raise PortError(_explain(path, problem)) from problem
         self.path = path
 

@@ -1,5 +1,6 @@
 """The serial link to the board: a thread that opens the port, runs the session, and reopens it for ever."""
 
+import logging
 import threading
 import time
 from collections.abc import Callable
@@ -8,6 +9,8 @@ from robot_runtime.clock import Clock
 from robot_runtime.link.link_driver import PERIOD, LinkDriver, PortError
 from robot_runtime.link.port import Port
 from robot_runtime.link.session import BoardMessage
+
+log = logging.getLogger(__name__)
 
 _RETRY = 0.25
 
@@ -44,6 +47,9 @@ class SerialLink(LinkDriver):
                     self._run_session(port)
             except PortError as problem:
                 self.report(str(problem))
+            except Exception:
+                log.exception("the link failed")
+                self.report("an error in the software ended the connection; see the runtime's log")
             self._ending.wait(_RETRY)
 
     def _run_session(self, port: Port) -> None:
@@ -52,7 +58,7 @@ class SerialLink(LinkDriver):
             while not self._ending.is_set():
                 self.poll()
                 self._receive_next(port)
-        except PortError:
+        except Exception:
             self.record_loss()
             raise
         finally:

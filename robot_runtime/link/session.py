@@ -50,6 +50,9 @@ _GREETING = 0.25
 _HEARTBEAT = 0.1
 _GOODPUT_OVER = 1.0
 _GARBLED_BYTES = 3 * FRAME_BYTES_MAX
+_NUMBERS_LAST = 10.0
+"""s of silence after which the numbers of unreliable frames may have gone half round, and then a new frame
+cannot be told from an old one. A board sends 110 a second at most: 2048 in 18.6 s."""
 
 
 class SessionStage(Enum):
@@ -120,6 +123,8 @@ class LinkSession:
         self._bytes_received += len(data)
         messages: list[BoardMessage] = []
         for frame in self._decoder.feed(data):
+            if now - self._last_frame_at > _NUMBERS_LAST:
+                self._channel.forget_number()
             self._last_frame_at = now
             self._bytes_understood = self._bytes_received
             if frame.open:

@@ -40,6 +40,38 @@ def test_a_fin_that_lags_follows_in_every_direction(direction: float, lag: float
     assert judge(flap(direction), flap(direction, lag)) == {}
 
 
+DIRECTIONS = (0.0, pi / 2, -pi / 2, -3 * pi / 2, -pi)
+"""rad; of the front right fin, as the axes of a check turn it, always the same way round."""
+TURN = 8.0
+"""rad/s."""
+
+
+def turn(time: float) -> float:
+    """The set point of a fin that flaps and is turned once round, in as long as a check takes."""
+    direction = DIRECTIONS[0]
+    for number, following in enumerate(DIRECTIONS[1:], start=1):
+        way = following - DIRECTIONS[number - 1]
+        share = min(max(TURN * (time - 1.6 * number) / abs(way), 0.0), 1.0)
+        direction += share * way
+    return flap(direction)(time)
+
+
+@pytest.mark.parametrize("lag", [0.0, 0.05, 0.1])
+def test_a_fin_that_is_turned_once_round_follows(lag: float) -> None:
+    assert judge(turn, lambda time: turn(time - lag)) == {}
+
+
+@pytest.mark.parametrize("place", range(-180, 180, 15))
+def test_a_fin_that_rests_anywhere_is_named(place: int) -> None:
+    ((name, words),) = judge(turn, lambda _: place * pi / 180).items()
+    assert name == FINS[1]
+    assert re.fullmatch(r"was off its set point by \d\.\d\d rad", words)
+
+
+def test_a_fin_that_turns_round_the_other_way_is_named() -> None:
+    assert judge(turn, lambda time: wrap(-turn(time))) == {FINS[1]: "turned against its set point"}
+
+
 @pytest.mark.parametrize("direction", [0.0, pi])
 def test_a_fin_that_turns_the_other_way_is_named(direction: float) -> None:
     found = judge(flap(direction), flap(direction, size=-0.4))

@@ -44,6 +44,7 @@ class Host:
     def __init__(self, path: Path) -> None:
         self.texts: list[str] = []
         self.messages: list[BoardMessage] = []
+        self.mistakes = 0
         self._changed = threading.Condition()
         self.connection = SerialLink(str(path), 250_000, PatientClock(), 1, self._take, self._change)
 
@@ -56,6 +57,9 @@ class Host:
         self._wake()
 
     def _take(self, messages: list[BoardMessage]) -> None:
+        if self.mistakes:
+            self.mistakes -= 1
+            raise ZeroDivisionError
         self.messages += messages
         self._wake()
 
@@ -121,6 +125,18 @@ def test_a_port_that_vanishes_and_returns_is_reopened(host: Host, path: Path) ->
     connect(second, host)
     second.say(Debug(time=5, level=1, text="back"))
     host.wait(lambda: any(message.payload.endswith(b"back") for message in host.messages))
+
+
+def test_after_an_error_in_what_handles_its_messages_the_link_comes_back(
+    host: Host, path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    board = BoardEnd(path)
+    connect(board, host)
+    host.mistakes = 1
+    board.say(Debug(time=5, level=1, text="dive"))
+    host.wait(lambda: any("an error in the software" in text for text in host.texts))
+    assert "ZeroDivisionError" in caplog.text
+    connect(board, host)
 
 
 def test_the_last_frames_are_logged_when_the_port_vanishes(

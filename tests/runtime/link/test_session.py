@@ -16,7 +16,7 @@ from robot_runtime.contract.packets import (
     Stop,
     encode,
 )
-from robot_runtime.link.framing import Decoder, Frame, build
+from robot_runtime.link.framing import UNRELIABLE_NUMBERS, Decoder, Frame, build
 from robot_runtime.link.session import NO_BOOT, SILENCE, LinkSession, SessionStage, session_key
 
 BAUD = 250_000
@@ -163,6 +163,16 @@ def test_a_gap_of_any_size_in_a_second_is_counted() -> None:
     session.receive(keyed(beacon(), number=1), 0.1)
     session.receive(keyed(beacon(), number=101), 1.0)
     assert session.statistics().frames_missed == 99
+
+
+def test_after_a_silence_of_any_length_telemetry_counts_again() -> None:
+    session = established()
+    session.receive(keyed(beacon(), number=1), 0.1)
+    for at in (20.0, 50.0, 90.0, 150.0):
+        assert said(session.poll(at)) == [Hello.type]
+        session.receive(build([hello()], 0, 0), at)
+        number = int(1 + 110 * at) % UNRELIABLE_NUMBERS
+        assert len(session.receive(keyed(beacon(), number=number), at)) == 1
 
 
 def test_a_restarted_board_is_greeted_anew_and_counts_from_its_own_start() -> None:
