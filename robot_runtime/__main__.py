@@ -9,6 +9,7 @@ from pathlib import Path
 
 from robot_runtime.config import Config, craft_in, craft_path, load
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.control.controllers import check_control
 from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.durable_files import keep_private
 from robot_runtime.profile import fit_to_this_computer
@@ -38,6 +39,7 @@ def main() -> int:
         end_with_parent()
     try:
         config = fit_to_this_computer(load(options.config))
+        check_control(config.control)
         craft = craft_in(craft_path(config, options.config, options.data))
         config = replace(config, control=tune_to_craft(config.control, craft))
         with open_transport(config, options.data) as messages:

@@ -81,7 +81,7 @@ class Commands:
         }
 
     def perform(self, command: RobotCommand) -> Answer:
-        """Performs a command; returns the names of the parameters that it changed. Raises RefusedError."""
+        """Performs a command; returns each changed parameter before and after. Raises RefusedError."""
         handler, policy = self._handlers[type(command)], command.policy
         if policy.disturbs_experiment:
             self._robot.experiments.require_none()

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from urllib.parse import SplitResult, urlsplit
 
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, Craft, CraftDocument, load_craft
-from robot_runtime.contract.limits import SET_POINT, ConfigError, Range
+from robot_runtime.contract.limits import SCENE_HEIGHT, SCENE_WIDTH, SET_POINT, ConfigError, Range
 from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.problems import DocumentEntry
@@ -78,9 +78,12 @@ class CraftConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlConfig:
-    """The control node; rate in Hz, set points in m, gains by controller and name."""
+    """The control node; rate in Hz, set points in m, gains by controller and name.
 
-    rate: Annotated[float, Range(1, 50)] = 10.0
+    A command to the fins lasts 250 ms: at 10 Hz two ticks in a row may be late.
+    """
+
+    rate: Annotated[float, Range(10, 50)] = 10.0
     controller: str = "bang_bang"
     set_point: Annotated[float, SET_POINT] = 0.5
     set_point_detected: Annotated[float, SET_POINT] = 1.0
@@ -96,6 +99,15 @@ class VisionConfig(VisionSettings):
     file: str = ""
     width: Annotated[int, Range(64, 1920)] = 320
     height: Annotated[int, Range(48, 1080)] = 240
+
+    def __post_init__(self) -> None:
+        VisionSettings.__post_init__(self)
+        limits = {"width": SCENE_WIDTH, "height": SCENE_HEIGHT} if self.camera == "scene" else {}
+        for name, limit in limits.items():
+            if getattr(self, name) > limit.maximum:
+                raise ConfigError(
+                    f"vision.{name} is {getattr(self, name)}; the scene draws {limit.maximum:g} at most"
+                )
 
     @property
     def settings(self) -> VisionSettings:

@@ -245,7 +245,6 @@ class Core:
         now = self.clock.now()
         heard = now - self._flushed < PUBLISH_EVERY
         if not heard:
-            # The board's messages do it otherwise.
             self.check_faults()
             self.board_parameters.tick()
             self.calibrator.board.tick()
@@ -363,17 +362,21 @@ class Core:
             self.supervisor.fin_check.see(Motor.from_bytes(record))
 
     def _publish_parameters(self) -> None:
-        now, experiment = self.list_parameters(), self._parameters_published
+        now, published = self.list_parameters(), self._parameters_published
         if (
-            experiment is None
-            or now.parameters != experiment.parameters
-            or now.time - experiment.time >= _PARAMETERS_EVERY
+            published is None
+            or now.parameters != published.parameters
+            or now.time - published.time >= _PARAMETERS_EVERY
         ):
             self._parameters_published = now
             self.bus.publish_document("parameters", now)
 
     def _arming_obstacles(self) -> list[str]:
-        return self.calibrator.board.refusals() or self.board_parameters.refusals() or self.vision.refusals()
+        return [
+            *self.calibrator.board.refusals(),
+            *self.board_parameters.refusals(),
+            *self.vision.refusals(),
+        ]
 
     def _publish_statistics(self) -> None:
         self.bus.publish_row("link", self.clock.now(), self.line.statistics().to_bytes())

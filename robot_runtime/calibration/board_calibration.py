@@ -30,6 +30,7 @@ class BoardCalibration:
         self._stored: CalibrationValues | None = None
         self._problem = ""
         self._answers = 0
+        self._asked = 0
         self._asked_at = float("-inf")
         self._changed = threading.Condition()
 
@@ -43,6 +44,7 @@ class BoardCalibration:
         with self._changed:
             self._stored, self._problem = None, ""
             self._asked_at = float("-inf")
+            self._asked = 0
 
     def see(self, packet: Calibration) -> None:
         """Takes the board's answer."""
@@ -52,6 +54,7 @@ class BoardCalibration:
             except ConfigError as problem:
                 self._stored, self._problem = None, str(problem)
             self._answers += 1
+            self._asked = max(self._asked - 1, 0)
             self._changed.notify_all()
         self._on_change()
 
@@ -61,6 +64,7 @@ class BoardCalibration:
             due = self._clock.now() - self._asked_at >= _RETRY_SECONDS + self._patience
             if self._stored is None and due and self._send(RequestCalibration()):
                 self._asked_at = self._clock.now()
+                self._asked += 1
 
     def refusals(self) -> list[str]:
         """Reasons against arming; empty if the board keeps a whole calibration."""
@@ -87,9 +91,11 @@ class BoardCalibration:
         requested = values.packet()
         with self._changed:
             before = self._answers
+            # What was asked before is answered first, with what the board kept until then.
+            last = before + self._asked + 1
             if not self._send(requested):
                 raise RefusedError("There is no connection to the board, so nothing was stored.")
-            self._changed.wait_for(lambda: self._answers > before, _STORE_SECONDS + self._patience)
+            self._changed.wait_for(lambda: self._answers >= last, _STORE_SECONDS + self._patience)
             if self._answers == before:
                 raise RefusedError("The board did not answer. Look at what it keeps before you go on.")
             stored = self._stored

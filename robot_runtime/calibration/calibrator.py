@@ -73,6 +73,8 @@ class Calibrator:
             self._gyro = None
 
     def _keep_gyro(self, measured: Rate, stored: CalibrationValues) -> str:
+        if self.board.require() != stored:
+            raise RefusedError("The calibration was changed meanwhile. Measure again.")
         # The board has taken away what it keeps as the offset.
         forward, right, down = (old + new for old, new in zip(stored.gyro_bias, measured, strict=True))
         if max(map(abs, (forward, right, down))) > GYRO_BIAS.maximum:

@@ -66,11 +66,15 @@ class GyroMeasurement:
     def result(self) -> Rate:
         """Waits for the readings; returns their mean, rad/s.
 
-        Raises RefusedError where they do not come, or where the robot moved.
+        Raises RefusedError where they do not come, where they all are one, or where the robot moved.
         """
         if not self._complete.wait(SECONDS + _PATIENCE):
             raise RefusedError("The IMU sent too few readings. Check it, and try again.")
         rest = judge_rest(self._rates)
+        if rest.stuck:
+            raise RefusedError(
+                "The readings do not change at all: the IMU has stopped. Reset the board, and try again."
+            )
         if rest.moved is not None:
             name = ("forward", "right", "down")[rest.moved]
             raise RefusedError(

@@ -64,6 +64,9 @@ class Range(GroupedMetadata):
 LoopName = Literal["depth", "heading", "pitch", "roll"]
 TILT_MAX = 0.5
 """rad."""
+SCENE_WIDTH = Range(16, 1280)
+SCENE_HEIGHT = Range(16, 960)
+"""Pixels of a rendered picture."""
 SET_POINT = Range(0, 10)
 """m, of the depth."""
 SET_POINTS: dict[LoopName, Range] = {

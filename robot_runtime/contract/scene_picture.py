@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_runtime.contract.card_colours import Paint
-from robot_runtime.contract.limits import ConfigError, Range
+from robot_runtime.contract.limits import SCENE_HEIGHT, SCENE_WIDTH, ConfigError
 from robot_runtime.contract.parsing import parse
 
 HEADER = Struct("<dII")
@@ -23,8 +23,8 @@ class Request:
     `card` is the blue, green and red of what is held before the camera, `marked` whether it shows the marker.
     """
 
-    width: Annotated[int, Range(16, 1280)]
-    height: Annotated[int, Range(16, 960)]
+    width: Annotated[int, SCENE_WIDTH]
+    height: Annotated[int, SCENE_HEIGHT]
     card: tuple[int, int, int] | None = None
     marked: bool = False
 

@@ -93,7 +93,7 @@ TOPICS: tuple[Topic, ...] = (
     ),
     Topic(21, "parameters", _DOCUMENTS, documents.Parameters, "all parameters", newest_only=True),
     Topic(22, "experiment", _DOCUMENTS, documents.Experiment, "progress of an experiment on a loop"),
-    Topic(23, "vision", _DOCUMENTS, documents.VisionInForce, "vision settings in force"),
+    Topic(23, "vision", _DOCUMENTS, documents.VisionInForce, "vision settings in force", newest_only=True),
     Topic(
         24,
         "calibration",

@@ -55,13 +55,16 @@ class Alarms:
             self.see(name, name in wrong, wrong.get(name, ""))
 
     def see(self, name: str, wrong: bool, detail: str = "") -> None:
-        """Sets whether this fault is active now."""
+        """Sets whether this fault is active now; another detail of an active one is no new alarm."""
         now, alarm = self._clock.now(), self._alarms.get(name)
         active = alarm is not None and alarm.active
         if wrong:
             self._last[name] = now
-            if not active:
+            if alarm is None or not active:
                 self.begin(name, detail)
+            elif detail not in alarm.what:
+                self._alarms[name] = replace(alarm, what=f"{self._faults[name].what} {detail}".strip())
+                self._changed()
         elif alarm is not None and active and now - self._last[name] >= self._clear_after:
             self._end(alarm)
 

@@ -25,6 +25,7 @@ from robot_runtime.control.fin_check import FINS
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.link.timing import frames_airtime, stale_after
+from robot_runtime.places import UPLOAD_REMEDY
 
 ARRIVAL = 0.05
 """s that a message of the board may take to arrive."""
@@ -108,6 +109,7 @@ class FaultDetector:
         self._pilot = pilot
         self._hil = hil
         self._arming_obstacles = arming_obstacles
+        self._failing_fins = 0
         baud = line.baud
         self._silent = max(_LIMITS["board_silent"] - ARRIVAL, frames_airtime(3, baud))
         self._depth_stale = stale_after(_LIMITS["depth_stale"], Depth, baud)
@@ -185,7 +187,10 @@ class FaultDetector:
         if "board_silent" in wrong and not self._line.connected:
             wrong["board_silent"] = f"({self._line.text})"
         if "fin_failing" in wrong:
-            wrong["fin_failing"] = f"({', '.join(_failing(self._faults))})"
+            # All since the alarm began: a loose part fails again and again.
+            before = self._failing_fins if "fin_failing" in active else 0
+            self._failing_fins = before | (self._faults & _FIN_FAULTS)
+            wrong["fin_failing"] = f"({', '.join(_failing(self._failing_fins))})"
         return wrong
 
     def refusals(self) -> list[str]:
@@ -311,8 +316,8 @@ _DEPTH_UNCERTAIN = (
 )
 _WRONG_FIRMWARE = (
     "The board runs the firmware for hardware in the loop, which drives no motors. Upload the "
-    "robot's own, or set robot.mode to hil."
+    f"robot's own ({UPLOAD_REMEDY}), or set robot.mode to hil."
 )
 _NO_HIL_FIRMWARE = (
-    "The board does not run the firmware for hardware in the loop. Upload build/firmware/hil/robot.hex."
+    f"The board does not run the firmware for hardware in the loop. Upload it: {UPLOAD_REMEDY}."
 )

@@ -19,7 +19,7 @@ SILENCE = 0.5
 
 
 class HilFeed:
-    """Forwards simulated sensors. Any thread may call `forward`; `tick` runs with the control loop."""
+    """Forwards simulated sensors. Any thread may call `forward`; `tick` runs under the supervisor's lock."""
 
     def __init__(
         self, clock: Clock, send: Callable[[Packet], object], on_event: Callable[[Event], None]

@@ -54,8 +54,8 @@ class Supervisor:
 
     `tick` runs at least every `faults.CHECK_PERIOD` s; all may be called from any thread. With `hil` the
     board must run the firmware for hardware in the loop; with `heartbeat` (s) a server that is silent for
-    longer is a fault. `on_mode` gets each new mode and must not block. `arming_obstacles` returns the
-    parameters that the board has not confirmed yet, as reasons against arming.
+    longer is a fault. `on_mode` gets each new mode and must not block. `arming_obstacles` returns further
+    reasons against arming.
     """
 
     def __init__(
@@ -225,9 +225,9 @@ class Supervisor:
 
     def tick(self) -> None:
         """Checks for faults and takes their actions; repeats STOP until the board is disarmed."""
-        if self._hil is not None:
-            self._hil.tick()
         with self._changed:
+            if self._hil is not None:
+                self._hil.tick()
             if self.detector.note_check() and self.armed:
                 self._fail("runtime_stalled")
             active = {alarm.fault for alarm in self._alarms.listed() if alarm.active}

@@ -41,7 +41,7 @@ def dissect(frame: RecordedFrame) -> Dissection:
         content = cobs.decode(frame.stuffed)
     except cobs.DecodeError:
         return _undecodable(frame, "its stuffing (COBS) is damaged: bytes were lost or changed")
-    if not frame.stuffed or len(frame.stuffed) >= FRAME_BYTES_MAX:
+    if len(frame.stuffed) >= FRAME_BYTES_MAX:
         return _undecodable(frame, f"longer than {FRAME_BYTES_MAX} bytes: a closing zero was lost")
     if len(content) < 2 + _CRC.size:
         return _undecodable(frame, "too short: its beginning or a part was lost")

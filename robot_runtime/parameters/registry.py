@@ -96,6 +96,8 @@ class Registry:
                 if name in self._entries and (now := self._entries[name].get()) != value:
                     problems[name] = f"{name} is {now} now, and not {value} any more"
             for name, value in values.items():
+                if name in problems:
+                    continue
                 try:
                     checked[name] = self._check(name, value)
                 except ValueError as problem:

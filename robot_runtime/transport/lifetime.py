@@ -79,7 +79,11 @@ def add_server_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
     parser.add_argument("--server-lock", type=Path, help="end when no server has held this file's lock ...")
     parser.add_argument(
-        "--linger", type=float, default=LINGER_SECONDS, metavar="SECONDS", help="... for so long; default 30"
+        "--linger",
+        type=float,
+        default=LINGER_SECONDS,
+        metavar="SECONDS",
+        help=f"... for so long; default {LINGER_SECONDS:g}",
     )
 
 

@@ -166,13 +166,13 @@ class VisionNode:
         """
         if self._missing:
             raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
-        from robot_runtime.vision.pipeline import Detector, PickPoint, propose
+        from robot_runtime.vision.pipeline import BALANCES, PickPoint, propose
 
         place = parse(PickPoint, question)
         frame = self._frame
         if frame is None:
             raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
-        return propose(Detector(self._settings).balance(frame.picture), place)
+        return propose(BALANCES[self._settings.white_balance](frame.picture), place)
 
     def refusals(self) -> list[str]:
         """Returns the reason against arming while OpenCV is loaded: a slow computer then holds up control."""

@@ -11,6 +11,7 @@ import cv2
 from robot_runtime.clock import Clock
 from robot_runtime.config import VisionConfig
 from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.vision.balance import BALANCES as BALANCES
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import CameraCard

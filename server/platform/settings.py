@@ -26,6 +26,7 @@ from robot_runtime.config import (
 from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
+from robot_runtime.control.controllers import check_control
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.places import BUILD, DEFAULT_CONFIG, IN_REPOSITORY
 from robot_runtime.profile import Profile, profile_here
@@ -215,6 +216,7 @@ def read_settings(
     config = config or find_config(folder)
     try:
         loaded = load(config)
+        check_control(loaded.control)
     except ConfigError as problem:
         raise SetupError(f"{problem}. Correct the file, or name another with --config.") from problem
     _check_socket_paths(folder)

@@ -60,6 +60,8 @@ def test_the_shipped_file_holds_the_defaults() -> None:
             "[events]\nwebhook = 'http://lab.example'\nwebhook_token_file = 'token'",
             "would send the token for everybody to read; use https://",
         ),
+        ("[vision]\nwidth = 1920", "vision.width is 1920; the scene draws 1280 at most"),
+        ("[control]\nrate = 5", "must lie between 10 and 50"),
         ("[control]\nrate = nan", "must be a number"),
         ("[control]\nrate = true", "must be a number"),
         ("[control.gains.pid]\nkp = 'much'", r"gains.pid.kp is 'much'"),

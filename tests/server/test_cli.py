@@ -160,6 +160,7 @@ def test_an_impossible_start_is_refused_in_one_line(settings: Settings, tmp_path
         ('[robot]\nname = "a/b"', "robot.name"),
         ("[server]\nport = 0", "port"),
         ("[sever]\nport = 1", "sever"),
+        ('[control]\ncontroller = "pidd"', "there is no controller 'pidd'"),
         ("nonsense", "cannot be read"),
     ):
         bad.write_text(text)

@@ -31,7 +31,7 @@ C_TYPES = {
     "f": "float",
     "d": "double",
 }
-_LIMITS = {code: Struct("<" + code).size * 8 for code in "BbHhIi"}
+_BITS = {code: Struct("<" + code).size * 8 for code in "BbHhIi"}
 
 
 class LayoutError(ValueError):
@@ -59,10 +59,10 @@ class Wire:
         return self.scale == 1 and self.code not in "fd"
 
     def counter(self) -> Callable[[float], float]:
-        """The function that rounds a value to the nearest count of this type; None for floating point."""
+        """The function that rounds a value to the nearest count of this type; a float it leaves as it is."""
         if self.code in "fd":
             return _unchanged
-        scale, bits = self.scale, _LIMITS[self.code]
+        scale, bits = self.scale, _BITS[self.code]
         low, high = (
             (0, (1 << bits) - 1) if self.code.isupper() else (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
         )

@@ -17,13 +17,13 @@ from robot_runtime.contract.parsing import TOP, parse, read_value
 from robot_runtime.contract.problems import DocumentEntry, EntryProblem
 from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.contract.vision_settings import MarkerDictionary
+from robot_runtime.control.controllers import check_controller
 from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.experiments.scenario.events import (
     Colour,
     CommandEvent,
     TimedEvent,
     WaterEvent,
-    check_controller,
     read_event,
 )
 from robot_runtime.missions.document import called_by, read_mission

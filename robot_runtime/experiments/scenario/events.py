@@ -19,7 +19,7 @@ from robot_runtime.contract.limits import ConfigError, Range
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.vision_settings import marker_name
-from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.control.controllers import check_controller
 from robot_runtime.simulation.water.faults import SimulatedFault, check_sensor
 from robot_runtime.simulation.water.requests import BeaconPositions, SensorFaultRequest
 from robot_runtime.simulation.water.surroundings import Current, Trim, Waves, check_beacons
@@ -235,13 +235,3 @@ def _check(content: RobotCommand | WaterChange, where: DocumentEntry) -> None:
                     raise ValueError(f"colour is {colour!r}; it must be one of {known}")
     except ValueError as problem:
         raise ConfigError(where.sentence(str(problem))) from problem
-
-
-def check_controller(loop: str, name: str, gains: Mapping[str, Mapping[str, float]]) -> None:
-    """Raises ValueError where the loop has no such controller, or gains are unknown or out of range."""
-    controllers = {one.name: one for one in CONTROLLERS[loop]}
-    for required in (name, *gains):
-        if required not in controllers:
-            raise ValueError(f"there is no controller {required!r}; there are {', '.join(controllers)}")
-    for tuned, numbers in gains.items():
-        controllers[tuned].check(numbers)

@@ -1,6 +1,7 @@
 """The calibration that a board keeps: asked for, missing steps in words, stored; the gyroscope at rest."""
 
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -25,6 +26,8 @@ class Rig:
         self.clock = SimulatedClock()
         self.kept: Calibration = EMULATED.packet()
         self.connected, self.silent, self.worn, self.armed = True, False, False, False
+        self.late: Calibration | None = None
+        """An answer that is still on the line, before the next one."""
         self.sent: list[Packet] = []
         self.told: list[str] = []
         self.heard = threading.Event()
@@ -47,8 +50,14 @@ class Rig:
                 self.kept = packet
             if isinstance(packet, Calibration | RequestCalibration) and not self.silent:
                 # In the link's own thread, as the answer of a board.
-                threading.Thread(target=self.calibrator.board.see, args=(self.kept,)).start()
+                threading.Thread(target=self._answer, args=(self.late, self.kept)).start()
         return True
+
+    def _answer(self, late: Calibration | None, kept: Calibration) -> None:
+        if late is not None:
+            self.calibrator.board.see(late)
+            time.sleep(0.05)  # the line needs that
+        self.calibrator.board.see(kept)
 
     def _hear(self, text: str, severity: Severity) -> None:
         self.told.append(f"{severity}: {text}")
@@ -129,16 +138,20 @@ def test_what_is_not_stored_is_refused_with_the_reason(rig: Rig, trouble: str, w
 
 
 @contextmanager
-def readings(rig: Rig, rate: Callable[[float], tuple[float, float, float]]) -> Iterator[None]:
-    """The IMU's stream at 100 Hz, with this turn rate (rad/s) at each time (s)."""
+def readings(
+    rig: Rig, rate: Callable[[float], tuple[float, float, float]], noise: float = 1e-3
+) -> Iterator[None]:
+    """The IMU's stream at 100 Hz, with this turn rate and noise (rad/s) at each time (s)."""
     over = threading.Event()
 
     def stream() -> None:
-        time = 0.0
+        number = 0
         while not over.is_set():
-            imu = Imu(time=0, attitude=(1, 0, 0, 0), rate=rate(time), force=(0, 0, -9.8))
-            rig.calibrator.see_imu("imu", time, imu.to_bytes())
-            time += 0.01
+            forward, right, down = rate(0.01 * number)
+            turning = (forward + (noise if number % 2 else -noise), right, down)
+            imu = Imu(time=0, attitude=(1, 0, 0, 0), rate=turning, force=(0, 0, -9.8))
+            rig.calibrator.see_imu("imu", 0.01 * number, imu.to_bytes())
+            number += 1
 
     thread = threading.Thread(target=stream)
     thread.start()
@@ -178,6 +191,40 @@ def test_a_robot_that_moves_is_not_measured(
     assert told.startswith("caution: The gyroscope was not measured.")
     assert words in told
     assert rig.calibrator.board.values == EMULATED
+
+
+def test_a_gyroscope_whose_readings_do_not_change_is_not_measured(rig: Rig) -> None:
+    rig.ask()
+    with readings(rig, lambda _: (0.1, 0.0, 0.0), noise=0.0):
+        told = rig.measure()
+    assert "the IMU has stopped" in told
+    assert rig.calibrator.board.values == EMULATED
+
+
+def test_what_was_stored_while_the_gyroscope_was_measured_stays(rig: Rig) -> None:
+    rig.ask()
+    meanwhile = replace(EMULATED, fin_zeros=(1, 2, 3, 4))
+
+    def rate(_: float) -> tuple[float, float, float]:
+        if rig.calibrator.board.values == EMULATED:
+            rig.calibrator.store(meanwhile)
+        return (0.1, 0.0, 0.0)
+
+    with readings(rig, rate):
+        told = rig.measure()
+    assert "was changed meanwhile" in told
+    assert rig.calibrator.board.values == meanwhile
+
+
+def test_an_answer_from_before_is_not_taken_for_that_to_what_is_stored(rig: Rig) -> None:
+    rig.ask()
+    rig.calibrator.board.forget()
+    rig.silent = True
+    rig.calibrator.board.tick()
+    rig.silent, rig.late = False, rig.kept
+    values = replace(EMULATED, fin_zeros=(1, 2, 3, 4))
+    rig.calibrator.store(values)
+    assert rig.calibrator.board.values == values
 
 
 def test_the_depth_is_zeroed_only_while_disarmed(rig: Rig) -> None:

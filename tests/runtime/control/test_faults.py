@@ -176,6 +176,18 @@ def test_faults_that_the_board_reports_are_faults(rig: Rig) -> None:
     }
 
 
+def test_each_fin_that_fails_is_told_while_the_alarm_lasts(rig: Rig) -> None:
+    detector, active = rig.supervisor.detector, ["fin_failing"]
+    for faults, told in (
+        (DeviceFault.ENCODER_FRONT_LEFT, "(encoder of the front left fin)"),
+        (DeviceFault.BRIDGE_BACK_LEFT, "(encoder of the front left fin, H-bridge of the back left fin)"),
+    ):
+        rig.board.faults = faults
+        rig.report()
+        assert detector.active_faults("automatic", active) == {"fin_failing": told}
+    assert detector.active_faults("automatic", []) == {"fin_failing": "(H-bridge of the back left fin)"}
+
+
 def test_a_silent_server_is_a_fault_only_while_armed(rig: Rig) -> None:
     live(rig, 4.1, rig.sense)
     assert wrong(rig) == {"server_silent"}
@@ -230,6 +242,15 @@ def test_a_flickering_fault_is_one_alarm(rig: Rig, alarms: Alarms) -> None:
     told = [(event.kind, event.severity) for event in rig.events]
     assert told == [("fin_failing", "caution"), ("alarm_over", "info")]
     assert not alarms.listed()[0].active
+
+
+def test_another_detail_changes_the_words_of_an_alarm_and_is_no_new_one(rig: Rig, alarms: Alarms) -> None:
+    alarms.update({"fin_failing": "(front left)"})
+    alarms.acknowledge()
+    alarms.update({"fin_failing": "(front left, back left)"})
+    (alarm,) = alarms.listed()
+    assert (alarm.what, alarm.acknowledged) == ("A fin does not follow. (front left, back left)", True)
+    assert len(rig.events) == 1
 
 
 def test_an_alarm_disappears_when_over_and_acknowledged_in_either_order(rig: Rig, alarms: Alarms) -> None:

@@ -122,6 +122,13 @@ def test_nothing_is_set_where_present_values_differ_from_the_expected() -> None:
     assert box.held["a"] == 2.0
 
 
+def test_what_differs_from_the_expected_is_left_out_of_a_partial_change() -> None:
+    box = Box()
+    left_out = box.registry.apply({"a": 2, "b": 4.0}, expected={"a": 3}, partly=True)
+    assert (box.held["a"], box.held["b"]) == (1.0, 4.0)
+    assert left_out.keys() == {"a"}
+
+
 def test_changes_are_reported_with_the_previous_values() -> None:
     box = Box()
     with box.registry.changing() as changed:
