@@ -356,14 +356,14 @@ def run(seconds: float, seed: int, folder: Path) -> str:
         can = subprocess.run([*namespace, "true"], capture_output=True).returncode == 0
     except FileNotFoundError:
         can = False
-    done = subprocess.run(
-        [*namespace, *command, "small"] if can else command,
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        text=True,
-        check=False,
-    )
-    return done.stdout
+    command = [*namespace, *command, "small"] if can else command
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            return process.communicate()[0]
+        except KeyboardInterrupt:
+            # It was interrupted as well, and ends its robot.
+            process.wait()
+            raise
 
 
 def main() -> int:

@@ -6,12 +6,12 @@ that was not sent in this session, in order and at most once.
 
 import ctypes
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, Self
 
 from robot_runtime.link.framing import Decoder, assemble
 from tests.board.rig import ROOT, build
+from tests.proofs.pool import processes
 
 Checksum = Literal["crc32", "crc16", "xor8"]
 End = Literal["chip", "host"]
@@ -132,8 +132,8 @@ def measure_all(frames: int) -> dict[tuple[End, str], Counts]:
     """Counts by end and model: each end reads at least `frames` damaged frames, equally of each model."""
     prepare()
     share = -(-frames // len(MODELS) // BATCH) * BATCH
-    with ProcessPoolExecutor(2) as processes:
-        futures = {model: processes.submit(_measure_both, model, share) for model in MODELS}
+    with processes(2) as pool:
+        futures = {model: pool.submit(_measure_both, model, share) for model in MODELS}
         return {(end, model): future.result()[end] for end in ENDS for model, future in futures.items()}
 
 

@@ -6,7 +6,6 @@ a real robot's would be, whatever the computer does. `tests.proofs.outages` has 
 
 import random
 from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from math import acos, inf
@@ -26,6 +25,7 @@ from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from robot_runtime.vision.camera import CameraError, CameraFrame
+from tests.proofs.pool import processes
 from tests.proofs.watching import Motion
 from tests.runtime.control.flight import Flight
 
@@ -268,9 +268,9 @@ def measure(row: Row, times: int, seed: int) -> Measured:
     return measured
 
 
-def measure_all(times: int, seed: int, rows: Sequence[Row] = ROWS, processes: int = 2) -> dict[str, Measured]:
+def measure_all(times: int, seed: int, rows: Sequence[Row] = ROWS, workers: int = 2) -> dict[str, Measured]:
     """Measure all faults, some in parallel."""
-    with ProcessPoolExecutor(processes) as pool:
+    with processes(workers) as pool:
         parts = {row.name: pool.submit(measure_named, row.name, times, seed) for row in rows}
         return {name: part.result() for name, part in parts.items()}
 

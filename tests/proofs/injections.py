@@ -50,7 +50,7 @@ def main() -> int:
     outcomes: list[outages.Outcome] = []
     kinds = sys.argv[2:] or ["robot", "processes"]
     if "robot" in kinds:
-        measured = faults.measure_all(times, seed, processes=PROCESSES)
+        measured = faults.measure_all(times, seed, workers=PROCESSES)
         print(faults.table(measured), flush=True)
     if "processes" in kinds:
         outcomes = outages.measure_all(times, seed, ROBOTS, _tell)

@@ -6,7 +6,6 @@ random missions, with readings that jump; a share of them swims.
 
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 from math import inf
@@ -26,6 +25,7 @@ from robot_runtime.simulation.boards.emulator_process import Water
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
+from tests.proofs.pool import processes
 from tests.proofs.watching import Motion
 from tests.runtime.control.flight import Flight
 from tests.runtime.experiments.scenario.staging import Told
@@ -313,10 +313,10 @@ def _find_remains(swim: MissionSwim) -> list[str]:
 
 
 def perform_all(
-    pairs: Sequence[tuple[str, str]], board: str, processes: int = 2
+    pairs: Sequence[tuple[str, str]], board: str, workers: int = 2
 ) -> dict[tuple[str, str], list[str]]:
     """Performs these pairs of leaf and cause, some in parallel."""
-    with ProcessPoolExecutor(processes) as pool:
+    with processes(workers) as pool:
         running = {pair: pool.submit(perform, *pair, board) for pair in pairs}
         return {pair: one.result() for pair, one in running.items()}
 

@@ -8,7 +8,6 @@ import random
 import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -24,6 +23,7 @@ from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.zenoh_transport import join
 from server.platform.settings import DataFolder
 from server.processes.supervisor import HEARTBEAT_SECONDS
+from tests.proofs.pool import processes
 from tests.proofs.watching import Fins, Viewer, wait
 from tests.stack import Stack
 
@@ -250,7 +250,7 @@ class World:
 def measure_all(times: int, seed: int, robots: int, tell: Callable[[str], None]) -> list[Outcome]:
     """Run each outage so often altogether, on several robots at once; `tell` is a function of a module."""
     shares = [times // robots + (number < times % robots) for number in range(robots)]
-    with ProcessPoolExecutor(robots, get_context("spawn")) as pool:
+    with processes(robots, get_context("spawn")) as pool:
         runs = [
             pool.submit(_measure_share, share, seed, number, tell)
             for number, share in enumerate(shares)

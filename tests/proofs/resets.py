@@ -13,7 +13,6 @@ import random
 import statistics
 from collections import Counter
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,6 +23,7 @@ from robot_runtime.link.session import BoardMessage, LinkSession, SessionStage
 from robot_runtime.simulation.boards.emulator_process import LineDirection, LineFault
 from tests.board.host import BAUD, start
 from tests.board.rig import ROOT, build
+from tests.proofs.pool import processes
 
 Reset = Literal["host", "reset pin", "power", "watchdog"]
 RESETS: tuple[Reset, ...] = ("host", "reset pin", "power", "watchdog")
@@ -355,10 +355,10 @@ def measure_all(resets: int, seed: int = 0) -> Report:
     hangs = resets // 8
     half = -(-(resets - hangs) // 2)
     others = RESETS[:-1]
-    with ProcessPoolExecutor(2) as processes:
+    with processes(2) as pool:
         parts = [
-            processes.submit(measure, "robot", others, half, 2 * seed),
-            processes.submit(measure, "robot", others, half, 2 * seed + 1),
-            processes.submit(measure, "robot_hang", ("watchdog",), hangs, seed),
+            pool.submit(measure, "robot", others, half, 2 * seed),
+            pool.submit(measure, "robot", others, half, 2 * seed + 1),
+            pool.submit(measure, "robot_hang", ("watchdog",), hangs, seed),
         ]
         return sum((part.result() for part in parts), Report())
