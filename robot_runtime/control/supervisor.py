@@ -102,6 +102,12 @@ class Supervisor:
         status = self.detector.status
         return status is not None and bool(status.flags & _ARMED_FLAG)
 
+    @property
+    def _low_battery_disarmed(self) -> bool:
+        """True if the board reports that a low battery disarmed it."""
+        status = self.detector.status
+        return status is not None and status.flags & (_ARMED_FLAG | _BATTERY_LOW_FLAG) == _BATTERY_LOW_FLAG
+
     def see_status(self, status: Status) -> None:
         """Takes the board's status."""
         with self._changed:
@@ -272,7 +278,10 @@ class Supervisor:
         self._all_stop()
 
     def _all_stop(self) -> None:
-        if self._leave("fault", "alarm", f"All-stop: the fins are stopped. {_ACKNOWLEDGE}"):
+        left = self._leave("fault", "alarm", f"All-stop: the fins are stopped. {_ACKNOWLEDGE}")
+        # A board that a low battery disarmed turns the fins down, and cannot be armed before its next reset.
+        # STOP would cut the motor power before they are down.
+        if left and not self._low_battery_disarmed:
             self._line.send(Stop())
 
     def _leave(self, trigger: Trigger, severity: Severity, why: str, kind: str = "disarmed") -> bool:
@@ -300,4 +309,5 @@ class Supervisor:
 _ACKNOWLEDGE = "Acknowledge the alarms before the robot is armed again."
 _ARMED_FLAG = int(StatusFlag.ARMED)
 """A plain integer: an enumeration's operators cost ten times as much."""
+_BATTERY_LOW_FLAG = int(StatusFlag.BATTERY_LOW)
 _ALL_FINS_FOLLOWED = "Fin check: all four fins followed."

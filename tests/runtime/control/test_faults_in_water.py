@@ -1,10 +1,11 @@
 """Each fault on the whole robot with the compiled firmware: time to the alarm, and the action."""
 
 from collections.abc import Callable, Iterator
-from math import acos
+from math import acos, pi
 
 import pytest
 
+from robot_runtime.contract.packets import Motor, StatusFlag
 from robot_runtime.control.fault_detector import TILT_MAX
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.pilot import PATIENCE
@@ -98,11 +99,19 @@ def tilt(flight: Flight) -> float:
 
 def test_a_low_battery_turns_the_fins_down_and_is_an_alarm() -> None:
     with Flight(more="[robot]\nbattery_full = 6.0") as flight:
-        flight.arm()
+        motors: list[Motor] = []
+        flight.robot.bus.on_row("motor", lambda _, __, record: motors.append(Motor.from_bytes(record)))
+        flight.sticks = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+        flight.arm("manual")
         flight.until(lambda: flight.supervisor.mode == "failsafe", 25.0)
         # It is full enough until time 0.
         assert 20.0 <= flight.now <= BY_NAME["battery_low"].limit
         assert flight.alarm("battery_low")
+        flight.run(2.0)
+        assert motors[-1].angle == pytest.approx([pi / 2] * 4, abs=0.1)
+        status = flight.supervisor.detector.status
+        assert status is not None
+        assert not status.flags & (StatusFlag.ARMED | StatusFlag.MOTOR_POWER)
         flight.supervisor.acknowledge()
         with pytest.raises(RefusedError, match="battery is low"):
             flight.supervisor.begin_arming()
