@@ -170,6 +170,25 @@ def test_surface_of_an_armed_robot_outlives_a_power_cut(robot: Robot) -> None:
     assert robot.last(Depth).depth == pytest.approx(0.08, abs=2e-3)
 
 
+@pytest.mark.parametrize("cause", [ResetCause.WATCHDOG, ResetCause.EXTERNAL, ResetCause.BROWN_OUT])
+@pytest.mark.parametrize("depth", [0.09, 2.0])
+def test_surface_of_a_power_cut_outlives_a_reset_once_it_is_certain(
+    robot: Robot, depth: float, cause: ResetCause
+) -> None:
+    lose_power_under_water(robot)
+    robot.pressure.show(SURFACE)
+    robot.run(200)
+    assert robot.texts[-1] == "depth certain again"
+    robot.pressure.show(SURFACE + depth * WATER)
+    robot.run(200)
+    robot.reset(cause)
+    robot.greet()
+    robot.run(600)
+    assert robot.last(Depth).depth == pytest.approx(depth, abs=2e-3)
+    assert robot.status().faults == 0
+    robot.arm()
+
+
 def test_surface_is_taken_anew_at_power_on(robot: Robot) -> None:
     robot.run(1000)
     robot.pressure.show(SURFACE - 2000)

@@ -44,18 +44,24 @@ void Surface::add(int32_t pressure) {
   pressure_ += pressure;
   if (++readings_ < kReadings) return;
   pressure_ /= kReadings;
-  board::retained_memory().value = pressure_;
-  board::retained_memory().complement = ~static_cast<uint32_t>(pressure_);
-  uncertain_ = false;
+  retain();
   // EEPROM may hold the one before it.
   keep(false);
+}
+
+void Surface::retain() {
+  board::RetainedMemory& retained = board::retained_memory();
+  retained.value = pressure_;
+  retained.complement = ~static_cast<uint32_t>(pressure_);
+  uncertain_ = false;
 }
 
 void Surface::step(int32_t pressure, bool armed) {
   if (!known()) return;
   const int32_t below = pressure - pressure_;
   const bool at_surface = below > -kAtSurface && below < kAtSurface;
-  if (at_surface) uncertain_ = false;
+  // What EEPROM restored outlives the next reset, too.
+  if (at_surface && uncertain_) retain();
   const bool kept = armed || below >= kSubmerged || (kept_ && !at_surface);
   if (kept != kept_) keep(kept);
   if (next_byte_ == sizeof(Record)) return;

@@ -17,8 +17,7 @@ class Surface {
   bool uncertain() const { return uncertain_; }
   // Call every tick with the newest pressure (Pa): puts the surface into EEPROM, or out of it, a byte a tick.
   void step(int32_t pressure, bool armed);
-  // Adds a reading (Pa) at the surface, until the surface is known. The last one stores the mean in memory
-  // that survives a reset.
+  // Adds a reading (Pa) at the surface, until the surface is known, which is their mean.
   void add(int32_t pressure);
   // Depth in mm, downwards, in water of this density (kg/m³); only once the surface is known.
   int16_t depth(int32_t pressure, uint16_t density) const;
@@ -34,6 +33,8 @@ class Surface {
   };
 
   void keep(bool kept);
+  // Stores a certain surface in memory that survives a reset.
+  void retain();
   void restore(int32_t pressure);
 
   int32_t pressure_ = 0;  // the sum of the readings until known
