@@ -5,6 +5,10 @@ least counts, and a straight line through the last of these gives the clocks' of
 second in which everything was late lies off that line, and is left out of a second, final fit. Where a whole
 second lies off by more than any delay, the board's clock has paused: what was known is forgotten. No packet
 is ever said to have been stamped after it arrived.
+
+A stamp wraps after 71 minutes. Telemetry is sent when it is stamped, so that its arrival tells which stamp it
+is, after a silence of any length. A reliable message may have waited for a host: its stamp is only mapped, as
+the newest one before its arrival.
 """
 
 from collections import deque
@@ -17,6 +21,7 @@ _WINDOWS_FOR_DRIFT = 4
 _JUMP = 0.01  # s
 _OUTLIER = 2.0  # standard deviations
 _RESOLUTION = 1e-6  # s, of a stamp
+_AHEAD = 60_000_000  # µs by which a message may be newer than the arrival of telemetry shows; a stalled host
 
 
 class BoardTime:
@@ -28,6 +33,7 @@ class BoardTime:
         self.error = 0.0
         """Standard deviation of the fit, s; 0 until there is one."""
         self._unwrapped: int | None = None
+        self._arrival = 0.0
         self._least: deque[tuple[float, float]] = deque(maxlen=_WINDOWS)
         self._middle = 0.0
         self._offset: float | None = None
@@ -35,21 +41,40 @@ class BoardTime:
         self._window_least: tuple[float, float] | None = None
 
     def to_host(self, stamp: int, arrival: float) -> float:
-        """Host time, s, at which the board stamped a packet that arrived at `arrival` (s)."""
-        if self._unwrapped is None:
-            self._unwrapped = stamp
+        """Host time, s, at which the board stamped telemetry that arrived at `arrival` (s)."""
         # Stamps of one frame may lie a little before the last one seen.
-        self._unwrapped += (stamp - self._unwrapped + _WRAP // 2) % _WRAP - _WRAP // 2
+        self._unwrapped = self._unwrap(stamp, arrival, _WRAP // 2)
+        self._arrival = arrival
         board = self._unwrapped * 1e-6
         if arrival >= self._window_ends:
             self._close_window()
             self._window_ends = arrival + _WINDOW
         if self._window_least is None or arrival - board < self._window_least[1] + self._slope(board):
             self._window_least = board, arrival - board
+        return self._mapped(board, self._window_least)
+
+    def to_host_waiting(self, stamp: int, arrival: float) -> float:
+        """Host time, s, at which the board stamped a message that may have waited before it was sent.
+
+        It leaves the clock as it is. Before any telemetry nothing but the arrival is known.
+        """
+        if self._window_least is None:
+            return arrival
+        board = self._unwrap(stamp, arrival, _AHEAD) * 1e-6
+        return min(self._mapped(board, self._window_least), arrival)
+
+    def _unwrap(self, stamp: int, arrival: float, ahead: int) -> int:
+        """The newest time (µs) of this stamp that is at most `ahead` µs later than the arrival shows."""
+        if self._unwrapped is None:
+            return stamp
+        latest = self._unwrapped + round((arrival - self._arrival) * 1e6) + ahead
+        return latest - (latest - stamp) % _WRAP
+
+    def _mapped(self, board: float, least: tuple[float, float]) -> float:
         if self._offset is None:
-            return board + self._window_least[1]
+            return board + least[1]
         # Less delayed than anything the line was drawn through: it shows the line to be late.
-        early = min(self._window_least[1] - self._fitted(self._window_least[0]), 0.0)
+        early = min(least[1] - self._fitted(least[0]), 0.0)
         return board + self._fitted(board) + early
 
     def _slope(self, board: float) -> float:

@@ -265,7 +265,8 @@ class LinkSession:
     def _stamp(self, type_: int, payload: bytes, now: float) -> float:
         if "time" not in PACKETS[type_].wires:
             return now
-        return self._times.to_host(int.from_bytes(payload[:4], "little"), now)
+        to_host = self._times.to_host_waiting if PACKETS[type_].reliable else self._times.to_host
+        return to_host(int.from_bytes(payload[:4], "little"), now)
 
     def _measure_goodput(self, now: float) -> None:
         since, before = self._goodput_from

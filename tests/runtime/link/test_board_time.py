@@ -26,6 +26,16 @@ def test_stamps_wrap_and_may_step_back_a_little() -> None:
     assert earlier - before == pytest.approx(256e-6, abs=1e-6)
 
 
+@pytest.mark.parametrize("minutes", [1, 40, 60, 75, 110, 300])
+def test_stamps_are_right_after_a_silence_of_any_length(minutes: float) -> None:
+    times = BoardTime()
+    ages = []
+    for step in range(1200):
+        arrival = step * 0.01 + (60 * minutes if step >= 600 else 0.0)
+        ages.append(arrival - times.to_host(round(arrival * 1e6) % (1 << 32), arrival))
+    assert ages == pytest.approx([0.0] * 1200, abs=1e-3)
+
+
 def test_after_a_pause_the_board_s_clock_is_trusted_again_within_two_seconds() -> None:
     times = BoardTime()
     ages = []

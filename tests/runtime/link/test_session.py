@@ -242,3 +242,29 @@ def test_lines_pass_in_order_and_are_acknowledged() -> None:
     passed = session.receive(second + first, 1.03)
     assert [one.payload for one in passed] == [encode(line)[1:] for line in lines[1:]]
     assert {frame.acknowledged for frame in heard(session.poll(1.05))} == {3}
+
+
+@pytest.mark.parametrize("minutes", [2, 40, 50, 70])
+def test_an_old_line_gets_its_own_time_and_leaves_that_of_telemetry(minutes: float) -> None:
+    """The board's lines wait for a host: here one of 5 s after the start, and a new one."""
+    began = minutes * 60.0
+    session = established(began)
+    late: list[float] = []
+    lines: list[float] = []
+    for step in range(400):
+        now = began + step * 0.01
+        data = keyed(beacon(round(now * 1e6) % (1 << 32)), number=step)
+        if step == 120:
+            data += keyed(Debug(time=5_000_000, level=1, text="old"), number=0)
+            data += keyed(Debug(time=round(now * 1e6) % (1 << 32), level=1, text="new"), number=1)
+        for message in session.receive(data, now):
+            (lines if message.type == Debug.type else late).append(message.time - now)
+    assert late == pytest.approx([0.0] * 400, abs=1e-4)
+    assert lines == pytest.approx([5.0 - began - 1.2, 0.0], abs=0.1)
+
+
+def test_a_line_before_any_telemetry_has_the_time_of_its_arrival() -> None:
+    session = established()
+    (line,) = session.receive(keyed(Debug(time=5_000_000, level=1, text="old")), 1.0)
+    (reading,) = session.receive(keyed(beacon(time=3_600_000_000), number=1), 1.1)
+    assert (line.time, reading.time) == pytest.approx((1.0, 1.1))
