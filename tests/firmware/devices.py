@@ -5,6 +5,7 @@ import struct
 from dataclasses import dataclass, field
 
 FORWARD, REVERSE = 1, 2
+OVERCURRENT = 0b11
 
 
 @dataclass
@@ -93,11 +94,15 @@ def compensate(prom: list[int], d1: int, d2: int) -> tuple[int, int]:
 
 @dataclass
 class Bridge:
-    """A DRV8830: the last drive written to it, and its fault register."""
+    """A DRV8830: the last drive written to it, and its fault register; with a fault it coasts.
+
+    A `shorted` one trips whenever it drives.
+    """
 
     control: int = 0
     fault: int = 0
     clears: int = 0
+    shorted: bool = False
 
     def transfer(self, out: bytes, size: int) -> bytes:
         if size:
@@ -105,6 +110,8 @@ class Bridge:
             return bytes([self.fault])
         if out[0] == 0:
             self.control = out[1]
+            if self.shorted and self.drive:
+                self.fault = OVERCURRENT
         elif out == b"\x01\x80":
             self.fault = 0
             self.clears += 1
@@ -113,7 +120,7 @@ class Bridge:
     @property
     def drive(self) -> int:
         """The drive, -63 to 63; 0 where it coasts."""
-        size = self.control >> 2
+        size = 0 if self.fault else self.control >> 2
         return {FORWARD: size, REVERSE: -size}.get(self.control & 3, 0)
 
 

@@ -22,6 +22,7 @@ from robot_runtime.contract.packets import (
     Stop,
     ZeroDepth,
 )
+from tests.firmware.devices import OVERCURRENT
 from tests.firmware.robot import BRIDGES, IMU, PRESSURE, SURFACE, Robot, hello, navigation
 
 WATER = 9810.0
@@ -345,13 +346,39 @@ def test_silent_bridge_is_reported_while_powered(robot: Robot) -> None:
 
 def test_a_fault_of_a_bridge_is_reported_and_cleared(robot: Robot) -> None:
     robot.arm()
-    robot.bridges[2].fault = 0b11
+    robot.bridges[2].fault = OVERCURRENT
     robot.beat(500)
     assert robot.bridges[2].clears == 1
     assert "H-bridge back left: no sensible answer" in robot.texts
     robot.beat(500)
     assert robot.texts[-1] == "H-bridge back left: ok"
     assert robot.status().faults == 0
+
+
+def test_a_bridge_that_trips_once_drives_its_fin_again(robot: Robot) -> None:
+    """Its fault is read every 400 ms, while its fin stands still: at every phase of that."""
+    robot.arm()
+    robot.swim(500, navigation(z=1))
+    for phase in range(0, 400, 10):
+        robot.swim((phase - robot.now) % 400, navigation(z=1))
+        robot.bridges[1].fault = OVERCURRENT
+        robot.swim(2000, navigation(z=1))
+        assert robot.bridges[1].fault == 0
+        assert robot.status().faults == 0
+        motors = [packet for packet in robot.received if isinstance(packet, Motor)]
+        assert max(abs(one.drive[1]) for one in motors[-20:]) > 10
+
+
+@pytest.mark.parametrize("phase", range(0, 400, 50))
+def test_a_bridge_that_trips_again_and_again_is_not_driven_any_more(robot: Robot, phase: int) -> None:
+    robot.arm()
+    robot.swim(500 + phase, navigation(z=1))
+    robot.received.clear()
+    robot.bridges[1].shorted = True
+    robot.swim(2000, navigation(z=1))
+    driven = [one.time for one in robot.received if isinstance(one, Motor) and one.drive[1]]
+    assert (driven[-1] - driven[0]) / 1e6 < 0.75
+    assert robot.status().faults == DeviceFault.TRACKING_BACK_RIGHT
 
 
 def test_motor_reports_drives_as_the_bridges_got_them(robot: Robot) -> None:

@@ -24,7 +24,8 @@ void Fins::start() {
   for (uint8_t i = 0; i < kFinCount; ++i) drive_bridge(i, 0);
 }
 
-void Fins::step(Motion motion, const Parameters& parameters) {
+// Not inlined: its two callers would have a copy each, of 900 bytes.
+__attribute__((noinline)) void Fins::step(Motion motion, const Parameters& parameters) {
   read_encoders();
   const bool was_powered = powered();
   if (motion == Motion::kOff) {
@@ -55,8 +56,10 @@ int8_t Fins::find_drive(uint8_t fin, int16_t gain) {
   DriveWatch& watch = watches_[fin];
   const uint8_t bit = 1 << fin;
   // While its encoder or its H-bridge fails, what a fin does says nothing about its motor.
-  if (!((encoder_faults_ | silent_bridges_) & bit)) {
+  if (!((encoder_faults_ | silent_bridges_) & bit) && !watch.failed()) {
     watch.step(drives_[fin], calibration.drive_sign * wrap_counts(counts_[fin] - counts_before_[fin]));
+    // The bridge may have tripped since its last reading.
+    if (watch.failed() && newly_tripped(fin)) watch.restart();
   }
   if (encoder_faults_ & bit || watch.failed()) return 0;
   return loops_[fin].step(calibration, counts_from_angle(calibration, set_points_[fin]), counts_[fin], gain);
@@ -105,7 +108,14 @@ void Fins::read_bridge_faults() {
   fault_read_tick_ = (fault_read_tick_ + 1) % (kFinCount * kTicksPerFaultRead);
   if (fault_read_tick_ % kTicksPerFaultRead) return;
   const uint8_t fin = fault_read_tick_ / kTicksPerFaultRead;
+  if (newly_tripped(fin) && !watches_[fin].failed()) watches_[fin].restart();
+}
+
+// Once only: a bridge that trips again and again turns its motor as little as a jammed one.
+bool Fins::newly_tripped(uint8_t fin) {
+  const uint8_t before = reported_faults_;
   assign(&reported_faults_, fin, bridge_failed(fin));
+  return reported_faults_ & ~before;
 }
 
 void Fins::drive(uint8_t fin, int8_t drive) {

@@ -43,6 +43,8 @@ class Fins {
   void read_encoders();
   void power(bool on);
   void read_bridge_faults();
+  // Reads and clears a bridge's fault. True if it has one, and had none at the reading before.
+  bool newly_tripped(uint8_t fin);
   int8_t find_drive(uint8_t fin, int16_t gain);
   void drive(uint8_t fin, int8_t drive);
   FinDemand demand(uint8_t fin) const;
