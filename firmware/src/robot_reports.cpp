@@ -54,17 +54,20 @@ void describe(uint8_t number, bool failed, DebugLine* line) {
     return;
   }
   const uint8_t kind = (number - kFirstFin) / kFinCount;
+  const bool bridge = number >= kFirstFin && kind == 1;
   const bool tracking = number >= kFirstFin && kind == 2;
   if (number == 0) *line << FLASH_TEXT("IMU");
   if (number == 1) *line << FLASH_TEXT("pressure sensor");
   if (number >= kFirstFin) {
-    *line << (tracking ? FLASH_TEXT("fin ") : kind ? FLASH_TEXT("H-bridge ") : FLASH_TEXT("encoder "));
+    *line << (tracking ? FLASH_TEXT("fin ") : bridge ? FLASH_TEXT("H-bridge ") : FLASH_TEXT("encoder "));
     *line << describe_fin((number - kFirstFin) % kFinCount);
   }
-  if (tracking) {
-    *line << (failed ? FLASH_TEXT(": against its drive or not at all, stopped") : FLASH_TEXT(": follows"));
+  if (!failed) {
+    *line << (tracking ? FLASH_TEXT(": follows") : FLASH_TEXT(": ok"));
+  } else if (tracking) {
+    *line << FLASH_TEXT(": not following, stopped");
   } else {
-    *line << (failed ? FLASH_TEXT(": no sensible answer") : FLASH_TEXT(": ok"));
+    *line << (bridge ? FLASH_TEXT(": silent or tripped") : FLASH_TEXT(": no sensible answer"));
   }
 }
 

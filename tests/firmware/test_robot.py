@@ -332,6 +332,29 @@ def test_a_fin_that_does_not_follow_its_drive_is_stopped(
     assert robot.status().faults == 0
 
 
+FINS = ("front right", "back right", "back left", "front left")
+
+
+def test_the_line_of_every_fault_arrives_whole(robot: Robot) -> None:
+    robot.arm()
+    for motor in robot.motors:
+        motor.leads = 0
+    robot.swim(1000, navigation(z=1))
+    assert {f"fin {fin}: not following, stopped" for fin in FINS} <= set(robot.texts)
+    robot.absent |= set(BRIDGES)
+    robot.yellow = {0}
+    robot.beat(1000)
+    assert {f"H-bridge {fin}: silent or tripped" for fin in FINS} <= set(robot.texts)
+    assert "encoders: a magnet out of place" in robot.texts
+    robot.absent |= {IMU, PRESSURE}
+    robot.beat(1000)
+    robot.blind = set(range(4))
+    robot.beat(1000)
+    assert {f"encoder {fin}: no sensible answer" for fin in FINS} <= set(robot.texts)
+    assert {f"{sensor}: no sensible answer" for sensor in ("IMU", "pressure sensor")} <= set(robot.texts)
+    assert robot.status().debug_lost == 0
+
+
 def test_silent_bridge_is_reported_while_powered(robot: Robot) -> None:
     robot.absent.add(BRIDGES[1])
     robot.run(300)
@@ -349,7 +372,7 @@ def test_a_fault_of_a_bridge_is_reported_and_cleared(robot: Robot) -> None:
     robot.bridges[2].fault = OVERCURRENT
     robot.beat(500)
     assert robot.bridges[2].clears == 1
-    assert "H-bridge back left: no sensible answer" in robot.texts
+    assert "H-bridge back left: silent or tripped" in robot.texts
     robot.beat(500)
     assert robot.texts[-1] == "H-bridge back left: ok"
     assert robot.status().faults == 0
