@@ -82,12 +82,24 @@ bool eeprom_open(struct eeprom *eeprom, const char *path, char *reason, size_t r
   return memory != MAP_FAILED;
 }
 
+static uint32_t crc32(const uint8_t *bytes, unsigned size) {
+  uint32_t crc = 0xffffffff;
+  for (unsigned i = 0; i < 8 * size; i++) {
+    bool bit = (crc ^ bytes[i / 8] >> i % 8) & 1;
+    crc = crc >> 1 ^ (bit ? 0xedb88320 : 0);
+  }
+  return ~crc;
+}
+
+// A record ends with the CRC-32 of all before, so that the CRC-32 of every whole one is the same.
+static bool calibrated(const uint8_t *kept) {
+  return kept[0] == calibration_record[0] &&
+         crc32(kept, CALIBRATION_BYTES) == crc32(calibration_record, CALIBRATION_BYTES);
+}
+
 void eeprom_calibrate(struct eeprom *eeprom) {
   uint8_t *kept = eeprom->module->eeprom + CALIBRATION_ADDRESS;
-  for (unsigned i = 0; i < CALIBRATION_BYTES; i++) {
-    if (kept[i] != 0xff) {
-      return;
-    }
+  if (!calibrated(kept)) {
+    memcpy(kept, calibration_record, CALIBRATION_BYTES);
   }
-  memcpy(kept, calibration_record, CALIBRATION_BYTES);
 }

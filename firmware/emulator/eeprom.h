@@ -19,7 +19,8 @@ void eeprom_create(struct eeprom *eeprom, struct chip *chip);
 // Stores the contents in this file from now on; a new file begins erased. False with a reason on failure.
 bool eeprom_open(struct eeprom *eeprom, const char *path, char *reason, size_t reason_size);
 
-// Keeps the emulated robot's calibration in it, unless it keeps something there.
+// Writes the emulated robot's calibration into it, unless it holds one that the firmware accepts: a whole
+// record of the present layout.
 void eeprom_calibrate(struct eeprom *eeprom);
 
 // Copies the other's contents and file.

@@ -3,11 +3,13 @@
 import math
 from collections.abc import Iterator
 from contextlib import ExitStack
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
+from robot_runtime.contract.calibration import EMULATED, RECORD_ADDRESS, CalibrationValues, record
 from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     Beacon,
@@ -358,3 +360,28 @@ def test_the_boot_counter_survives(programs: Programs, tmp_path: Path) -> None:
     first.rig.process.stop()
     second = programs.start("robot", *options)
     assert last(second.heard, Hello).epoch == epoch + 1
+
+
+@pytest.mark.parametrize("place", [RECORD_ADDRESS, RECORD_ADDRESS + 20], ids=["another layout", "torn"])
+def test_a_calibration_that_the_firmware_refuses_is_replaced(
+    programs: Programs, tmp_path: Path, place: int
+) -> None:
+    contents = eeprom(EMULATED)
+    contents[place] ^= 0x55
+    file = tmp_path / "eeprom"
+    file.write_bytes(contents)
+    programs.start("robot", "--eeprom", str(file)).arm()
+
+
+def test_a_calibration_that_is_not_complete_stays(programs: Programs, tmp_path: Path) -> None:
+    contents = eeprom(replace(EMULATED, done=("fins",)))
+    file = tmp_path / "eeprom"
+    file.write_bytes(contents)
+    programs.start("robot", "--eeprom", str(file))
+    kept = slice(RECORD_ADDRESS, RECORD_ADDRESS + 30)
+    assert file.read_bytes()[kept] == contents[kept]
+
+
+def eeprom(calibration: CalibrationValues) -> bytearray:
+    """The contents of an EEPROM with this calibration."""
+    return bytearray(RECORD_ADDRESS * b"\xff" + record(calibration.packet())).ljust(1024, b"\xff")
