@@ -147,11 +147,12 @@ void Robot::answer_requests() {
 void Robot::watch_battery(uint32_t now_ms) {
   const uint16_t millivolts = sensors_.battery_millivolts();
   if (!battery_alarm_.update(millivolts, parameters_[kBatteryAlarm], now_ms)) return;
-  DebugLine line(DebugLevel::kError);
-  line << FLASH_TEXT("battery at ") << static_cast<uint16_t>(millivolts / 1000) << FLASH_TEXT(".");
-  link_.queue_line(line.digits(millivolts / 10 % 100, 2) << FLASH_TEXT(" V: fins down, disarmed"));
   lowering_ = armed();
   lowering_since_ms_ = now_ms;
+  DebugLine line(DebugLevel::kError);
+  line << FLASH_TEXT("battery at ") << static_cast<uint16_t>(millivolts / 1000) << FLASH_TEXT(".");
+  line.digits(millivolts / 10 % 100, 2) << FLASH_TEXT(" V: ");
+  link_.queue_line(line << (lowering_ ? FLASH_TEXT("fins down, disarmed") : FLASH_TEXT("arming refused")));
   report_disarmed(arming_.fail_battery());
 }
 
