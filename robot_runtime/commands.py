@@ -113,20 +113,11 @@ class Commands:
             raise RefusedError(" ".join([str(problem), *reasons])) from problem
         if reasons:
             raise RefusedError(" ".join(reasons))
-        robot.missions.prepare(mission)
-        try:
-            return robot.supervisor.begin_arming("automatic", mission.document.limits.alone)
-        except RefusedError:
-            robot.missions.forget()
-            raise
+        begin = partial(robot.missions.prepare, mission)
+        return robot.supervisor.begin_arming("automatic", mission.document.limits.alone, begin)
 
     def _mission(self, command: MissionCommand) -> None:
-        arming = self.begin_mission(command)
-        try:
-            self._robot.supervisor.finish_arming(arming)
-        except RefusedError:
-            self._robot.missions.forget()
-            raise
+        self._robot.supervisor.finish_arming(self.begin_mission(command))
 
     def _pause_mission(self, command: MissionPauseCommand) -> None:
         self._robot.missions.pause(command.on)

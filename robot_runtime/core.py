@@ -24,6 +24,7 @@ from robot_runtime.contract.documents import (
     Experiment,
     Gain,
     Loop,
+    Mode,
     Pace,
     Parameters,
     Severity,
@@ -128,7 +129,7 @@ class Core:
             self.publish_event,
             hil,
             heartbeat,
-            on_mode=lambda mode: self.control.change_mode(mode),
+            on_mode=self._change_mode,
             arming_obstacles=self._arming_obstacles,
         )
         self.control = ControlNode(self.bus, clock, line.send, self.supervisor.pilot)
@@ -173,6 +174,10 @@ class Core:
         """Publishes an event and the changed state."""
         self.bus.publish_document("event", event)
         self._state_changed.set()
+
+    def _change_mode(self, mode: Mode) -> None:
+        self.control.change_mode(mode)
+        self.missions.change_mode(mode)
 
     def _publish_experiment(self, experiment: Experiment) -> None:
         # The state first: a receiver of the end then has the restored loop already.

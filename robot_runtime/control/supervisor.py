@@ -36,6 +36,7 @@ _ARMED_WORDS: dict[Mode, str] = {
 class Arming:
     """An attempt to arm this board; once it is `over`, `refusal` says why it failed, if it did.
 
+    `on_armed` is called once the board is armed, before the mode changes; it must not block.
     `disarmed_seen`: the board has reported that it is disarmed. Until then, reports of an earlier arming may
     still be on their way.
     """
@@ -44,6 +45,7 @@ class Arming:
     tries: int
     mode: Mode = "automatic"
     alone: float = 0.0
+    on_armed: Callable[[], None] | None = None
     disarmed_seen: bool = False
     over: bool = False
     refusal: str = ""
@@ -144,13 +146,16 @@ class Supervisor:
             if arming.refusal:
                 raise RefusedError(arming.refusal)
 
-    def begin_arming(self, mode: Mode = "automatic", alone: float = 0.0) -> Arming:
+    def begin_arming(
+        self, mode: Mode = "automatic", alone: float = 0.0, on_armed: Callable[[], None] | None = None
+    ) -> Arming:
         """Asks the board to arm; `continue_arming` completes it. Raises RefusedError with all reasons.
 
-        `alone`: s for which the robot may continue without the server.
+        `alone`: s for which the robot may continue without the server. What begins by `on_armed` begins by an
+        arming of its own: it is refused where the robot is armed, or is being armed.
         """
         with self._changed:
-            if self.mode == mode != "test":
+            if self.mode == mode != "test" and on_armed is None:
                 return Arming(None, tries=0, over=True)
             if self.armed:
                 raise RefusedError(f"The robot is armed, in {self.mode}. Change its mode, or STOP it first.")
@@ -159,11 +164,11 @@ class Supervisor:
             if reasons or board is None:
                 raise RefusedError(" ".join(reasons))
             if self._arming is None:
-                self._arming = arming = Arming(board, self._arm_tries, mode, alone)
+                self._arming = arming = Arming(board, self._arm_tries, mode, alone, on_armed)
                 arming.disarmed_seen = not self.board_armed
                 self._ask_to_arm(arming)
                 return arming
-            if self._arming.mode != mode:
+            if self._arming.mode != mode or on_armed is not None:
                 raise RefusedError(f"The robot is already being armed for {self._arming.mode}.")
             return self._arming
 
@@ -254,6 +259,8 @@ class Supervisor:
         self.pilot.begin()
         self.fin_check.begin()
         self.armed_since = self._clock.now()
+        if arming.on_armed is not None:
+            arming.on_armed()
         self._go(_ARM[arming.mode])
         self._event("armed", "info", _ARMED_WORDS[arming.mode])
 

@@ -5,7 +5,6 @@ ends, sets parameters through the registry, and says STOP. Supervisor and board 
 """
 
 import logging
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -30,6 +29,8 @@ BATTERY_SAG = 2.0
 """s for which the battery may be under its limit, as it sags under load."""
 LATE = 1.0
 """s that a tick may take of the mission's clock at most; a longer one stops the robot anyway."""
+_SWIMS_IN: tuple[Mode, ...] = ("automatic", "manual")
+"""The modes in which a mission runs or is paused; any other one ends it."""
 _ENDS: dict[Mode, str] = {
     "disarmed": "The robot was stopped.",
     "failsafe": "The robot was stopped for a fault; see its alarms.",
@@ -68,9 +69,10 @@ class MissionRunner:
         self._stop = stop
         self._on_mission = on_mission
         self._on_event = on_event
-        self._lock = threading.Lock()
         self._loaded: LoadedMission | None = None
         self._run: MissionRun | None = None
+        self._ended_in: Mode | None = None
+        """The mode that ended it, which the next tick sees to, whatever followed."""
         self._number = 0
         self._ticked = 0.0
         self._held = False
@@ -82,7 +84,7 @@ class MissionRunner:
 
     @property
     def active(self) -> bool:
-        """True from a mission's start to its end."""
+        """True from the arming for a mission to its end."""
         return self._run is not None or self._loaded is not None
 
     def require_none(self) -> None:
@@ -114,14 +116,17 @@ class MissionRunner:
         return LoadedMission(document, text)
 
     def prepare(self, mission: LoadedMission) -> None:
-        """Has the mission begin with the next tick in automatic. Raises RefusedError while another runs."""
-        with self._lock:
-            self.require_none()
-            self._loaded = mission
+        """Has the mission begin with the next tick: the robot has been armed for it. Never blocks."""
+        self._loaded, self._ended_in = mission, None
 
-    def forget(self) -> None:
-        """Drops a prepared mission that has not begun: the robot was not armed."""
-        self._loaded = None
+    def change_mode(self, mode: Mode) -> None:
+        """Takes each new mode of the robot. Never blocks, because a STOP takes this way, too.
+
+        A mode that ends a mission ends it for good, also one that has not begun yet, and also where the robot
+        is armed again before the next tick.
+        """
+        if mode not in _SWIMS_IN and self.active:
+            self._ended_in = mode
 
     def pause(self, on: bool) -> None:
         """Pauses, or goes on. Raises RefusedError where no mission runs."""
@@ -139,7 +144,8 @@ class MissionRunner:
 
     def tick(self, mode: Mode) -> None:
         """Advances the mission in this mode of the robot; begins a prepared one."""
-        if self._run is None and self._loaded is not None and mode == "automatic":
+        mode = self._ended_in or mode
+        if self._loaded is not None and (mode in _SWIMS_IN or self._ended_in is not None):
             self._begin(self._loaded)
         run = self._run
         if run is None:
@@ -179,7 +185,7 @@ class MissionRunner:
         now = self._clock.now()
         seconds, self._ticked = min(now - self._ticked, LATE), now
         run.see_depth()
-        if mode not in ("automatic", "manual"):
+        if mode not in _SWIMS_IN:
             self._finish(run, "ended", _ENDS[mode], mode)
         elif self._ending is not None:
             self._finish(run, "ended", self._ending, mode)
@@ -233,7 +239,7 @@ class MissionRunner:
         try:
             left = run.end()
         finally:
-            if mode in ("automatic", "manual"):
+            if mode in _SWIMS_IN:
                 self._stop(f"The mission is over: {text}")
         if left:
             names = ", ".join(f"{name} to {value}" for name, value in left.items())

@@ -208,7 +208,6 @@ class _RunLoop:
         if arming.over:
             self._arming = None
             if arming.refusal:
-                self._rig.robot.missions.forget()
                 self._refuse(event, arming.refusal)
             else:
                 self._add_bookmark(event.words)

@@ -8,6 +8,7 @@ from robot_runtime.contract.packets import (
     StatusFlag,
     Stop,
 )
+from robot_runtime.control.supervisor import Arming
 from robot_runtime.errors import RefusedError
 from tests.runtime.control.supervisor_rig import Board, Rig
 
@@ -222,6 +223,28 @@ def test_arming_proceeds_step_by_step_without_blocking(rig: Rig) -> None:
     assert rig.supervisor.begin_arming().over
     rig.supervisor.continue_arming()
     assert len(rig.board.sent) == 3
+
+
+def test_what_begins_with_an_arming_begins_with_its_own_alone(rig: Rig) -> None:
+    begun: list[str] = []
+
+    def begin() -> Arming:
+        return rig.supervisor.begin_arming(on_armed=lambda: begun.append(rig.supervisor.mode))
+
+    rig.board.obeys = False
+    rig.supervisor.begin_arming()
+    with pytest.raises(RefusedError, match="is already being armed for automatic"):
+        begin()
+    rig.supervisor.stop("Stopped.")
+    begin()
+    rig.supervisor.stop("Stopped.")
+    assert begun == []
+    rig.board.obeys = True
+    rig.supervisor.finish_arming(begin())
+    assert begun == ["disarmed"]
+    with pytest.raises(RefusedError, match="The robot is armed, in automatic"):
+        begin()
+    assert rig.supervisor.mode == "automatic"
 
 
 def test_a_board_that_never_arms_ends_the_attempt(rig: Rig) -> None:

@@ -1,0 +1,87 @@
+"""A mission runner in simulated time without a board; the test sets what the robot measures and its mode."""
+
+from collections.abc import Callable
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.config import Config
+from robot_runtime.contract.documents import Event, Mission, Mode
+from robot_runtime.contract.missions import NO_LIMITS
+from robot_runtime.core import Core
+from robot_runtime.link.link_driver import LinkDriver
+from robot_runtime.missions.document import read_mission
+from robot_runtime.missions.node import LoadedMission, MissionRunner
+from robot_runtime.missions.senses import MissionSenses
+from robot_runtime.transport.outbox import Outbox
+
+TICK = 0.1
+"""s between two ticks of the control loop."""
+
+
+class SetSenses(MissionSenses):
+    """Readings that the test sets."""
+
+    measured = 0.6
+    look: Callable[[str], bool] = staticmethod(lambda _: False)
+
+    @property
+    def depth(self) -> float:
+        """m."""
+        return self.measured
+
+    @property
+    def heading(self) -> float:
+        """rad."""
+        return 0.0
+
+    def sees(self, what: str) -> bool:
+        """True if the test shows it."""
+        return self.look(what)
+
+
+class MissionRig:
+    """A runner of missions with its documents, events and stops."""
+
+    def __init__(self) -> None:
+        config, self.clock = Config(), SimulatedClock()
+        line = LinkDriver("", config.link.baud, self.clock, 1, lambda _: None, lambda: None)
+        outbox = Outbox(lambda *_: None, lambda _: False)
+        self.core = core = Core(config, self.clock, "", line, outbox, watched=lambda _: False)
+        self.senses = SetSenses(core.bus, self.clock, core.control, core.supervisor.detector, core.vision)
+        self.documents: list[Mission] = []
+        self.events: list[Event] = []
+        self.stops: list[str] = []
+        self.runner = MissionRunner(
+            self.clock,
+            NO_LIMITS,
+            self.senses,
+            core.parameters,
+            self.stops.append,
+            self.documents.append,
+            self.events.append,
+        )
+
+    @property
+    def last(self) -> Mission:
+        """The newest document."""
+        return self.documents[-1]
+
+    def prepare(self, text: str) -> None:
+        """Has a mission begin with the next tick."""
+        self.runner.prepare(LoadedMission(read_mission(text), text))
+
+    def tick(self, seconds: float = TICK, mode: Mode = "automatic") -> None:
+        """Ticks the mission for this time."""
+        for _ in range(round(seconds / TICK)):
+            self.runner.tick(mode)
+            self.clock.forward(TICK)
+
+    def swim(self, text: str) -> Mission:
+        """Ticks a mission until it ends; returns its last document."""
+        self.prepare(text)
+        while self.runner.active:
+            self.tick()
+        return self.last
+
+    def status(self, path: str) -> str:
+        """The status of a step in the newest document."""
+        return next(one.status for one in self.last.steps if one.path == path)
