@@ -15,7 +15,7 @@ Axis = Literal["z", "yaw", "pitch", "roll"]
 
 @dataclass(frozen=True, slots=True)
 class LoopOverride:
-    """Set by an experiment or a mission in place of the loop's own; None keeps the own."""
+    """A controller and a set point that replace the loop's own; None keeps the own."""
 
     controller: Controller | None = None
     set_point: float | None = None
@@ -24,7 +24,8 @@ class LoopOverride:
 class ControlLoop:
     """Steers one `axis` of the navigation command by one measured value, m or rad.
 
-    `override` replaces its controller, its set point or both, even while it is off.
+    `override` replaces its controller, its set point or both during an experiment or a mission, even while
+    it is off.
     Each attribute may be set from any thread; the next tick uses it.
     """
 

@@ -39,7 +39,7 @@ STICK_MIDDLE = 0.05
 class Course:
     """A course that outranks the chosen steering until a time (s): surge and yaw, or to the light.
 
-    Once it has expired the robot stays.
+    It outranks a heading hold that is on, too. Once it has expired the robot stays.
     """
 
     until: float
@@ -238,6 +238,9 @@ class ControlNode:
             return False
         if loop is self.heading and self._steering_in_force == "beacons":
             return False
+        if loop is self.heading and self._course_override is not None:
+            # A mission holds a heading by overriding the loop; otherwise its course has the yaw.
+            return loop.override is not None
         return loop is self.depth or loop.on or loop.override is not None
 
     def _check_on(self, loop: ControlLoop) -> None:

@@ -11,7 +11,7 @@ from robot_runtime.contract.packets import Depth, Imu, Navigation
 from robot_runtime.control.attitude import GRAVITY
 from robot_runtime.control.controllers.bang_bang import BangBang
 from robot_runtime.control.loop import LoopOverride
-from robot_runtime.control.node import ControlNode
+from robot_runtime.control.node import ControlNode, Course
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.bus import Bus
@@ -95,6 +95,28 @@ def test_a_heading_is_reached_the_short_way_round(wanted: float, measured: float
     command = rig.tick()
     assert command is not None
     assert command.yaw * side > 0
+
+
+def test_a_course_outranks_a_heading_hold_that_is_on() -> None:
+    rig = Rig("automatic")
+    rig.node.set_loop("heading", on=True, set_point=1.5)
+    rig.node.override_course(Course(rig.clock.now() + 10.0, x=0.3, yaw=-0.5))
+    command = rig.tick()
+    assert command is not None
+    assert (command.x, command.yaw) == pytest.approx((0.3, -0.5), abs=0.01)
+    rig.node.override_course(Course(rig.clock.now()))
+    command = rig.tick()
+    assert command is not None
+    assert (command.x, command.yaw) == (0.0, 0.0)
+    rig.node.heading.override = LoopOverride(set_point=0.5)
+    command = rig.tick()
+    assert command is not None
+    assert command.yaw < 0
+    rig.node.heading.override = None
+    rig.node.override_course(None)
+    command = rig.tick()
+    assert command is not None
+    assert command.yaw > 0
 
 
 def test_passing_south_is_no_jump_for_the_controllers_speed() -> None:
