@@ -17,6 +17,7 @@ from robot_runtime.control.loop import LoopOverride
 from robot_runtime.control.node import Course
 from robot_runtime.missions.branches import AllBranch, RaceBranch, RepeatBranch, TimeoutBranch, UntilBranch
 from robot_runtime.missions.document import MissionDocument, MissionStep
+from robot_runtime.missions.failure import find_failed
 from robot_runtime.missions.leaf import Leaf
 from robot_runtime.missions.senses import MissionSenses
 from robot_runtime.missions.tree import MissionTree
@@ -233,13 +234,13 @@ class MissionRun:
 
     @property
     def failure(self) -> str:
-        """The reason why it failed: the step that says so itself, with its words."""
+        """The reason why it failed: the step by which it failed, with its words."""
         self._update()
-        for step in reversed(list(self.document.root.walk())):
-            text = self._tree.text(step.path)
-            if self._records[step.path].status == "failed" and text:
-                return f"Step {step.place or '1'}, {step.node.words.lower()}: {text}"
-        return "A step failed."
+        step = find_failed(list(self._states()))
+        if step is None or not step.text:
+            return "A step failed."
+        where = f"Step {step.path}, {step.words.lower()}" if step.path else "The mission"
+        return f"{where}: {step.text}"
 
     @property
     def statuses(self) -> tuple[object, ...]:
@@ -250,6 +251,9 @@ class MissionRun:
     def _update(self) -> None:
         behaviours = self._tree.behaviours
         for path, record in self._records.items():
+            if record.status == "stopped" and path and self._records[path[:-1]].status == "waiting":
+                # Its branch is to begin anew.
+                record.status = "waiting"
             if (seen := behaviours[path].status) is record.seen:
                 continue
             record.seen = seen
@@ -277,7 +281,7 @@ class MissionRun:
                 elapsed=round(elapsed, 3),
                 longest=round(record.longest, 1),
                 rounds=self._tree.rounds(step.path),
-                text=self._tree.text(step.path),
+                text=self._tree.text(step.path) if record.status != "waiting" else "",
             )
 
     def _remaining(self, step: MissionStep) -> float:

@@ -71,6 +71,20 @@ class LeafBehaviour(Behaviour):
         return Status.SUCCESS if outcome else Status.RUNNING
 
 
+class InvertBehaviour(Inverter):
+    """Fails where the child succeeds, and the other way round."""
+
+    def __init__(self, child: Behaviour) -> None:
+        super().__init__("invert", child)
+        self.text = ""
+
+    def update(self) -> Status:
+        """The other status than the child's."""
+        status = super().update()
+        self.text = "Its step succeeded." if status == Status.FAILURE else ""
+        return status
+
+
 class TimeoutBehaviour(Decorator):
     """Fails after `seconds` of the mission's clock."""
 
@@ -124,8 +138,11 @@ class UntilBehaviour(Behaviour):
         return Status.FAILURE if self._body.status == Status.FAILURE else Status.RUNNING
 
     def terminate(self, new_status: Status) -> None:
-        """Stops the body with this step."""
-        if new_status != Status.RUNNING and self._body.status == Status.RUNNING:
+        """Stops the body with this step. Where this one is to begin anew, its steps forget their ends."""
+        if new_status == Status.INVALID:
+            for one in self.children:
+                one.stop(new_status)
+        elif self._body.status == Status.RUNNING:
             self._body.stop(Status.INVALID)
 
 
@@ -207,7 +224,7 @@ class MissionTree:
             case TryBranch():
                 return FailureIsSuccess("try", _in_order(steps))
             case InvertBranch():
-                return Inverter("invert", steps[0])
+                return InvertBehaviour(steps[0])
             case TimeoutBranch(seconds=seconds):
                 return TimeoutBehaviour(_in_order(steps), seconds, self._robot)
         return _in_order(steps)

@@ -9,7 +9,7 @@ from typing import Any
 
 from robot_runtime.contract.commands import MissionCommand
 from robot_runtime.contract.craft import Craft
-from robot_runtime.contract.documents import Control
+from robot_runtime.contract.documents import Control, MissionStepState
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import MissionLimits, MissionPhase
 from robot_runtime.contract.parsing import TOP
@@ -20,6 +20,7 @@ from robot_runtime.experiments.scenario.events import CommandEvent
 from robot_runtime.experiments.scenario.rig import MakeBoard
 from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.missions.document import read_mission
+from robot_runtime.missions.failure import find_failed
 from robot_runtime.transport.blocks import read_blocks, read_rows
 
 CURVE_PERIOD = 0.5
@@ -36,8 +37,8 @@ _LONGEST = 3600.0
 class TrialResult:
     """The outcome of a mission with one seed. `phase` is null where it did not begin; `text` says why.
 
-    `failed` is the path of the step that failed. `curve` has the depth, m, every `CURVE_PERIOD` s from
-    its start to its end.
+    `failed` is the path of the step by which it failed, empty for the mission's own; null where none did, as
+    at a limit. `curve` has the depth, m, every `CURVE_PERIOD` s from its start to its end.
     """
 
     seed: int
@@ -108,15 +109,14 @@ def try_mission(scenario: Scenario, make_board: MakeBoard) -> TrialResult:
         text=last["text"],
         elapsed=last["elapsed"],
         deepest=last["deepest"],
-        failed=find_failed(last["steps"]) if last["phase"] == "failed" else None,
+        failed=_find_failed(last["steps"]) if last["phase"] == "failed" else None,
         curve=watch.curve,
     )
 
 
-def find_failed(steps: list[dict[str, Any]]) -> str | None:
-    """The path of the step that failed by itself, as it says why; None where none did."""
-    failed = [one["path"] for one in steps if one["status"] == "failed" and one["text"]]
-    return failed[-1] if failed else None
+def _find_failed(steps: list[dict[str, Any]]) -> str | None:
+    failed = find_failed([MissionStepState(**one) for one in steps])
+    return None if failed is None else failed.path
 
 
 class _Watch:
