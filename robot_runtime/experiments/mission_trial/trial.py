@@ -15,7 +15,7 @@ from robot_runtime.contract.missions import MissionLimits, MissionPhase
 from robot_runtime.contract.parsing import TOP
 from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.contract.topics import Kind
-from robot_runtime.experiments.scenario.document import MISSION_AT, Scenario, read_scenario_table
+from robot_runtime.experiments.scenario.document import DURATION, MISSION_AT, Scenario, read_scenario_table
 from robot_runtime.experiments.scenario.events import CommandEvent
 from robot_runtime.experiments.scenario.rig import MakeBoard
 from robot_runtime.experiments.scenario.run import ScenarioRun
@@ -30,7 +30,6 @@ OWN = ("name", "title", "duration", "seed", "mission", "missions", "description"
 _POOL = {"kind": "pool", "depth": 3.0, "length": 10.0, "width": 5.0}
 _MARGIN = 10.0
 """s after the mission's longest time, for arming and the end."""
-_LONGEST = 3600.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,16 +62,17 @@ def trial_scenario(
     problems = [where.key(name).problem("is the trial's own") for name in OWN if name in mission.trial]
     if problems:
         raise ConfigError(*problems)
-    heading = Random(f"{seed} heading").uniform(-pi, pi)
+    start = {"heading": Random(f"{seed} heading").uniform(-pi, pi)}
+    own = mission.trial.get("start", {})
     table: dict[str, Any] = {
         "scene": _POOL,
-        "start": {"heading": heading},
         "craft": "robot",
         **mission.trial,
+        "start": {**start, **own} if isinstance(own, dict) else own,
         "name": "trial",
         "title": "Trial",
         "seed": seed,
-        "duration": min(ceil(mission.longest + mission.limits.pause + _MARGIN), _LONGEST),
+        "duration": min(ceil(mission.longest + mission.limits.pause + _MARGIN), DURATION.maximum),
         "missions": asdict(limits),
     }
     try:
@@ -86,23 +86,15 @@ def trial_scenario(
 
 
 def try_mission(scenario: Scenario, make_board: MakeBoard) -> TrialResult:
-    """Runs a trial's scenario until its mission has ended. Raises BoardError."""
+    """Runs a trial's scenario until its mission has ended. Raises BoardError, PortError."""
     watch = _Watch()
     run = ScenarioRun(scenario, make_board, watch)
     watch.on_end = run.cancel
     run.perform(lambda _: {})
     last = watch.last
     if last is None or last["phase"] in ("running", "paused"):
-        text = watch.problem or "It did not end within the trial."
-        return TrialResult(
-            seed=scenario.seed,
-            phase=None,
-            text=text,
-            elapsed=0.0,
-            deepest=0.0,
-            failed=None,
-            curve=watch.curve,
-        )
+        text = watch.problem or "It did not begin within the trial."
+        return TrialResult(seed=scenario.seed, phase=None, text=text)
     return TrialResult(
         seed=scenario.seed,
         phase=last["phase"],

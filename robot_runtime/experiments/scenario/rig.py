@@ -82,6 +82,11 @@ class SimulatedRobot(Core):
             open_camera=open_camera,
         )
 
+    def publish_tick(self) -> None:
+        """Publishes what is due. An operator's page counts as open: simulated time has none to close."""
+        self.missions.see_pages(1)
+        super().publish_tick()
+
 
 class ScenarioRig:
     """The robot, its board and its water, from `prelude` (s) before the scenario's start on.
