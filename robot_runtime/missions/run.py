@@ -15,7 +15,14 @@ from robot_runtime.contract.documents import (
 from robot_runtime.contract.missions import MissionPhase, MissionStatus
 from robot_runtime.control.loop import LoopOverride
 from robot_runtime.control.node import Course
-from robot_runtime.missions.branches import AllBranch, RaceBranch, RepeatBranch, TimeoutBranch, UntilBranch
+from robot_runtime.missions.branches import (
+    AllBranch,
+    FirstOfBranch,
+    RaceBranch,
+    RepeatBranch,
+    TimeoutBranch,
+    UntilBranch,
+)
 from robot_runtime.missions.document import MissionDocument, MissionStep
 from robot_runtime.missions.failure import find_failed
 from robot_runtime.missions.leaf import Leaf
@@ -37,6 +44,8 @@ class _Record:
     took: float = 0.0
     seen: object = None
     """Its behaviour's status when this was written."""
+    reset: bool = False
+    """True if it has ended, and its behaviour knows nothing of it any more."""
 
 
 class MissionRun:
@@ -73,6 +82,13 @@ class MissionRun:
         self._sequence = 0
         self._progress = 0.0
         self._records = {step.path: _Record(step.longest) for step in document.root.walk()}
+        self._alternatives = {
+            step.path: tuple(one.path for one in branch.steps[number:])
+            for branch in document.root.walk()
+            if isinstance(branch.node, FirstOfBranch)
+            for number, step in enumerate(branch.steps, 1)
+        }
+        """The later steps beside each step of a `first_of`, whose start resets the ones before."""
         self._tree = MissionTree(document.root, self)
 
     @property
@@ -251,15 +267,13 @@ class MissionRun:
     def _update(self) -> None:
         behaviours = self._tree.behaviours
         for path, record in self._records.items():
-            if record.status == "stopped" and path and self._records[path[:-1]].status == "waiting":
-                # Its branch is to begin anew.
-                record.status = "waiting"
-            if (seen := behaviours[path].status) is record.seen:
+            if (seen := behaviours[path].status) is record.seen and not record.reset:
                 continue
             record.seen = seen
             status = self._tree.status(path)
-            if status == "waiting" and record.status in ("running", "stopped"):
-                status = "stopped"
+            if is_reset := status == "waiting":
+                status = self._find_past(path, record)
+            record.reset = is_reset and status != "waiting"
             if status == record.status:
                 continue
             if record.status != "running":
@@ -267,6 +281,16 @@ class MissionRun:
             if status != "running":
                 record.took = self.elapsed - record.began
             record.status = status
+
+    def _find_past(self, path: tuple[int, ...], record: _Record) -> MissionStatus:
+        """The status of a step whose behaviour is reset: how it ended, until its branch begins anew."""
+        branch = self._records[path[:-1]].status if path else "running"
+        if record.status in ("running", "stopped"):
+            return "waiting" if branch == "waiting" else "stopped"
+        later = self._alternatives.get(path, ())
+        if branch in ("done", "failed") or any(self._tree.status(one) != "waiting" for one in later):
+            return record.status
+        return "waiting"
 
     def _states(self) -> Iterator[MissionStepState]:
         for step in self.document.root.walk():
@@ -298,6 +322,9 @@ class MissionRun:
         if isinstance(step.node, AllBranch | RaceBranch):
             return max(below)
         if isinstance(step.node, RepeatBranch):
-            rounds = step.node.times - self._tree.rounds(step.path) - 1
+            rounds = step.node.times - self._tree.rounds(step.path)
+            if any(self._records[one.path].status in ("waiting", "running") for one in step.steps):
+                # The round that is under way; between two, the one before is counted already.
+                rounds -= 1
             return rounds * record.longest / step.node.times + sum(below)
         return min(own, sum(below)) if isinstance(step.node, TimeoutBranch) else sum(below)

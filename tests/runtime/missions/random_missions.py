@@ -137,6 +137,17 @@ class Swim:
         self.active = runner.active
 
 
+def check_failure(last: Mission) -> None:
+    """Fails unless the mission's end names a failed step below failed ones alone, with its words."""
+    states = {one.path: one for one in last.steps}
+    where, _, said = last.text.partition(": ")
+    path = "" if where == "The mission" else where.removeprefix("Step ").split(",")[0]
+    assert (states[path].status, states[path].text) == ("failed", said)
+    while path:
+        path = path.rpartition(".")[0]
+        assert states[path].status == "failed"
+
+
 def check_random_mission(steps: list[dict[str, Any]], seed: int) -> None:
     """Swims a mission of these steps. Fails where it does not end in its time, or leaves something behind."""
     text = mission(*map(write, steps), limits="time = 3600")
@@ -147,6 +158,10 @@ def check_random_mission(steps: list[dict[str, Any]], seed: int) -> None:
     assert "An error in the software" not in last.text
     assert last.elapsed <= swum.document.longest + ROUNDING
     assert not any(step.status == "running" for step in last.steps)
+    progress = [one.progress for one in swum.documents]
+    assert progress == sorted(progress)
+    if last.phase == "failed":
+        check_failure(last)
     assert len(swum.stops) == 1
     assert swum.core.parameters.values()[GAIN] == swum.before
     control = swum.core.control

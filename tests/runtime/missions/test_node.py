@@ -85,3 +85,34 @@ UNSEEN = "{ do = 'wait_for', sees = 'red', timeout = 1 }"
 )
 def test_the_step_by_which_it_failed_is_named(text: str, said: str) -> None:
     assert MissionRig().swim(text).text == said
+
+
+def test_progress_is_steady_over_the_rounds_of_a_repetition() -> None:
+    rig = MissionRig()
+    rig.swim(mission("{ do = 'repeat', times = 4, steps = [{ do = 'hold', seconds = 2 }] }"))
+    progress = [one.progress for one in rig.documents]
+    assert progress == sorted(progress)
+    assert progress[-2] < 1.0
+
+
+def test_what_failed_in_a_first_of_stays_failed_while_the_next_one_runs() -> None:
+    rig = MissionRig()
+    lost = f"{{ do = 'sequence', steps = [{UNSEEN}] }}"
+    choice = f"{{ do = 'first_of', steps = [{lost}, {lost}, {HOLD}] }}"
+    rig.prepare(mission(f"{{ do = 'repeat', times = 2, steps = [{choice}] }}"))
+    states = dict.fromkeys(("1.1.1.1", "1.1.2.1", "1.1.3"), "")
+    seen = []
+    while rig.runner.active:
+        rig.tick()
+        if (now := {path: rig.status(path) for path in states}) != states:
+            states = now
+            seen.append(tuple(now.values()))
+    one = [
+        ("running", "waiting", "waiting"),
+        ("failed", "running", "waiting"),
+        ("failed", "failed", "running"),
+        ("failed", "failed", "done"),
+    ]
+    assert seen == [*one, *one]
+    progress = [one.progress for one in rig.documents]
+    assert progress == sorted(progress)
