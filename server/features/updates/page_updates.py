@@ -8,6 +8,7 @@ import asyncio
 import json
 import time
 from collections.abc import AsyncIterable
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -42,8 +43,10 @@ class PageUpdates:
         return release.with_name(release.name + PART)
 
     def recover(self) -> None:
-        """Remove an upload that a killed server has left."""
-        self._part.unlink(missing_ok=True)
+        """Remove an upload that a killed server has left; one that cannot be removed hinders no start."""
+        if self._installed:
+            with suppress(OSError):
+                self._part.unlink()
 
     def state(self) -> UpdateState:
         """Everything that pages show."""

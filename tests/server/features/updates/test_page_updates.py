@@ -172,3 +172,23 @@ def test_the_rest_of_an_upload_is_removed_at_the_next_start(
     places.requested.rename(part)
     updates.recover()
     assert list(part.parent.iterdir()) == []
+
+
+def test_a_server_that_is_not_the_installed_one_leaves_its_upload_alone(
+    places: InstallPlaces, tmp_path: Path
+) -> None:
+    part = places.requested.with_name(places.requested.name + ".part")
+    part.parent.mkdir()
+    part.write_bytes(RELEASE)
+    PageUpdates(DataFolder(tmp_path / "data"), places).recover()
+    assert part.read_bytes() == RELEASE
+
+
+def test_the_rest_of_an_upload_that_cannot_be_removed_hinders_no_start(
+    updates: PageUpdates, places: InstallPlaces
+) -> None:
+    # As root every file can be removed: a folder in its place cannot.
+    part = places.requested.with_name(places.requested.name + ".part")
+    part.mkdir(parents=True)
+    updates.recover()
+    assert part.is_dir()
