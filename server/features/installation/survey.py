@@ -21,17 +21,17 @@ from server.platform.terminal import echo
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """The findings; without a running server `problem` says so, and nothing is armed or recording.
+    """The findings; without a running server `problem` says so.
 
-    `running` is the version of the running server. `reads` is False for a database of a newer version; then
-    `copy` is its newest copy that this version can read, empty without one. `firmware` is the SHA-256 of this
-    version's firmware for a real board, else empty.
+    `armed` is None where the server could not say it. `running` is the version of the running server.
+    `reads` is False for a database of a newer version; then `copy` is its newest copy that this version can
+    read, empty without one. `firmware` is the SHA-256 of this version's firmware for a real board, or empty.
     """
 
     version: str = VERSION
     running: str = ""
     problem: str = ""
-    armed: bool = False
+    armed: bool | None = None
     recording: bool = False
     reads: bool = True
     copy: str = ""
@@ -41,16 +41,20 @@ class Survey:
 def survey(settings: Settings) -> Survey:
     """Look at this version, its data, and the server that runs on them."""
     reads, copy = _look_at_database(settings.data)
-    running, problem, armed, recording = "", "", False, False
+    running, problem, armed, recording = "", "", None, False
+    try:
+        # Alone: a damaged database does not hide an armed robot.
+        armed = ask(settings.data, "GET", "/robot")["armed"] is True
+    except SetupError as failure:
+        problem = str(failure)
     try:
         health = ask(settings.data, "GET", "/health")
         wrong = [
             one for one in health["parts"] if one["name"] in ("database", "runtime") and one["state"] != "ok"
         ]
-        problem = "; ".join(f"{one['name']}: {one['text']}" for one in wrong)
+        problem = "; ".join(f"{one['name']}: {one['text']}" for one in wrong) or problem
         running = str(health["version"])
         recording = any(one["state"] == "recording" for one in _list_sessions(settings.data))
-        armed = ask(settings.data, "GET", "/robot")["armed"] is True
     except SetupError as failure:
         problem = problem or str(failure)
     return Survey(

@@ -16,7 +16,13 @@ from server.features.installation.installer import INSTALL_BYTES, wait_until_hea
 from server.features.installation.places import SERVICES, InstallPlaces
 from server.features.installation.release import RELEASE_FILE, Release, check_signature, read_release
 from server.features.installation.report import UpdateReport, hold
-from server.features.installation.versions import list_wrong, look_at, order, write_services_of
+from server.features.installation.versions import (
+    list_wrong,
+    look_at,
+    order,
+    refuse_in_use,
+    write_services_of,
+)
 from server.platform.disk_space import free_bytes
 from server.platform.settings import SetupError
 
@@ -80,7 +86,7 @@ class Updater:
             release = self._take_in(path)
             if release.version == before:
                 raise SetupError(f"µ-CAT {before} is in use already. Nothing was changed.")
-            self._refuse_in_use()
+            refuse_in_use(effects, places)
             # Those of earlier updates that came to nothing, too.
             self._remove_others(release.version)
             self._check_room(release)
@@ -91,7 +97,7 @@ class Updater:
         finally:
             effects.remove(places.incoming)
         # The environment took minutes to build.
-        self._refuse_in_use()
+        refuse_in_use(effects, places)
         self._switch(before, environment)
         self._remove_others()
         return release.version
@@ -102,7 +108,7 @@ class Updater:
         now, before = self._installed(), places.version_of(places.previous)
         if not before or before == now:
             raise SetupError("There is no version to go back to: none was before, or one went back already.")
-        self._refuse_in_use()
+        refuse_in_use(self._effects, places)
         last = self._read(places.last_switch)
         switch = Switch(before, now, firmware=last is not None and last.firmware)
         self._find_copy(switch)
@@ -120,6 +126,9 @@ class Updater:
         switch = self._read(self._places.journal)
         if switch is None:
             return None
+        if not starting:
+            # The version after it may have been used since.
+            refuse_in_use(self._effects, self._places)
         self._tell(f"The update to {switch.after} was cut off: {switch.before} is put back.")
         if starting:
             self._go_back(switch)
@@ -161,18 +170,6 @@ class Updater:
         release = read_release(places.incoming)
         check_signature(release, places.key)
         return release
-
-    def _refuse_in_use(self) -> None:
-        try:
-            found = look_at(self._effects, self._places, self._places.current)
-        except CommandFailedError as problem:
-            # What cannot even look at itself is not in use, and an update may be what mends it.
-            self._effects.say(f"The version in use cannot be asked: {problem}")
-            return
-        if found.armed:
-            raise SetupError("The robot is armed. Disarm it first; nothing was changed.")
-        if found.recording:
-            raise SetupError("A session is being recorded. Stop it first; nothing was changed.")
 
     def _check_room(self, release: Release) -> None:
         needed = INSTALL_BYTES

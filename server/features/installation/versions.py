@@ -6,6 +6,8 @@ from pathlib import Path
 from server.features.installation.effects import CommandFailedError, Effects
 from server.features.installation.places import USER, InstallPlaces
 from server.features.installation.survey import Survey
+from server.platform.pidfile import running_parts
+from server.platform.settings import DataFolder, SetupError
 
 ORDER_SECONDS = 600.0
 """A copy of a large database on a slow card, or an upload of the firmware."""
@@ -32,6 +34,24 @@ def look_at(effects: Effects, places: InstallPlaces, environment: Path) -> Surve
         return Survey(**json.loads(answer))
     except (ValueError, TypeError) as problem:
         raise CommandFailedError(f"{environment.name} gives no survey of itself: {problem}.") from problem
+
+
+def refuse_in_use(effects: Effects, places: InstallPlaces) -> None:
+    """Raise SetupError while the robot is armed, or may be, or a session is recorded."""
+    try:
+        found = look_at(effects, places, places.current)
+    except CommandFailedError as failure:
+        # It cannot even look at itself: an update may be what mends it.
+        found = Survey(problem=str(failure))
+    if found.armed:
+        raise SetupError("The robot is armed. Disarm it first; nothing was changed.")
+    if found.armed is None and "runtime" in running_parts(DataFolder(places.data).run):
+        raise SetupError(
+            f"The robot may be armed: {found.problem} If you see that it is not, end its runtime: "
+            "sudo systemctl stop mucat-runtime. Nothing was changed."
+        )
+    if found.recording:
+        raise SetupError("A session is being recorded. Stop it first; nothing was changed.")
 
 
 def list_wrong(effects: Effects, places: InstallPlaces, environment: Path) -> dict[str, str]:

@@ -72,7 +72,9 @@ class Computer:
         elif "DEFAULT_CONFIG" in command[-1]:
             return DEFAULT_CONFIG.read_text()
         elif command[-1].endswith("installation.survey"):
-            return json.dumps(asdict(Survey(running=self.places.version_of(self.places.current))))
+            return json.dumps(
+                asdict(Survey(running=self.places.version_of(self.places.current), armed=False))
+            )
         return None
 
     def effects(self, cut: int = -1, *, dry: bool = False) -> Effects:

@@ -1,5 +1,6 @@
 """Updates into a folder: whole, refused, of versions that do not work, and cut off at every effect."""
 
+import os
 import shutil
 import zipfile
 from collections.abc import Callable
@@ -13,7 +14,8 @@ from server.features.installation.effects import Effects
 from server.features.installation.release import SUMS, read_release
 from server.features.installation.report import UpdateReport, hold
 from server.features.installation.updater import Updater
-from server.platform.settings import SetupError
+from server.platform.pidfile import pid_file
+from server.platform.settings import DataFolder, SetupError
 from tests.server.features.installation.computer import PowerCutError, place_release, place_version
 from tests.server.features.installation.signing import make_keys, sign
 from tests.server.features.installation.updatable import UpdatableComputer
@@ -162,6 +164,23 @@ def armed(_: Path, computer: UpdatableComputer) -> None:
     computer.armed = True
 
 
+def silent(_: Path, computer: UpdatableComputer) -> None:
+    computer.silent = True
+    run_runtime(computer)
+
+
+def without_a_survey(_: Path, computer: UpdatableComputer) -> None:
+    computer.broken["current/bin/python -I -m server.features.installation.survey"] = "Killed"
+    run_runtime(computer)
+
+
+def run_runtime(computer: UpdatableComputer) -> None:
+    """This process is its runtime."""
+    run = DataFolder(computer.places.data).run
+    run.mkdir()
+    pid_file(run, "runtime").write(os.getpid(), "")
+
+
 def recording(_: Path, computer: UpdatableComputer) -> None:
     computer.recording = True
 
@@ -183,6 +202,8 @@ def in_use(_: Path, computer: UpdatableComputer) -> None:
 REFUSED: dict[str, tuple[Callable[[Path, UpdatableComputer], None], str]] = {
     "changed checksums": (unsigned, "signature .* is wrong"),
     "an armed robot": (armed, "Disarm it first"),
+    "a server that does not answer": (silent, "may be armed: No server works on it"),
+    "a version that cannot look at itself": (without_a_survey, "may be armed: runuser failed .* Killed"),
     "a recording": (recording, "Stop it first"),
     "a new fault": (without_a_library, r"OpenCV cannot be loaded\. Nothing was changed"),
     "another architecture": (for_another_computer, "no wheel of numpy"),
@@ -323,6 +344,45 @@ def test_an_armed_robot_keeps_its_version(tmp_path: Path, keys: Path, release: P
     computer.armed = True
     with pytest.raises(SetupError, match="Disarm it first"):
         roll_back(computer)
+
+
+def test_without_a_runtime_an_update_mends_what_cannot_look_at_itself(
+    tmp_path: Path, keys: Path, release: Path
+) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    computer.broken["current/bin/python -I -m server.features.installation.survey"] = "Killed"
+
+    def mend(words: str) -> None:
+        if words.startswith(f"link {computer.places.current} "):
+            computer.broken.clear()
+
+    effects = Effects(computer.lines.append, run=computer.run, before=mend)
+    assert Updater(computer.places, effects).update(release) == "2.0.0"
+
+
+def test_a_version_that_swims_is_not_put_back_after_an_update_that_was_ended(
+    tmp_path: Path, keys: Path, release: Path
+) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    end_before_it_is_healthy(computer, release)
+    computer.armed = True
+    for change in (partial(update, computer, release), partial(roll_back, computer)):
+        with pytest.raises(SetupError, match="Disarm it first"):
+            change()
+    assert computer.running == "2.0.0"
+
+
+def end_before_it_is_healthy(computer: UpdatableComputer, release: Path) -> None:
+    """Begin an update; it is ended after the switch, when its version runs already."""
+
+    def end(words: str) -> None:
+        if words.startswith(f"write {computer.places.last_switch}"):
+            raise PowerCutError
+
+    with pytest.raises(PowerCutError):
+        Updater(computer.places, Effects(computer.lines.append, run=computer.run, before=end)).update(release)
+    assert computer.running == read_release(release).version
+    assert computer.places.journal.exists()
 
 
 def test_two_versions_are_kept(tmp_path: Path, keys: Path, release: Path) -> None:

@@ -17,6 +17,7 @@ class UpdatableComputer(Computer):
     """Its database is a text "SCHEMA sessions"; a version reads every schema up to its own.
 
     `schemas` and `firmware` are by version; `sick` versions never answer, `wrong` are the doctor's findings.
+    A `silent` server answers nothing, though it works.
     """
 
     def __init__(self, root: Path) -> None:
@@ -26,7 +27,7 @@ class UpdatableComputer(Computer):
         self.sick: set[str] = set()
         self.wrong: dict[str, str] = {}
         self.running = ""
-        self.armed = self.recording = False
+        self.armed = self.recording = self.silent = False
         self.board = ""
 
     @property
@@ -99,14 +100,15 @@ class UpdatableComputer(Computer):
         else:
             reads = self.schema <= self.schema_of(version)
             copies = [one for one in range(self.schema_of(version), 0, -1) if self.copy(one).exists()]
-            problem = "" if self.running else "No server works on it."
+            running = "" if self.silent else self.running
+            problem = "" if running else "No server works on it."
             return json.dumps(
                 asdict(
                     Survey(
                         version=version,
-                        running=self.running,
+                        running=running,
                         problem=problem,
-                        armed=self.armed,
+                        armed=self.armed if running else None,
                         recording=self.recording,
                         reads=reads,
                         copy="" if reads or not copies else str(self.copy(copies[0])),

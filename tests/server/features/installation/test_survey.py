@@ -1,0 +1,41 @@
+"""The survey of a version, beside a real server and without one."""
+
+import asyncio
+import sqlite3
+from contextlib import closing
+
+from server.features.installation.survey import survey
+from server.platform.running_server import announce
+from server.platform.settings import Settings
+from tests.server.blocks import state_block
+from tests.server.serving import Served, play
+from tests.server.waiting import until
+
+
+async def arm(served: Served) -> None:
+    """Make an armed robot that this computer's shell can ask about."""
+
+    def is_armed() -> bool:
+        return (served.container.monitor.state() or {}).get("armed") is True
+
+    announce(served.settings)
+    served.runtime.publish(state_block(0, armed=True))
+    await until(is_armed, "the state")
+
+
+def test_a_damaged_database_does_not_hide_an_armed_robot(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await arm(served)
+        with closing(sqlite3.connect(served.settings.data.database)) as database, database:
+            database.execute("DROP TABLE session")
+        found = await asyncio.to_thread(survey, served.settings)
+        assert (found.armed, found.recording) == (True, False)
+        assert found.problem
+
+    play(settings, scenario)
+
+
+def test_without_a_server_nobody_can_say_whether_the_robot_is_armed(settings: Settings) -> None:
+    found = survey(settings)
+    assert (found.running, found.armed) == ("", None)
+    assert "No server works on" in found.problem
