@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from re import Pattern
 
@@ -52,10 +53,15 @@ class Effects:
         run: Run = run_command,
         before: Callable[[str], None] = lambda _: None,
     ) -> None:
-        self.say = say
+        self._say = say
         self.dry = dry
         self._run = run
         self._before = before
+
+    def say(self, words: str) -> None:
+        """Say it; a terminal that is gone, as that of a lost ssh session, ends nothing."""
+        with suppress(OSError):
+            self._say(words)
 
     def _begin(self, words: str) -> bool:
         """Say it; returns True where it is to be done."""

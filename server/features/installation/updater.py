@@ -16,6 +16,7 @@ from server.features.installation.installer import INSTALL_BYTES, wait_until_hea
 from server.features.installation.places import SERVICES, InstallPlaces
 from server.features.installation.release import RELEASE_FILE, Release, check_signature, read_release
 from server.features.installation.report import UpdateReport, hold
+from server.features.installation.signals import uninterrupted
 from server.features.installation.versions import (
     list_wrong,
     look_at,
@@ -103,7 +104,8 @@ class Updater:
         return release.version
 
     def _roll_back(self) -> str:
-        self._recover()
+        if (ended := self._recover()) is not None:
+            return ended.before
         places = self._places
         now, before = self._installed(), places.version_of(places.previous)
         if not before or before == now:
@@ -113,11 +115,12 @@ class Updater:
         switch = Switch(before, now, firmware=last is not None and last.firmware)
         self._find_copy(switch)
         # As a cut-off update: a power cut on the way back does not end it.
-        self._effects.write(places.journal, json.dumps(asdict(switch)) + "\n")
-        self._effects.remove(places.last_switch)
-        self._tell(f"{before} is put back.")
-        with self._stopped():
-            self._go_back(switch)
+        with uninterrupted():
+            self._effects.write(places.journal, json.dumps(asdict(switch)) + "\n")
+            self._effects.remove(places.last_switch)
+            self._tell(f"{before} is put back.")
+            with self._stopped():
+                self._go_back(switch)
         wait_until_healthy(self._effects, places, HEALTHY_SECONDS)
         return before
 
@@ -133,8 +136,9 @@ class Updater:
         if starting:
             self._go_back(switch)
         else:
-            with self._stopped():
+            with uninterrupted(), self._stopped():
                 self._go_back(switch)
+            wait_until_healthy(self._effects, self._places, HEALTHY_SECONDS)
         return switch
 
     @contextmanager
@@ -191,6 +195,7 @@ class Updater:
         if new := sorted(found.keys() - known.keys()):
             raise SetupError(f"The new version would not work here: {found[new[0]]} Nothing was changed.")
 
+    @uninterrupted()
     def _switch(self, before: str, environment: Path) -> None:
         places, effects = self._places, self._effects
         firmware = look_at(effects, places, environment).firmware

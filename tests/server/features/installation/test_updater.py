@@ -1,7 +1,9 @@
 """Updates into a folder: whole, refused, of versions that do not work, and cut off at every effect."""
 
+import errno
 import os
 import shutil
+import signal
 import zipfile
 from collections.abc import Callable
 from functools import partial
@@ -370,6 +372,55 @@ def test_a_version_that_swims_is_not_put_back_after_an_update_that_was_ended(
         with pytest.raises(SetupError, match="Disarm it first"):
             change()
     assert computer.running == "2.0.0"
+
+
+@pytest.mark.parametrize("older", [False, True])
+def test_the_way_back_from_an_update_that_was_ended_goes_back_once(
+    tmp_path: Path, keys: Path, release: Path, older: bool
+) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    if older:
+        computer.places.previous.symlink_to(place_version(computer, "0.9.0"))
+    end_before_it_is_healthy(computer, release)
+    assert roll_back(computer) == "1.0.0"
+    assert (computer.running, computer.database.read_text()) == ("1.0.0", f"1 {DIVES}")
+    assert report_of(computer) == ("done", "µ-CAT 1.0.0 is in use again.")
+
+
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGINT, signal.SIGTERM])
+def test_neither_a_lost_session_nor_ctrl_c_ends_an_update_between_two_versions(
+    tmp_path: Path, keys: Path, release: Path, number: signal.Signals
+) -> None:
+    class EndedError(Exception):
+        """The process is ended."""
+
+    def end(*_: object) -> None:
+        raise EndedError
+
+    def interrupt(_: str) -> None:
+        if computer.places.journal.exists():
+            signal.raise_signal(number)
+
+    computer = installed(tmp_path / "pi", keys)
+    updater = Updater(computer.places, Effects(computer.lines.append, run=computer.run, before=interrupt))
+    before = signal.signal(number, end)
+    try:
+        assert updater.update(release) == "2.0.0"
+        assert computer.running == "2.0.0"
+        assert updater.roll_back() == "1.0.0"
+        assert computer.running == "1.0.0"
+        with pytest.raises(EndedError):
+            signal.raise_signal(number)
+    finally:
+        signal.signal(number, before)
+
+
+def test_an_update_whose_terminal_is_gone_goes_on(tmp_path: Path, keys: Path, release: Path) -> None:
+    def say(_: str) -> None:
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    computer = installed(tmp_path / "pi", keys)
+    assert Updater(computer.places, Effects(say, run=computer.run)).update(release) == "2.0.0"
 
 
 def end_before_it_is_healthy(computer: UpdatableComputer, release: Path) -> None:
