@@ -153,6 +153,8 @@ def check_board(machine: Machine) -> Finding | None:
         return report.look("Not asked: the server does not run.", "mucat run, or sudo systemctl start mucat")
     if machine.link_state == "ok":
         return report.ok(machine.link_text)
+    if machine.link_state == "starting":
+        return report.look(machine.link_text, "Look again in a minute; journalctl -u 'mucat*'")
     return report.wrong(
         machine.link_text or "It does not answer.",
         "Check power and cable; another version's firmware: mucat upload",

@@ -11,7 +11,7 @@ import click
 from server.features.doctor.checks import examine
 from server.features.doctor.findings import print_findings, worst
 from server.features.doctor.machine import Machine, read_machine
-from server.platform.command_line import config_option, data_option
+from server.platform.command_line import CommandError, config_option, data_option
 from server.platform.folder_lock import runner_of
 from server.platform.last_configuration import read_usable_settings
 from server.platform.running_server import ask
@@ -28,7 +28,12 @@ def doctor(data: Path | None, config: Path | None, *, as_json: bool) -> int:
 
     It changes nothing. The exit status is 1 where something is wrong.
     """
-    findings = examine(_look(config, data))
+    try:
+        findings = examine(_look(config, data))
+    except PermissionError as problem:
+        raise CommandError(
+            f"This user may not read {problem.filename}. On an installed robot: sudo mucat doctor"
+        ) from problem
     if as_json:
         echo(json.dumps([asdict(one) for one in findings], indent=2))
     else:
@@ -52,6 +57,7 @@ def _ask_health(settings: Settings) -> dict[str, tuple[str, str]]:
         return {}
     try:
         health = ask(settings.data, "GET", "/health")
-    except SetupError as problem:
-        return {"link": ("failed", str(problem))}
+    except SetupError:
+        # It may be starting: that says nothing about the board.
+        return {"link": ("starting", "Not asked: the server does not answer.")}
     return {part["name"]: (part["state"], part["text"]) for part in health["parts"]}

@@ -142,7 +142,7 @@ def write_command(places: InstallPlaces) -> str:
 MUCAT_DATA={places.data} MUCAT_CONFIG={places.config}
 export MUCAT_DATA MUCAT_CONFIG
 case "${{1-}}" in
-    install | uninstall | update | rollback | doctor) exec {program} "$@" ;;
+    install | uninstall | update | rollback) exec {program} "$@" ;;
 esac
 test "$(id -u)" -ne 0 || exec runuser -u {USER} -- {program} "$@"
 exec {program} "$@"

@@ -76,6 +76,7 @@ CASES: dict[str, tuple[dict[str, Any], str, str]] = {
         "look",
         "Connection refused.",
     ),
+    "board: not yet": ({"link_state": "starting", "link_text": "Starting."}, "look", "Starting"),
     "board: not asked": ({"link_state": "", "link_text": ""}, "look", "does not run"),
     "groups: missing": ({"groups": frozenset({"dialout"})}, "wrong", "not in gpio, video"),
     "reset: no chip": ({"reset_problem": "/dev/gpiochip0: No such file"}, "wrong", "No such file"),

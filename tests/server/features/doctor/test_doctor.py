@@ -16,9 +16,11 @@ from server.cli import main
 from server.features.doctor.checks import examine
 from server.features.doctor.findings import Finding
 from server.features.doctor.machine import Machine, read_machine
+from server.platform.pidfile import PidFile
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 
+NOBODY = 65534
 ROBOT = '[robot]\nmode = "robot"\n[link]\nport = "{port}"\nreset = "dtr"\n[server]\nport = {web}\n'
 
 
@@ -91,6 +93,35 @@ def test_it_changes_nothing(settings: Settings, capsys: pytest.CaptureFixture[st
     doctor(settings)
     capsys.readouterr()
     assert sorted(settings.data.path.rglob("*")) == before
+
+
+def test_a_user_who_may_not_read_the_data_is_told_who_may(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = settings.data.path
+    folder.parent.chmod(0o755)
+    folder.chmod(0)
+    user = os.geteuid()
+    if user == 0:
+        os.seteuid(NOBODY)
+    try:
+        status = doctor(settings)
+    finally:
+        os.seteuid(user)
+        folder.chmod(0o700)
+    said = capsys.readouterr().err
+    assert (status, said.count("\n")) == (1, 1)
+    assert "sudo mucat doctor" in said
+
+
+def test_a_server_that_is_starting_says_nothing_about_the_board(
+    settings: Settings, web: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings.config.write_text(ROBOT.format(port="/dev/nowhere", web=web))
+    PidFile(settings.data.runner).write(os.getpid(), "")
+    doctor(settings, "--json")
+    board = found(capsys)["board"]
+    assert (board.verdict, board.text) == ("look", "Not asked: the server does not answer.")
 
 
 def test_an_address_that_is_taken_is_wrong(settings: Settings) -> None:
