@@ -14,6 +14,7 @@ DISK_LOW = 500_000_000
 SMALL_MEMORY = 1_000_000_000
 """Bytes; with less a Raspberry Pi needs compressed swap."""
 GROUPS = ("dialout", "gpio", "video")
+REINSTALL = "sudo mucat uninstall (the data stay), then sudo sh RELEASE/install.sh; or make setup"
 RESET_LABELS = ("pinctrl-bcm", "pinctrl-rp1")
 """Beginnings of the labels of a Raspberry Pi's own GPIO chips."""
 
@@ -48,7 +49,7 @@ def check_libraries(machine: Machine) -> Finding | None:
         return None
     if machine.broken_libraries:
         words = "; ".join(f"{name}: {why}" for name, why in sorted(machine.broken_libraries.items()))
-        return report.wrong(f"Cannot be imported: {words}.", "sudo mucat install RELEASE, or make setup")
+        return report.wrong(f"Cannot be imported: {words}.", REINSTALL)
     return report.ok("All can be imported.")
 
 
@@ -204,7 +205,7 @@ def check_camera(machine: Machine) -> Finding | None:
     if not machine.camera_library:
         return report.wrong(
             "The library picamera2 is missing.",
-            "sudo apt install python3-picamera2, then sudo mucat install RELEASE",
+            "sudo apt install python3-picamera2, then sudo mucat install and sudo reboot",
         )
     if not machine.cameras:
         text = "No camera is found: vision sees nothing, everything else works."
@@ -254,7 +255,7 @@ def check_memory_limit(machine: Machine) -> Finding | None:
     if not machine.memory_cgroup:
         return report.look(
             "The kernel does not limit memory: a server that grows could slow the robot down.",
-            f"sudo mucat install adds cgroup_enable=memory to {machine.boot_folder}/cmdline.txt; reboot",
+            f"sudo mucat install, which adds it to {machine.boot_folder}/cmdline.txt, then sudo reboot",
         )
     return report.ok("The kernel limits the server's memory.")
 

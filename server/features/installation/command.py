@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from server.features.installation.effects import CommandFailedError, Effects
+from server.features.installation.environments import WHEELS
 from server.features.installation.installer import Installer
 from server.features.installation.places import InstallPlaces
 from server.features.installation.release import SIGNATURE, check_signature, read_release
@@ -22,13 +23,14 @@ OPEN_UMASK = 0o022
 
 
 @click.command()
-@click.argument("release", type=FILE)
+@click.argument("release", type=FILE, required=False)
 @click.option("--yes", is_flag=True, help="Change the boot settings without asking.")
 @click.option("--dry-run", is_flag=True, help="Say what would be done, and do nothing.")
-def install(release: Path, *, yes: bool, dry_run: bool) -> None:
+def install(release: Path | None, *, yes: bool, dry_run: bool) -> None:
     """Install µ-CAT as services on this computer.
 
-    RELEASE is a folder of wheels. What is there already stays; done again, it mends what is missing.
+    RELEASE is a folder of wheels; without one it is that of the installed version. What is there already
+    stays; done again, it mends what is missing.
     """
     places = InstallPlaces()
     _require_root("install", dry=dry_run)
@@ -36,7 +38,7 @@ def install(release: Path, *, yes: bool, dry_run: bool) -> None:
     effects = Effects(echo, dry=dry_run)
     installer = Installer(places, effects, lambda question: yes or click.confirm(question, default=False))
     try:
-        found = read_release(release.absolute())
+        found = read_release((release or places.current / WHEELS).absolute())
         if (found.folder / SIGNATURE).exists():
             own = found.folder / "release.pem"
             check_signature(found, places.key if places.key.exists() or not own.exists() else own)

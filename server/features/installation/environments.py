@@ -1,5 +1,6 @@
 """Virtual environments, one for each version, built beside the one in use."""
 
+import re
 from pathlib import Path
 
 from server.features.installation.effects import CommandFailedError, Effects
@@ -25,6 +26,7 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
     environment = places.version(release.version)
     if places.is_complete(environment):
         effects.say(f"{environment} is there")
+        _share_system_packages(effects, places, environment)
         return environment
     if BITS == 32:
         _check_system_packages(places)
@@ -72,6 +74,14 @@ def _packages(release: Release) -> list[str]:
 def _needs_system_packages(places: InstallPlaces) -> bool:
     """True on a Raspberry Pi, whose camera library comes by apt alone, and with 32 bits."""
     return BITS == 32 or (places.root / SYSTEM_PACKAGES / "picamera2").exists()
+
+
+def _share_system_packages(effects: Effects, places: InstallPlaces, environment: Path) -> None:
+    """Makes an environment see the system's packages, where one that it needs has come since it was built."""
+    if _needs_system_packages(places):
+        settings = environment / "pyvenv.cfg"
+        text = settings.read_text(encoding="utf-8")
+        effects.write(settings, re.sub(r"(?m)^(include-system-site-packages = )false$", r"\1true", text))
 
 
 def _check_system_packages(places: InstallPlaces) -> None:

@@ -1,10 +1,13 @@
 """Each check of the doctor, with every outcome that it can have."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
+import click
 import pytest
 
+from server.cli import mucat
 from server.features.doctor.checks import CHECKS, examine
 from server.features.doctor.findings import worst
 from server.features.doctor.machine import SERVICE, Machine
@@ -104,6 +107,18 @@ def test_a_check_finds_it_and_says_what_mends_it(case: str) -> None:
     assert found[name].mend
     # Nothing else is found.
     assert {one.name for one in found.values() if one.verdict != "ok"} == {name}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_commands_that_mend_it_can_be_typed_so(case: str) -> None:
+    for finding in examine(replace(GOOD, **CASES[case][0])):
+        for words in re.findall(r"\bmucat ([a-z-]+(?: (?:[A-Z]+|--[a-z-]+))*)", finding.mend):
+            name, *arguments = words.split()
+            command = mucat.get_command(click.Context(mucat), name)
+            assert command is not None, words
+            # A group alone lists its commands.
+            if not isinstance(command, click.Group):
+                command.make_context(name, arguments)
 
 
 def test_every_check_is_good_on_a_good_computer_and_has_a_case_with_every_other_verdict() -> None:

@@ -69,6 +69,8 @@ class Computer:
             Path(rest[-1]).mkdir(parents=True)
         elif rest[:2] == ["-m", "venv"]:
             (Path(rest[-1]) / "bin").mkdir(parents=True)
+            shared = str("--system-site-packages" in rest).lower()
+            (Path(rest[-1]) / "pyvenv.cfg").write_text(f"include-system-site-packages = {shared}\n")
         elif "DEFAULT_CONFIG" in command[-1]:
             return DEFAULT_CONFIG.read_text()
         elif command[-1].endswith("installation.survey"):

@@ -8,6 +8,7 @@ import pytest
 
 from robot_runtime.config import load
 from server.features.installation.boot_settings import describe_change, edit_config, edit_kernel_line
+from server.features.installation.environments import WHEELS
 from server.features.installation.installer import adapt_config
 from server.features.installation.places import InstallPlaces
 from server.features.installation.release import read_release
@@ -194,6 +195,16 @@ def test_with_32_bits_some_packages_are_those_of_the_system(
     assert "--system-site-packages" in made
     (installed,) = [one for one in computer.commands if " install --quiet" in one]
     assert installed.startswith("linux32 ")
+
+
+def test_a_camera_library_that_comes_later_is_seen(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    install(computer, release)
+    settings = computer.places.current / "pyvenv.cfg"
+    assert settings.read_text() == "include-system-site-packages = false\n"
+    (tmp_path / "pi/usr/lib/python3/dist-packages/picamera2").mkdir(parents=True)
+    install(computer, computer.places.current / WHEELS)
+    assert settings.read_text() == "include-system-site-packages = true\n"
 
 
 def test_a_server_that_does_not_start_is_one_line(
