@@ -66,12 +66,16 @@ async def get_scenario_state(scenarios: Provided[ScenarioRunner]) -> ScenarioSta
     status_code=201,
 )
 async def start_scenario(
-    request: Request, scenarios: Provided[ScenarioRunner], caller: Caller, body: ScenarioStart
+    request: Request,
+    settings: Provided[Settings],
+    scenarios: Provided[ScenarioRunner],
+    caller: Caller,
+    body: ScenarioStart,
 ) -> ScenarioStarted:
     """Run a scenario: live at once, or refused with the reasons; in simulated time in its turn."""
     if body.place == "live":
         require_control(request)
-    scenario = await run_in_threadpool(read_scenario, body.text)
+    scenario = await run_in_threadpool(lambda: read_scenario(body.text, settings.read_craft()))
     # Access may have been revoked, and control changed hands, in the meantime.
     await admit(request)
     if body.place == "live":

@@ -5,10 +5,22 @@ import threading
 
 import pytest
 
+from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.control.craft_gains import craft_gains
+from robot_runtime.experiments.scenario.document import Scenario
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from server.features.scenarios import routes
 from server.platform.settings import Settings
 from tests.server.serving import serve
+
+ON_ITS_CRAFT = """
+name = "own"
+title = "On its own craft"
+duration = 3
+craft = "robot"
+scene = { kind = "natural", depth = 2.0 }
+"""
 
 
 def test_a_scenario_is_not_read_in_the_event_loop(
@@ -16,7 +28,7 @@ def test_a_scenario_is_not_read_in_the_event_loop(
 ) -> None:
     readers: list[int] = []
 
-    def read_scenario(text: str) -> object:
+    def read_scenario(text: str, _: Craft) -> object:
         readers.append(threading.get_ident())
         raise ConfigError(text)
 
@@ -31,3 +43,27 @@ def test_a_scenario_is_not_read_in_the_event_loop(
             assert readers[0] != threading.get_ident()
 
     asyncio.run(run())
+
+
+def test_a_live_scenario_on_the_robots_craft_has_the_craft_in_force(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings.data.craft.write_text('title = "Heavy"\n[craft]\nbuoyancy = 1.003\nfin_drag = 0.22\n')
+    started: list[Scenario] = []
+
+    def start(scenario: Scenario, *_: object) -> int:
+        started.append(scenario)
+        return 1
+
+    async def run() -> None:
+        async with serve(settings) as served:
+            await served.take_control()
+            monkeypatch.setattr(served.container.scenarios, "start", start)
+            answer = await served.api.post("/scenarios/runs", json={"text": ON_ITS_CRAFT, "place": "live"})
+            assert answer.status_code == 201, answer.text
+
+    asyncio.run(run())
+    (scenario,) = started
+    craft = settings.read_craft()
+    assert (scenario.robot, craft.buoyancy) == (SimulationParameters.of(craft), 1.003)
+    assert scenario.control.gains["predictive"] == craft_gains(craft)
