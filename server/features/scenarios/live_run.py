@@ -3,6 +3,7 @@
 import asyncio
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from robot_runtime.clock import Clock
@@ -14,10 +15,10 @@ from server.features.parameters.changes import Changes, Send
 from server.features.scenarios.live_setup import LiveSetup, SavedState
 from server.features.scenarios.recording import begin, describe_session, mark
 from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
-from server.features.sessions.recorder import Recorder
+from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
-from server.platform.store import Store
+from server.platform.store import Store, StoreError
 from server.processes.managed_process import Notify
 from server.processes.supervisor import ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
@@ -56,9 +57,7 @@ class LiveExecutor:
         self._notify = notify
         self._snapshot = settings.data.scenario_before
         self._recovering = False
-        self._surroundings = LiveSetup(
-            bridge, settings.data.board_socket if settings.emulated_board else None
-        )
+        self._setup = LiveSetup(bridge, settings.data.board_socket if settings.emulated_board else None)
 
     def check(self, scenario: Scenario) -> None:
         """Raise RefusedError with all reasons against a run now."""
@@ -69,13 +68,14 @@ class LiveExecutor:
         """Perform a run. Raises the errors that `ScenarioExecutor.perform` names."""
         self.check(run.scenario)
         run.phase = "preparing"
-        before = await self._surroundings.read(await self._next_state())
+        processes = self._process_ids()
+        before = await self._setup.read(await self._next_state())
         await asyncio.to_thread(before.write, self._snapshot)
         async with self._changes.together(run.who, f"Scenario “{run.scenario.title}”") as send:
             try:
-                await self._surroundings.prepare(run.scenario, before, send)
+                await self._setup.prepare(run.scenario, before, send)
                 await run.sleep(SETTLE_SECONDS)
-                await self._record(run, send)
+                await self._record(run, processes, send)
             finally:
                 run.phase = "ending"
                 await _finish_step(self._put_back(before, send))
@@ -91,26 +91,34 @@ class LiveExecutor:
         try:
             while (state := self._monitor.state()) is None:
                 await asyncio.sleep(POLL_SECONDS)
+            killed = self._clock.now()
+            disarmed = await self._disarm()
             if session is not None:
-                words = "The server was killed; the scenario ends here."
-                await mark(self._store, session, self._clock.now(), words)
-            await self._finish(session)
-            # A restarted runtime already has the settings of robot.toml.
-            if before is not None and state["run"] == before.robot["run"]:
-                await self._put_back(before, self._changes.put_back)
-            await asyncio.to_thread(self._snapshot.unlink, missing_ok=True)
+                await self._close_recording(session, killed)
+            # A restarted runtime already has the settings of robot.toml; water and board may have lived on.
+            same = before is not None and state["run"] == before.robot["run"]
+            restored = before is not None and await self._put_back(
+                before, self._changes.put_back if same else None
+            )
         finally:
             self._recovering = False
-        words = (
-            "The server was killed during a scenario. The robot is disarmed and has its previous settings."
-        )
+        words = "The server was killed during a scenario."
+        if disarmed and restored:
+            words += " The robot is disarmed and has its previous settings."
         self._notify("scenario", "caution", words)
 
-    async def _record(self, run: RunRecord, send: Send) -> None:
+    async def _close_recording(self, session: int, killed: float) -> None:
+        """End the recording of a killed server's run, as far as the disk takes it."""
+        with suppress(StoreError):
+            await mark(self._store, session, killed, "The server was killed; the scenario ends here.")
+        with suppress(StoreError, RecordingRefusedError):
+            await self._recorder.stop(session)
+
+    async def _record(self, run: RunRecord, processes: Mapping[str, int | None], send: Send) -> None:
         row = describe_session(self._settings, self._clock, run, json.dumps(self._monitor.state()))
         session = await begin(self._recorder, self._store, run, row)
         try:
-            await self._play(run, row.started_steady, send)
+            await self._play(run, row.started_steady, processes, send)
         except RunCancelledError as why:
             await mark(self._store, session, self._clock.now(), str(why))
             raise
@@ -118,8 +126,9 @@ class LiveExecutor:
             run.phase = "ending"
             await _finish_step(self._finish(session))
 
-    async def _play(self, run: RunRecord, began: float, send: Send) -> None:
-        processes = self._process_ids()
+    async def _play(
+        self, run: RunRecord, began: float, processes: Mapping[str, int | None], send: Send
+    ) -> None:
         coming = list(run.scenario.events)
         while True:
             run.elapsed = self._clock.now() - began
@@ -136,7 +145,7 @@ class LiveExecutor:
         assert run.session is not None
         words = event.words
         try:
-            await self._surroundings.apply(event, send)
+            await self._setup.apply(event, send)
         except (RefusedError, RuntimeSilentError) as problem:
             # The robot may refuse a command, as to an operator; the experiment continues.
             words = f"{words}: refused. {problem}"
@@ -154,25 +163,36 @@ class LiveExecutor:
             if pid != processes[name]:
                 raise RunFailedError(f"The {name} ended during the run, and its settings are lost.")
 
-    async def _finish(self, session: int | None) -> None:
+    async def _finish(self, session: int) -> None:
         """Disarm, and stop the scenario's recording afterwards."""
-        try:
-            await self._surroundings.disarm()
-            await asyncio.sleep(SETTLE_SECONDS)
-        except (RefusedError, RuntimeSilentError) as problem:
-            self._notify(
-                "scenario", "alarm", f"The robot could not be disarmed after the scenario: {problem}"
-            )
+        await self._disarm()
         if self._recorder.session is not None and self._recorder.session.id == session:
             await self._recorder.stop(session)
 
-    async def _put_back(self, before: SavedState, send: Send) -> None:
-        if problems := await self._surroundings.put_back(before, send):
+    async def _disarm(self) -> bool:
+        """Disarm, and let the sensors follow; false, with an alarm, if the robot could not be disarmed."""
+        try:
+            await self._setup.disarm()
+        except (RefusedError, RuntimeSilentError) as problem:
+            words = f"The robot could not be disarmed after the scenario: {problem}"
+            self._notify("scenario", "alarm", words)
+            return False
+        await asyncio.sleep(SETTLE_SECONDS)
+        return True
+
+    async def _put_back(self, before: SavedState, send: Send | None) -> bool:
+        """Restore the previous state, without `send` that of the water and the board alone.
+
+        False, with a notice, if some of it is not restored.
+        """
+        problems = await self._setup.put_back(before, send)
+        if problems:
             text = " ".join(problems)
             self._notify(
                 "scenario", "caution", f"Some settings from before the scenario are not restored. {text}"
             )
         await asyncio.to_thread(self._snapshot.unlink, missing_ok=True)
+        return not problems
 
     def _find_obstacles(self) -> list[str]:
         recording = self._recorder.session

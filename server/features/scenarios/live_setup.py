@@ -5,6 +5,7 @@ import json
 import logging
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -120,16 +121,17 @@ class LiveSetup:
         """Stop the fins."""
         await _insist(self._bridge.disarm, self._deadline())
 
-    async def put_back(self, before: SavedState, send: Send) -> list[str]:
-        """Restore the previous state; returns the problems in words."""
+    async def put_back(self, before: SavedState, send: Send | None) -> list[str]:
+        """Restore the previous state, without `send` all but the robot's; returns the problems in words."""
         robot = before.robot
         steps: list[Callable[[], Awaitable[None]]] = [
             lambda: self._clean_line(0),
             lambda: self._set_water(before.water, None),
             lambda: self._set_sight(before.sight),
-            *(lambda command=command: send(command) for command in _commands_of(robot)),
-            lambda: _put_card_back(robot["card"], send),
         ]
+        if send is not None:
+            steps += [partial(send, command) for command in _commands_of(robot)]
+            steps.append(partial(_put_card_back, robot["card"], send))
         problems = []
         end = self._deadline()
         for step in steps:

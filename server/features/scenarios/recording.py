@@ -32,15 +32,16 @@ def describe_session(settings: Settings, clock: Clock, run: RunRecord, robot_sta
 
 async def begin(recorder: Recorder, store: Store, run: RunRecord, row: SessionRow) -> int:
     """Start recording the run, and return the session's number. Raises RecordingRefusedError, StoreError."""
+    run.before = await asyncio.to_thread(_find_before, store, row.scenario_name)
     session = await recorder.start(row)
-    run.before = await asyncio.to_thread(_find_before, store, row.scenario_name, session.id)
     run.session, run.phase = session.id, "running"
     return session.id
 
 
-def _find_before(store: Store, name: str, session: int) -> int | None:
-    same = (col(SessionRow.scenario_name) == name, col(SessionRow.deleted).is_(None))
-    older = select(SessionRow.id).where(*same, col(SessionRow.id) < session)
+def _find_before(store: Store, name: str) -> int | None:
+    older = select(SessionRow.id).where(
+        col(SessionRow.scenario_name) == name, col(SessionRow.deleted).is_(None)
+    )
     with store.read() as database:
         return database.exec(older.order_by(desc(col(SessionRow.id)))).first()
 

@@ -1,16 +1,30 @@
-"""The state that a scenario on the running robot takes for the one of before."""
+"""A scenario on the running robot: the state of before, its processes, and the end of a killed server's."""
 
 import asyncio
-from collections.abc import Iterator
+import sqlite3
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, closing
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.errors import RefusedError
-from server.features.scenarios import live_run
+from robot_runtime.simulation.water.parameters import SimulationParameters
+from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.simulation.water.surroundings import Current
+from server.features.parameters.changes import Send
+from server.features.scenarios import live_run, recording
 from server.features.scenarios.live_run import LiveExecutor
+from server.features.scenarios.live_setup import LiveSetup, SavedState
+from server.features.scenarios.run import RunFailedError, RunRecord
+from server.features.sessions.session import new_row
 from server.platform.settings import Settings
+from server.platform.store import Store, StoreError
+from tests.server.features.scenarios.direct_bridge import SCENARIO, STATE, DirectBridge
+from tests.server.features.sessions.recorder_rig import RecorderRig
 
 
 class Monitor:
@@ -46,3 +60,133 @@ def test_a_runtime_that_does_not_tell_its_state_is_an_error_in_words(
     live = executor(settings, Monitor({"time": 99.9}))
     with pytest.raises(RefusedError, match="does not tell its state"):
         asyncio.run(live._next_state())
+
+
+class Prepared:
+    """A live run with every part in this process; `pids` are those of the robot's processes."""
+
+    def __init__(self, store: Store, settings: Settings) -> None:
+        self.bridge = DirectBridge(Simulator(SimulationParameters(), seed=1))
+        self.rig = RecorderRig(store, settings)
+        self.pids = {"board": 1, "runtime": 2, "simulator": 3}
+        self.run = RunRecord(1, SCENARIO, "", "live", "host")
+        now = {"time": 60.0, "run": "one", "armed": False, "mode": "disarmed", "connected": True}
+        self.live = LiveExecutor(
+            settings,
+            store,
+            self.rig.recorder,
+            cast(Any, self.bridge),
+            cast(Any, self),
+            cast(Any, Monitor({**STATE, **now})),
+            cast(Any, SimpleNamespace(get=lambda name: SimpleNamespace(pid=self.pids[name]))),
+            self.rig.clock,
+            notify=lambda *_: None,
+        )
+        self.live._setup = LiveSetup(cast(Any, self.bridge), None)
+
+    @asynccontextmanager
+    async def together(self, *_: str) -> AsyncIterator[Send]:
+        yield self.bridge.send
+
+
+def test_a_simulator_that_restarts_while_the_scenario_is_prepared_fails_the_run(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    prepared = Prepared(store, settings)
+
+    async def restart(*_: object) -> None:
+        prepared.pids["simulator"] = 4
+
+    monkeypatch.setattr(prepared.live._setup, "prepare", restart)
+    with pytest.raises(RunFailedError, match="The simulator ended during the run"):
+        asyncio.run(prepared.live.perform(prepared.run))
+    assert prepared.rig.recorder.session is None
+
+
+def test_a_run_whose_older_sessions_cannot_be_read_records_nothing(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise StoreError("the database is damaged")
+
+    prepared = Prepared(store, settings)
+    monkeypatch.setattr(recording, "_find_before", fail)
+    with pytest.raises(StoreError):
+        asyncio.run(prepared.live.perform(prepared.run))
+    assert prepared.rig.recorder.session is None
+
+
+class Killed:
+    """A server after one that was killed during a scenario with a current."""
+
+    def __init__(self, store: Store, settings: Settings) -> None:
+        self.settings = replace(settings, mode="robot")  # no emulated board, whose line would be cleaned
+        self.simulator = Simulator(SimulationParameters(), seed=1)
+        self.bridge = DirectBridge(self.simulator)
+        self.rig = RecorderRig(store, settings)
+        self.notices: list[tuple[str, ...]] = []
+
+    async def recover(self, run: str = "the same") -> list[tuple[str, ...]]:
+        """Recover beside this run of the runtime; returns the notices."""
+        water = await self.bridge.ask_simulator("surroundings", {})
+        SavedState({**STATE, "run": "the same"}, water, None).write(self.settings.data.scenario_before)
+        self.simulator.set_current(Current(north=0.2))
+        row = new_row(self.settings, self.rig.clock, "cut off", "", "null")
+        row.origin = "scenario"
+        await self.rig.recorder.start(row)
+        live = LiveExecutor(
+            self.settings,
+            self.rig.store,
+            self.rig.recorder,
+            cast(Any, self.bridge),
+            cast(Any, SimpleNamespace(put_back=self.bridge.send)),
+            cast(Any, Monitor({"run": run})),
+            cast(Any, None),
+            self.rig.clock,
+            notify=lambda *words: self.notices.append(words),
+        )
+        await live.recover()
+        return self.notices
+
+
+RESTORED = (
+    "scenario",
+    "caution",
+    "The server was killed during a scenario. The robot is disarmed and has its previous settings.",
+)
+
+
+def test_after_a_killed_server_the_robot_is_disarmed_and_restored_on_a_full_disk(
+    store: Store, settings: Settings
+) -> None:
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        full = "SELECT RAISE(FAIL, 'database or disk is full')"
+        database.execute(f"CREATE TRIGGER full BEFORE INSERT ON marker BEGIN {full}; END")
+    killed = Killed(store, settings)
+    assert asyncio.run(killed.recover()) == [RESTORED]
+    assert killed.bridge.commands[0] == ("stop", {})
+    assert ("steering", {"by": "beacons"}) in killed.bridge.commands
+    assert killed.simulator.surroundings().current == Current()
+    assert killed.rig.recorder.session is None
+    assert not killed.settings.data.scenario_before.exists()
+
+
+def test_the_water_is_restored_also_where_the_runtime_was_restarted(store: Store, settings: Settings) -> None:
+    killed = Killed(store, settings)
+    assert asyncio.run(killed.recover(run="another")) == [RESTORED]
+    assert killed.simulator.surroundings().current == Current()
+    assert killed.bridge.commands == [("stop", {})]
+
+
+def test_a_robot_that_cannot_be_disarmed_after_a_killed_server_is_not_called_disarmed(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def refuse() -> None:
+        raise RefusedError("No.")
+
+    killed = Killed(store, settings)
+    monkeypatch.setattr(killed.bridge, "disarm", refuse)
+    assert asyncio.run(killed.recover()) == [
+        ("scenario", "alarm", "The robot could not be disarmed after the scenario: No."),
+        ("scenario", "caution", "The server was killed during a scenario."),
+    ]
