@@ -1811,8 +1811,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Cancel the active run and clear the queue; recordings stay
-         * @description Cancel the active run and clear the queue; recordings stay.
+         * Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay
+         * @description Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay.
          */
         post: operations["cancelScenario"];
         delete?: never;
@@ -11985,7 +11985,9 @@ export interface operations {
     };
     cancelScenario: {
         parameters: {
-            query?: never;
+            query?: {
+                run?: number | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;

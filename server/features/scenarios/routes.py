@@ -85,6 +85,6 @@ async def start_scenario(
 
 
 @router.operation("POST /cancel", Need.OPERATOR)
-async def cancel_scenario(scenarios: Provided[ScenarioRunner]) -> None:
-    """Cancel the active run and clear the queue; recordings stay."""
-    scenarios.cancel()
+async def cancel_scenario(scenarios: Provided[ScenarioRunner], run: int | None = None) -> None:
+    """Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay."""
+    scenarios.cancel(run)

@@ -81,10 +81,10 @@ class ScenarioRunner:
         self.announce()
         return run.number
 
-    def cancel(self) -> None:
-        """Cancel the active run and clear the queue; recordings stay."""
-        self._queue.clear()
-        if self._active is not None:
+    def cancel(self, run: int | None = None) -> None:
+        """Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay."""
+        self._queue = deque(one for one in self._queue if run not in (None, one.number))
+        if self._active is not None and run in (None, self._active.number):
             self._active.cancel("It was cancelled.")
         self.announce()
 

@@ -22,6 +22,9 @@ from server.platform.store import Store
 from server.platform.terminal import echo
 
 POLL_SECONDS = 0.25
+CANCELLED = "The run was cancelled; its recording stays."
+ENDED = "The run has ended, and another one since; the page Sessions has its recording."
+TAKEN_OUT = "The run was taken out of the queue."
 
 
 def run_scenario(start: ScenarioStart, settings: Settings) -> int:
@@ -75,18 +78,24 @@ def _run_there(start: ScenarioStart, folder: DataFolder) -> EndedRun:
 
 
 def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
+    """Print the run's events until its end. Raises SetupError where its end is not known."""
     progress = _Progress()
+    began = False
     try:
         while True:
             keep()
             state = ScenarioState.model_validate(ask(folder, "GET", "/scenarios/state"))
             progress.notify(state)
-            if state.last is not None and state.last.run >= number:
+            if state.last is not None and state.last.run == number:
                 return state.last
+            active = state.active is not None and state.active.run == number
+            began |= active
+            if not active and number not in (one.run for one in state.queued):
+                raise SetupError(ENDED if began else TAKEN_OUT)
             sleep(POLL_SECONDS)
     except KeyboardInterrupt:
-        ask(folder, "POST", "/scenarios/cancel")
-        raise SetupError("The run was cancelled; its recording stays.") from None
+        ask(folder, "POST", f"/scenarios/cancel?run={number}")
+        raise SetupError(CANCELLED if began else TAKEN_OUT) from None
 
 
 def _conclude(last: EndedRun) -> int:

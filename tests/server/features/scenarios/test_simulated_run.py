@@ -110,6 +110,20 @@ def test_a_cancelled_run_keeps_its_recording_and_clears_the_queue(settings: Sett
     assert row.duration < 3600
 
 
+def test_one_run_is_cancelled_alone(settings: Settings, store: Store) -> None:
+    async def work(runs: ScenarioRunner) -> None:
+        first, second, third = (runs.start(read_scenario(LONG), LONG, "simulated", "host") for _ in range(3))
+        runs.cancel(second)
+        assert runs.active is not None
+        assert [one.run for one in runs.state().queued] == [third]
+        runs.cancel(first)
+        while runs.active.number != third:
+            await asyncio.sleep(0.02)
+
+    ended = [one.last for one in perform(settings, store, work) if one.last]
+    assert {one.run: one.problem for one in ended} == {1: "It was cancelled.", 3: "It was cancelled."}
+
+
 def test_a_refused_command_gets_a_bookmark_and_a_notice(settings: Settings, store: Store) -> None:
     broken = SHORT + "[[events]]\nat = 0.1\ndo = 'fault'\nsensor = 'pressure'\nkind = 'bus'\n"
 

@@ -1,0 +1,57 @@
+"""A queued run of the running server, followed from a shell."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+
+import pytest
+
+from server.features.scenarios.shell_run import _follow
+from server.platform.running_server import announce
+from server.platform.settings import Settings, SetupError
+from tests.server.features.scenarios.test_simulated_run import LONG
+from tests.server.serving import Served, play
+
+TAKEN_OUT = "The run was taken out of the queue."
+
+
+def left_after(settings: Settings, change: Callable[[Served], Awaitable[None]], interrupt: bool) -> list[int]:
+    """Follow the second of two runs until it is taken out of the queue; returns the runs that stay."""
+    left: list[int] = []
+
+    async def scenario(served: Served) -> None:
+        announce(served.settings)
+        start = {"text": LONG, "place": "simulated"}
+        for _ in range(2):
+            (await served.api.post("/scenarios/runs", json=start)).raise_for_status()
+        loop, polled = asyncio.get_running_loop(), asyncio.Event()
+
+        def poll() -> None:
+            if interrupt and polled.is_set():
+                raise KeyboardInterrupt
+            loop.call_soon_threadsafe(polled.set)
+
+        following = asyncio.create_task(asyncio.to_thread(_follow, 2, settings.data, poll))
+        await polled.wait()
+        await change(served)
+        with pytest.raises(SetupError, match=TAKEN_OUT):
+            async with asyncio.timeout(20):
+                await following
+        state = served.container.scenarios.state()
+        left.extend(one.run for one in (state.active, *state.queued) if one is not None)
+
+    play(settings, scenario)
+    return left
+
+
+def test_a_run_that_somebody_takes_out_of_the_queue_ends_the_command(settings: Settings) -> None:
+    async def cancel(served: Served) -> None:
+        (await served.api.post("/scenarios/cancel?run=2")).raise_for_status()
+
+    assert left_after(settings, cancel, interrupt=False) == [1]
+
+
+def test_ctrl_c_cancels_the_commands_own_run_alone(settings: Settings) -> None:
+    async def nothing(_: Served) -> None:
+        pass
+
+    assert left_after(settings, nothing, interrupt=True) == [1]
