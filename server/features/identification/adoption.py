@@ -81,6 +81,9 @@ class CraftAdoption:
         if reason := self._obstacle():
             raise RefusedError(reason)
         old = await asyncio.to_thread(self._read, self._file)
+        if keep and await asyncio.to_thread(self._has, text):
+            # The craft before it must stay the one that an undoing restores.
+            return describe_effect(old, old)
         try:
             await asyncio.to_thread(self._write, text, keep)
         except OSError as problem:
@@ -93,6 +96,9 @@ class CraftAdoption:
             return craft_in(path)
         except ConfigError:
             return Craft()  # it was edited by hand, and is replaced
+
+    def _has(self, text: bytes) -> bool:
+        return self._file.exists() and self._file.read_bytes() == text
 
     def _write(self, text: bytes, keep: bool) -> None:
         if keep:
@@ -118,12 +124,11 @@ class CraftAdoption:
 
     async def _tune(self, craft: Craft, who: str) -> list[str]:
         """Set the gains of the running model-based controller that robot.toml leaves to the craft."""
-        given = load(self._settings.config).control.gains.get(PREDICTIVE, {})
-        gains = {name: value for name, value in craft_gains(craft).items() if name not in given}
-        if not gains:
-            return []
         try:
-            await self._changes.command(who, ControllerCommand(name=PREDICTIVE, gains=gains))
-        except (RefusedError, RuntimeSilentError) as problem:
+            configured = await asyncio.to_thread(load, self._settings.config)
+            given = configured.control.gains.get(PREDICTIVE, {})
+            if gains := {name: value for name, value in craft_gains(craft).items() if name not in given}:
+                await self._changes.command(who, ControllerCommand(name=PREDICTIVE, gains=gains))
+        except (ConfigError, RefusedError, RuntimeSilentError) as problem:
             return [f"The model-based controller takes its gains at the next start ({problem})."]
         return []

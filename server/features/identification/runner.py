@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 import os
 import sys
 from asyncio.subprocess import PIPE, Process
@@ -19,6 +20,8 @@ from server.features.identification.schemas import (
 )
 from server.platform.settings import Settings
 from server.processes.exit_status import describe_status
+
+log = logging.getLogger(__name__)
 
 LINE_BYTES_MAX = 16_000_000
 SECONDS_MAX = 1800.0
@@ -81,6 +84,9 @@ class IdentificationRunner:
             problem = f"It was given up after {SECONDS_MAX / 60:.0f} min. Choose fewer sessions."
         except OSError as error:
             problem = f"No process can be started for it ({error.strerror})."
+        except Exception as error:
+            log.exception("a fit failed")
+            problem = f"Internal error ({error!r}); the server's log has details."
         finally:
             self._last = EndedIdentification(
                 run=self._count,

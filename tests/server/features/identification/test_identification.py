@@ -27,6 +27,7 @@ del sys.argv[:2]
 sys.exit(process.main())
 """
 STUCK = "#!{python}\nimport time\ntime.sleep(3600)\n"
+WRONG = "#!{python}\nprint('?')\n"
 BROKEN = "#!{python}\nimport os\nos._exit(3)\n"
 
 
@@ -114,6 +115,11 @@ def test_a_fit_is_cancelled_at_once(
     ("work", "why"),
     [
         (BROKEN, "The process of the fit has ended with exit status 3. The computer may lack memory."),
+        (
+            WRONG,
+            "Internal error (JSONDecodeError('Expecting value: line 1 column 1 (char 0)'));"
+            " the server's log has details.",
+        ),
         (QUICK, "There is no session 999; choose one from the list of sessions."),
     ],
 )

@@ -1,0 +1,65 @@
+"""Adoptions: twice, and beside a configuration that cannot be read."""
+
+import asyncio
+from typing import Any, cast
+
+import pytest
+
+from robot_runtime.contract.commands import ControllerCommand
+from server.features.identification.adoption import CraftAdoption
+from server.platform.settings import Settings
+
+LIGHT = 'title = "Light"\n[craft]\nmass = 2.5\n'
+HEAVY = 'title = "Heavy"\n[craft]\nmass = 3.1\n'
+
+
+class Robot:
+    """A disarmed robot without a simulator of its own; records the gains that it gets."""
+
+    def __init__(self) -> None:
+        self.gains: list[dict[str, float]] = []
+
+    def state(self) -> dict[str, Any]:
+        return {"armed": False}
+
+    def get(self, _: str) -> None:
+        return None
+
+    async def command(self, _: str, command: ControllerCommand) -> None:
+        self.gains.append(dict(command.gains))
+
+
+@pytest.fixture
+def robot() -> Robot:
+    return Robot()
+
+
+@pytest.fixture
+def adoption(settings: Settings, robot: Robot) -> CraftAdoption:
+    part = cast(Any, robot)
+    return CraftAdoption(settings, part, part, part)
+
+
+def test_a_second_adoption_of_the_same_craft_leaves_the_one_before_to_be_restored(
+    settings: Settings, adoption: CraftAdoption
+) -> None:
+    async def work() -> None:
+        await adoption.adopt(LIGHT, "")
+        await adoption.adopt(HEAVY, "")
+        assert await adoption.adopt(HEAVY, "") == ["Nothing: it is the craft in force."]
+        assert settings.data.craft.read_text() == HEAVY
+        await adoption.undo("")
+
+    asyncio.run(work())
+    assert settings.data.craft.read_text() == LIGHT
+
+
+def test_an_adoption_beside_a_configuration_that_cannot_be_read_says_so(
+    settings: Settings, adoption: CraftAdoption, robot: Robot
+) -> None:
+    settings.config.write_text("[control]\nrate = 0\n")
+    *_, last = asyncio.run(adoption.adopt(HEAVY, ""))
+    assert last.startswith("The model-based controller takes its gains at the next start (")
+    assert "rate is 0" in last
+    assert settings.data.craft.read_text() == HEAVY
+    assert robot.gains == []
