@@ -125,7 +125,7 @@ class ScenarioState(BaseModel):
 
 def summarize(scenario: Scenario) -> ScenarioSummary:
     """The summary of a scenario."""
-    steering = scenario.control.controller
+    controller = scenario.control.controller
     return ScenarioSummary(
         name=scenario.name,
         title=scenario.title,
@@ -133,7 +133,7 @@ def summarize(scenario: Scenario) -> ScenarioSummary:
         duration=scenario.duration,
         seed=scenario.seed,
         scene=scenario.scene.kind,
-        controller=next(one.title for one in CONTROLLERS["depth"] if one.name == steering),
+        controller=next(one.title for one in CONTROLLERS["depth"] if one.name == controller),
         events=describe_events(scenario),
     )
 

@@ -25,7 +25,7 @@ def measure_run(
     """
     began, ended = min(starts.values(), default=0.0), starts.get(state, float("inf"))
     if experiment.kind == "relay":
-        return _relay(experiment, samples, starts, began, ended, problem)
+        return _relay(experiment, samples, starts, began, ended, state, problem)
     step = starts.get("running", began)
     curve = samples.curve.between(max(began, step - LEAD), ended, step)
     if state != "complete":
@@ -42,11 +42,12 @@ def _relay(
     starts: Mapping[str, float],
     began: float,
     ended: float,
+    state: RunState,
     problem: str,
 ) -> tuple[dict[str, Any], TuningCurve, str]:
     # The relay ends one tick before the set point returns to its previous value.
     curve = samples.curve.between(began, ended + TIME_TOLERANCE, began)
-    if problem or "running" not in starts:
+    if state != "complete" or "running" not in starts:
         return {}, curve, problem
     try:
         cycle = measure_limit_cycle(curve, starts["running"] - began, experiment.hysteresis)

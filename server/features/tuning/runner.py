@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from math import degrees
+from math import degrees, inf
 from typing import Any
 
 from robot_runtime.clock import Clock
@@ -196,7 +196,7 @@ class TuningRunner:
         active = self._active
         if active is None or document["number"] != active.run:
             # An experiment of a killed server, or of a start whose answer was lost.
-            self._orphaned = self._orphaned or document["phase"] not in ENDED
+            self._orphaned = document["phase"] not in ENDED
             return
         if active.over:
             return
@@ -233,9 +233,14 @@ class TuningRunner:
             self._notice("tuning", "info", f"“{self._last.name}” {words}. {problem}".strip())
         except StoreError as why:
             self._notice("tuning", "caution", f"The run could not be stored: {why}.")
-        except Exception:
+        except Exception as why:
             log.exception("a tuning run could not be measured")
-            await self.runs.mark_interrupted()
+            words = f"Internal error ({why!r}); the server's log has details."
+            curve = active.samples.curve.between(-inf, inf, active.began)
+            with suppress(StoreError):
+                await self.runs.end(active.run, "failed", words, {}, curve)
+                self._last = await asyncio.to_thread(self.runs.detail, active.run)
+            self._notice("tuning", "caution", f"The run could not be measured. {words}")
         finally:
             self._active = None
             self.announce()

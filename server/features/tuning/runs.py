@@ -45,8 +45,8 @@ class TuningStore:
     def list(self, loop: LoopName) -> Sequence[TuningRun]:
         """Runs on this loop without their curves, the newest first."""
         columns = [column for column in TuningRunRow.__table__.columns if column.name != "curve"]  # type: ignore[attr-defined]
-        experiment = select(*columns).where(col(TuningRunRow.loop) == loop)
-        newest = experiment.order_by(col(TuningRunRow.id).desc()).limit(LISTED_MOST)
+        query = select(*columns).where(col(TuningRunRow.loop) == loop)
+        newest = query.order_by(col(TuningRunRow.id).desc()).limit(LISTED_MOST)
         with self._store.read() as database:
             rows = database.execute(newest).mappings().all()
         return [TuningRun(**_summarize(TuningRunRow(**row, curve=b""))) for row in rows]

@@ -70,9 +70,9 @@ class RelayStart(Limits):
         return _command(RelayExperimentCommand, self, run)
 
 
-def _command(cls: type[ExperimentCommand], limits: Limits, run: int) -> ExperimentCommand:
+def _command(cls: type[ExperimentCommand], start: Limits, run: int) -> ExperimentCommand:
     try:
-        return cls(number=run, **limits.model_dump(exclude={"kind"}))
+        return cls(number=run, **start.model_dump(exclude={"kind"}))
     except ConfigError as problem:
         raise RefusedError(str(problem)) from problem
 

@@ -4,14 +4,20 @@ import asyncio
 import json
 from collections.abc import Awaitable, Callable
 from math import pi, sin
+from types import SimpleNamespace
 from typing import Any
 
 import httpx
 import pytest
 
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.commands import RobotCommand
 from robot_runtime.contract.documents import Control, Experiment
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents, row
+from server.features.tuning import evaluation
+from server.features.tuning import runner as tuning_runner
+from server.features.tuning.runner import TuningRunner
 from server.features.tuning.runs import TuningStore
 from server.features.tuning.schemas import ControllerInForce, StepStart
 from server.platform.settings import Settings
@@ -199,6 +205,28 @@ def test_a_run_that_was_stopped_keeps_its_curve_without_figures(settings: Settin
     play(settings, scenario)
 
 
+def test_a_run_that_cannot_be_measured_fails_with_its_curve(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError("of zero")
+
+    async def scenario(served: Served, robot: Robot) -> None:
+        robot.arm()
+        run = await begin(served, STEP)
+        robot.notify(run, "settling", 100.0)
+        robot.tick([(100.0 + 0.1 * one, 0.4, 0.3, 0.1) for one in range(20)])
+        robot.notify(run, "complete", 102.0)
+        kept = await over(served)
+        assert (kept["id"], kept["state"], len(kept["curve"]["times"])) == (run, "failed", 20)
+        assert (
+            kept["problem"] == "Internal error (ZeroDivisionError('of zero')); the server's log has details."
+        )
+
+    monkeypatch.setattr(evaluation, "measure_run", fail)
+    play(settings, scenario)
+
+
 def test_runs_are_named_and_deleted(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
         robot.arm()
@@ -268,6 +296,43 @@ def test_an_experiment_of_another_server_is_ended(settings: Settings) -> None:
         await until(lambda: ("end_experiment", {}) in served.runtime.asked, "it to be ended")
 
     play(settings, scenario)
+
+
+@pytest.mark.parametrize(("phases", "ended"), [(["running"], 1), (["running", "complete"], 0)])
+def test_an_experiment_of_another_server_that_is_over_is_not_ended_again(
+    monkeypatch: pytest.MonkeyPatch, phases: list[Any], ended: int
+) -> None:
+    asked: list[RobotCommand] = []
+
+    async def command(_: str, command: RobotCommand) -> None:
+        asked.append(command)
+
+    async def check() -> None:
+        checking = asyncio.create_task(runner.run())
+        for _ in range(10):
+            await asyncio.sleep(0)
+        checking.cancel()
+
+    nobody: Any = None
+    changes: Any = SimpleNamespace(command=command)
+    runner = TuningRunner(nobody, nobody, changes, SimulatedClock(100.0), nobody, nobody, nobody)
+    for number, phase in enumerate(phases):
+        told = Experiment(
+            time=100.0,
+            number=7,
+            loop="depth",
+            phase=phase,
+            since=100.0,
+            progress=0.5,
+            cycles=0,
+            bias=0.0,
+            text="",
+            kind="step",
+        )
+        runner.see(Block.of(BY_NAME["experiment"], 1, number, pack_documents([told])))
+    monkeypatch.setattr(tuning_runner, "CHECK_SECONDS", 0)
+    asyncio.run(check())
+    assert len(asked) == ended
 
 
 def test_a_killed_server_leaves_its_run_interrupted(store: Store) -> None:
