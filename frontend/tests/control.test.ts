@@ -69,6 +69,20 @@ describe('a page and the control', () => {
     expect(asked).toEqual(['release']);
   });
 
+  it.each(['take', 'takeOver'] as const)('takes control back over another connection after %s ended a release', async (how) => {
+    const mine = message({ holder: { client: 1, name: 'me' } });
+    control.greet(OPERATOR);
+    control.hear(mine);
+    await control.release();
+    await control[how]();
+    control.hear(mine);
+    control.leave();
+    asked = [];
+    control.greet(OPERATOR);
+    control.hear(message());
+    expect(asked).toEqual(['take']);
+  });
+
   it('takes control over only where it is told to, and says when somebody took it from here', async () => {
     control.greet(OPERATOR);
     control.hear(message({ holder: other }));

@@ -69,9 +69,9 @@ export class Control {
   };
 
   /** Take control that is free. */
-  readonly take = (): Promise<void> => this.#run(this.call.take());
+  readonly take = (): Promise<void> => this.#claim(this.call.take());
   /** Take control from whoever has it. */
-  readonly takeOver = (): Promise<void> => this.#run(this.call.takeOver());
+  readonly takeOver = (): Promise<void> => this.#claim(this.call.takeOver());
   readonly forgetLoss = (): void => {
     this.lostTo = null;
   };
@@ -81,6 +81,12 @@ export class Control {
     this.#eager = false;
     return this.#run(this.call.release());
   };
+
+  /** A page that asks for control means to have it again after a break of the connection. */
+  #claim(asked: Promise<string | null>): Promise<void> {
+    this.#released = false;
+    return this.#run(asked);
+  }
 
   async #run(asked: Promise<string | null>): Promise<void> {
     this.problem = (await asked) ?? '';
