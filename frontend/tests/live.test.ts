@@ -180,6 +180,11 @@ describe('Live', () => {
     vi.advanceTimersByTime(3000);
     server().greet({ page_version: 'b' });
     expect(live.outdated).toBe(true);
+    // The page is the old one for as long as it is not loaded again.
+    server().close();
+    vi.advanceTimersByTime(3000);
+    server().greet({ page_version: 'b' });
+    expect(live.outdated).toBe(true);
   });
 
   it('forgets what was, where the robot was restarted', () => {
@@ -192,6 +197,21 @@ describe('Live', () => {
     expect(depths()[0]).toBeCloseTo(0.7, 6);
     expect(live.rings.depth.length).toBe(1);
     expect(live.now).toBeCloseTo(20, 3);
+  });
+
+  it('has no hole in its rows where this computer slept', () => {
+    server().greet();
+    server().give(depthBlock(99, [0.1], 0));
+    const now = performance.now.bind(performance);
+    vi.spyOn(performance, 'now').mockImplementation(() => now() + 300_000);
+    // What had come before it slept is delivered as it wakes.
+    server().give(depthBlock(100, [0.2], 1));
+    server().close();
+    vi.advanceTimersByTime(300);
+    server().greet({ steady: 400 });
+    server().give(depthBlock(399, [0.7], 9000));
+    expect(live.rings.depth.oldest).toBe(399);
+    expect(live.rings.depth.length).toBe(1);
   });
 
   it('keeps why the server ended the connection', () => {

@@ -16,8 +16,8 @@ import { Progress } from './store';
 
 /** s by which the robot's clock may seem to jump before it is taken for another clock. */
 const CLOCK_JUMP = 5;
-/** ms without a connection after which the server may not send all that was missed by itself */
-const AWAY = 50_000;
+/** s without rows; below FIRST_SECONDS (65 s, server/stream/hub.py), within which the server sends what was missed */
+const AWAY = 50;
 
 /** The robot as it is now: fills a `Live` from the live socket. */
 export class LiveFeed {
@@ -28,7 +28,8 @@ export class LiveFeed {
   readonly #socket: LiveSocket;
   readonly #control: Control;
   readonly #past: Past;
-  #lostAt: number | null = null;
+  /** that of the server which this page was loaded from */
+  #pageVersion: string | null = null;
 
   /** @param access whoever uses this page; told where the server does not know them any more */
   constructor(
@@ -90,9 +91,6 @@ export class LiveFeed {
     live.connection = 'open';
     live.serverError = '';
     live.farewell = '';
-    // Rows that were missed would be a hole; the past as a whole has them.
-    if (this.#lostAt !== null && Date.now() - this.#lostAt > AWAY) this.#clearRows();
-    this.#lostAt = null;
     this.#progress.reconnect();
     live.commTest.reconnect();
     live.gaps.restart();
@@ -103,15 +101,7 @@ export class LiveFeed {
     this.#socket.send({ op: 'watch', pictures: ['picture', ...this.live.watched] });
   }
 
-  #clearRows(): void {
-    const rings = Object.values(this.live.rings);
-    for (const ring of rings) ring.clear();
-    this.#progress.forgetSome(rings.map((ring) => ring.topic.id));
-    this.#past.forget();
-  }
-
   #closed(reason: string, refused: boolean): void {
-    this.#lostAt ??= Date.now();
     this.live.connection = 'lost';
     this.live.roundTrip = null;
     this.#control.leave();
@@ -139,11 +129,10 @@ export class LiveFeed {
 
   #greet(hello: Hello): void {
     const { live } = this;
-    const before = live.hello;
-    live.outdated =
-      hello.definitions !== DEFINITIONS_HASH || (before !== null && before.page_version !== hello.page_version);
+    this.#pageVersion ??= hello.page_version;
+    live.outdated = hello.definitions !== DEFINITIONS_HASH || hello.page_version !== this.#pageVersion;
     if (this.#steady.known && Math.abs(this.#steady.now() - hello.steady) > CLOCK_JUMP) {
-      // The robot's computer was restarted: times from before mean nothing on its new clock.
+      // Another clock speaks: the robot's computer was restarted, or this one slept. Times from before mean nothing on it.
       this.#steady.reset();
       this.#progress.forget();
       this.#past.forget();
@@ -169,9 +158,22 @@ export class LiveFeed {
   }
 
   #takeBlock(block: Block): void {
-    const time = this.live.take(block, this.#progress.knownUntil(block.topic));
+    const known = this.#progress.knownUntil(block.topic);
+    this.#clearBeforeHole(block, known);
+    const time = this.live.take(block, known);
     if (time === null) return;
     this.#steady.observe(time);
     this.#progress.reach(block.topic, time);
+  }
+
+  /**
+   * Clears a topic's rows where the first of a new connection come long after them, for one where this page slept:
+   * the past as a whole has no hole.
+   */
+  #clearBeforeHole(block: Block, known: number): void {
+    const ring = Object.values(this.live.rings).find(({ topic }) => topic.id === block.topic);
+    if (ring?.newest !== known || block.payload.getFloat64(0, true) - known <= AWAY) return;
+    ring.clear();
+    this.#past.forget();
   }
 }

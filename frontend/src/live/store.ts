@@ -58,9 +58,4 @@ export class Progress {
     this.#reached.clear();
     this.#known = new Map();
   }
-
-  /** Of these topics nothing is known any more. */
-  forgetSome(topics: readonly number[]): void {
-    for (const topic of topics) this.#reached.delete(topic);
-  }
 }
