@@ -64,6 +64,7 @@ beforeEach(() => {
 
 afterEach(() => {
   end();
+  vi.restoreAllMocks();
   vi.useRealTimers();
   vi.unstubAllGlobals();
 });

@@ -1,17 +1,30 @@
+import type { TunableParameter } from '../generated/topics';
 import type { Column, RowRing } from './ring';
 
 /** V: below, the board has no battery at its divider (firmware/src/sensors/battery.cpp). */
 export const SENSED = 3;
-/** V: below for 20 s, the board disarms and refuses to arm (ibid.). */
-export const ALARM = 6.2;
+/** V: default and least value of the parameter battery.alarm (robot_runtime/contract/packets/chip_parameters.py) */
+const ALARM_LEAST = 6.2;
 
 /** s of measurements that say anything of a battery's fall */
 const LEAST_SPAN = 60;
 /** V/s below which it cannot be told from standing still: 10 mV in five minutes */
 const LEAST_FALL = 0.01 / 300;
 
-/** s until a voltage that goes on falling as in the ring reaches ALARM; null where it does not fall. */
-export function timeToAlarm(ring: Pick<RowRing<'status'>, 'length' | 'time' | 'place'>, column: Column): number | null {
+/** Voltage (V) below which the board disarms and refuses to arm after 20 s. */
+export function alarmVoltage(parameters: readonly TunableParameter[] | null): number {
+  return Number(parameters?.find(({ name }) => name === 'battery.alarm')?.value ?? ALARM_LEAST);
+}
+
+/**
+ * Time (s) until a voltage that goes on falling as in the ring reaches `alarm` (V); Infinity where it does not fall,
+ * null where the ring covers too little time to say.
+ */
+export function timeToAlarm(
+  ring: Pick<RowRing<'status'>, 'length' | 'time' | 'place'>,
+  column: Column,
+  alarm: number,
+): number | null {
   const { length } = ring;
   let meanTime = 0;
   let meanVolts = 0;
@@ -32,6 +45,6 @@ export function timeToAlarm(ring: Pick<RowRing<'status'>, 'length' | 'time' | 'p
   const last = length > 0 ? (ring.time[ring.place(length - 1)] ?? NaN) : NaN;
   if (!(last - first >= LEAST_SPAN)) return null;
   const slope = shared / spread;
-  if (!(slope < -LEAST_FALL)) return null;
-  return Math.max(0, (ALARM - (meanVolts + slope * (last - meanTime))) / slope);
+  if (!(slope < -LEAST_FALL)) return Infinity;
+  return Math.max(0, (alarm - (meanVolts + slope * (last - meanTime))) / slope);
 }
