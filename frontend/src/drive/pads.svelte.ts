@@ -27,7 +27,8 @@ export class Pads {
 
   /** Look for gamepads. Returns what ends it. */
   readonly start = (): (() => void) => {
-    for (const pad of navigator.getGamepads()) this.#join(pad);
+    if (gamepads() === null) this.notice = texts.gamepad.insecure;
+    this.#joinAny();
     const join = ({ gamepad }: GamepadEvent) => this.#join(gamepad);
     window.addEventListener('gamepadconnected', join);
     window.addEventListener('gamepaddisconnected', this.#look);
@@ -38,8 +39,12 @@ export class Pads {
     };
   };
 
+  #joinAny(): void {
+    for (const pad of gamepads() ?? []) this.#join(pad);
+  }
+
   #join(pad: Gamepad | null): void {
-    if (pad === null || this.#index !== null) return;
+    if (!pad?.connected || this.#index !== null) return;
     if (pad.mapping !== 'standard') {
       this.notice = texts.gamepad.unsupported(shortName(pad.id));
       return;
@@ -63,10 +68,12 @@ export class Pads {
 
   readonly #look = (): void => {
     if (this.#index === null) return;
-    const pad = navigator.getGamepads()[this.#index];
+    const pad = gamepads()?.[this.#index];
     if (!pad?.connected) {
-      this.notice = texts.gamepad.disconnected(this.name ?? texts.gamepad.unnamed);
+      const gone = this.name ?? texts.gamepad.unnamed;
       this.#leave();
+      this.#joinAny();
+      this.notice = texts.gamepad.disconnected(gone);
       return;
     }
     const pushes = pushesOf(pad);
@@ -78,6 +85,9 @@ export class Pads {
     for (const name of this.#down) if (!before.includes(name)) this.press(name);
   };
 }
+
+/** The gamepads by their numbers; null where the browser has none for this page: Firefox has them in secure contexts only. */
+const gamepads = () => ('getGamepads' in navigator ? navigator.getGamepads() : null);
 
 /** Without the numbers that browsers add for programs. */
 const shortName = (id: string): string => id.replace(/\s*\(.*$/, '').trim() || 'Gamepad';

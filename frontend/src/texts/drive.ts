@@ -84,6 +84,7 @@ export const drive = {
     stop: 'STOP',
     depthHold: 'depth hold',
     headingHold: 'heading hold',
+    insecure: 'This browser offers gamepads over https only.',
     unsupported: (name: string) => `${name}: this gamepad is not supported.`,
     disconnected: (name: string) => `${name} disconnected; controls released.`,
     unnamed: 'Gamepad',
