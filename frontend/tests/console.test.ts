@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { asText, matching } from '../src/panels/console/console';
+import { asText, lostSince, matching } from '../src/panels/console/console';
 import { Lines } from '../src/live/lines.svelte';
 
 const lines = [
@@ -17,17 +17,24 @@ describe('matching', () => {
   });
 });
 
+it('counts lost lines from the last clearing, and from a reset of the board', () => {
+  expect(lostSince(0, 4)).toBe(4);
+  expect(lostSince(4, 4)).toBe(0);
+  expect(lostSince(4, 6)).toBe(2);
+  expect(lostSince(4, 1)).toBe(1);
+});
+
 it('copies lines with time and level', () => {
   expect(asText(lines.slice(1, 2), (time) => new Date(time * 1000))).toBe('1970-01-01T00:00:02.000Z warning Battery low');
 });
 
 describe('Lines', () => {
-  it('keeps the newest and counts what it let go', () => {
+  it('keeps the newest and counts what it discarded', () => {
     const kept = new Lines<number>(3);
     kept.append([1, 2]);
     kept.append([3, 4, 5]);
     expect(kept.entries).toEqual([3, 4, 5]);
-    expect(kept.letGo).toBe(2);
+    expect(kept.discarded).toBe(2);
     expect(kept.added).toBe(5);
   });
 

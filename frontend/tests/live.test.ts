@@ -154,8 +154,17 @@ describe('Live', () => {
   it('counts samples that never came', () => {
     server().greet();
     server().give(depthBlock(99, [0.1, 0.2], 10));
+    server().tell({ op: 'dropped', topic: 'depth', count: 3 });
     server().give(depthBlock(99.1, [0.3], 15));
     expect(live.gaps.missed(2)).toBe(3);
+  });
+
+  it('has events of robot and server in order of time, however they come', () => {
+    const event = (time: number, text: string) => ({ time, kind: 'alarm', severity: 'alarm', text });
+    server().greet();
+    server().give(documentBlock(OTHER_TOPICS.notice, [event(50, 'one'), event(98, 'four')]));
+    server().give(documentBlock(OTHER_TOPICS.event, [event(60, 'two'), event(61, 'three'), event(99, 'five')]));
+    expect(live.events.entries.map(({ text }) => text)).toEqual(['one', 'two', 'three', 'four', 'five']);
   });
 
   it('measures age by what the line carries', () => {

@@ -123,8 +123,7 @@ export class LiveFeed {
     else if (message.op === 'control') this.#control.hear(message);
     else if (message.op === 'alarms') live.serverAlarms = message.alarms;
     else if (message.op === 'error') live.serverError = message.text;
-    else if (message.op === 'pong') this.#socket.answered(message.id);
-    else live.dropped.set(message.topic, (live.dropped.get(message.topic) ?? 0) + message.count);
+    else this.#socket.answered(message.id);
   }
 
   #greet(hello: Hello): void {

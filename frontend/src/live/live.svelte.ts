@@ -1,5 +1,4 @@
 import { createContext } from 'svelte';
-import { SvelteMap } from 'svelte/reactivity';
 import {
   OTHER_TOPICS,
   type Alarm,
@@ -81,9 +80,7 @@ export class Live {
   serverAlarms = $state.raw<readonly Alarm[]>([]);
   readonly rings = createRings();
   readonly debug = new Lines<DebugLine>(CONSOLE_LINES);
-  readonly events = new Lines<RobotEvent>(EVENT_LINES);
-  /** per topic, how many samples the server could not send to this page */
-  readonly dropped = new SvelteMap<string, number>();
+  readonly events = new Lines<RobotEvent>(EVENT_LINES, (one, other) => one.time - other.time);
   readonly gaps = new Gaps();
   readonly commTest = new CommTestWatch();
   /** null until the server has said whether a scenario runs */

@@ -55,7 +55,6 @@ export type ServerMessage =
   | ControlMessage
   | { op: 'alarms'; alarms: Alarm[] }
   | { op: 'error'; text: string }
-  | { op: 'dropped'; topic: string; count: number }
   | { op: 'pong'; id: number };
 
 const OPERATIONS: ReadonlySet<unknown> = new Set<ServerMessage['op']>([
@@ -68,7 +67,6 @@ const OPERATIONS: ReadonlySet<unknown> = new Set<ServerMessage['op']>([
   'control',
   'alarms',
   'error',
-  'dropped',
   'pong',
 ]);
 

@@ -98,7 +98,7 @@ export const panels = {
   },
   console: {
     lost: (count: string) => `${count} lost`,
-    lostHint: 'Lost on the way: the board’s buffer was full, or the network dropped them',
+    lostHint: 'The board’s buffer was full',
     old: (count: string) => `${count} dropped`,
     oldHint: 'The oldest lines were dropped to make room for new ones',
     level: 'Minimum level',

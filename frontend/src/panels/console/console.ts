@@ -15,6 +15,11 @@ export function matching(lines: readonly DebugLine[], level: number, text: strin
   return lines.filter((line) => line.level >= level && line.text.toLowerCase().includes(wanted));
 }
 
+/** Lines lost since the board had counted `before`; a board that was reset counts anew. */
+export function lostSince(before: number, count: number): number {
+  return count < before ? count : count - before;
+}
+
 /** The lines as a person would paste them: time, level and text. */
 export function asText(lines: readonly DebugLine[], date: (time: number) => Date): string {
   return lines.map((line) => `${date(line.time).toISOString()} ${levelWord(line.level)} ${line.text}`).join('\n');
