@@ -16,3 +16,13 @@ def test_the_note_field_of_a_bookmark_closes_by_itself(page: Page, site: Site) -
     expect(notice).to_be_visible()
     expect(notice).to_be_hidden(timeout=15_000)
     assert notes(site, session) == [""]
+
+
+def test_a_box_or_slider_that_has_the_focus_takes_no_letters(page: Page, site: Site) -> None:
+    session = site.api.post("/sessions", json={"name": "keys"}).raise_for_status().json()["id"]
+    expect(page.get_by_role("button", name=re.compile("^REC"))).to_be_visible()
+    page.get_by_role("button", name="Page settings").click()
+    page.get_by_role("checkbox", name="Single-key shortcuts").focus()
+    page.keyboard.press("m")
+    expect(page.get_by_role("region", name="Bookmark", exact=True)).to_be_visible()
+    assert notes(site, session) == [""]

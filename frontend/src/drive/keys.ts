@@ -1,6 +1,7 @@
 import { PITCH, ROLL, X, Y, YAW, Z, type Push } from './axes';
 import { SPEEDS } from './handling.svelte';
 import type { Holdable } from './holds';
+import { isTyping } from '../shortcuts.svelte';
 import { drive as texts } from '../texts/drive';
 
 /** A key of the map: where it lies (as on a US keyboard, so that hands find it on others too), and what it does. */
@@ -50,8 +51,7 @@ const SHIFTED = new Map<string, Push>([
   ['ArrowRight', { axis: YAW, amount: 1 }],
 ]);
 const HOLDS: Readonly<Record<string, Holdable>> = { KeyG: 'depth', KeyH: 'heading' };
-/** Where letters are typed, and where keys choose or move something themselves. */
-const TYPED = 'input:not([type="range"], [type="checkbox"], [type="radio"]), textarea, select, [contenteditable]';
+/** Where arrow keys choose or move something themselves. */
 const TURNED = 'input, [role="tablist"], [role="slider"], [role="radiogroup"]';
 
 export type Action =
@@ -62,8 +62,8 @@ export type Action =
 /** What a key that goes down asks for; null where it is meant for something else, a field to type in above all. */
 export function actionOf(event: KeyboardEvent): Action | null {
   if (event.ctrlKey || event.metaKey || event.altKey) return null;
-  const place = event.target instanceof Element ? event.target : null;
-  if (place?.closest(event.code.startsWith('Arrow') ? `${TYPED}, ${TURNED}` : TYPED)) return null;
+  if (isTyping(event.target)) return null;
+  if (event.code.startsWith('Arrow') && event.target instanceof Element && event.target.closest(TURNED)) return null;
   const push = (event.shiftKey ? SHIFTED.get(event.code) : undefined) ?? PUSHES.get(event.code);
   if (push !== undefined) return { do: 'push', push };
   const [, digit] = /^(?:Digit|Numpad)([1-9])$/.exec(event.code) ?? [];
