@@ -286,6 +286,7 @@ class Container:
 
     def _deliver(self, blocks: list[Block]) -> None:
         self.hub.add(blocks)
+        states: list[Block] = []
         for block in blocks:
             self.recorder.add(block)
             self.monitor.see(block)
@@ -295,9 +296,11 @@ class Container:
             if block.topic.name == "event":
                 self.mission_marks.see(block)
             if block.topic.name == "state":
-                self.lease_sync.see_run(self.bridge.run)
-                if self.settings.sessions.record_at_arming:
-                    self.arming.see(block)
+                states.append(block)
+        if states:
+            self.lease_sync.see_run(self.bridge.run)
+            if self.settings.sessions.record_at_arming:
+                self.arming.see(states)
 
     def _see_stop(self) -> None:
         self.scenarios.see_stop()

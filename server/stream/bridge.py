@@ -89,7 +89,7 @@ class Bridge:
             for name, topics in SENT_BY.items()
         }
         self._ready: list[Block] = []
-        self._emptying = False
+        self._gathering = False
         self._scheduled = False
         """True while the queue will be emptied without another arrival."""
         self._emptied = float("-inf")
@@ -124,9 +124,15 @@ class Bridge:
         return {name: backlog for name, backlog in zip(named, answers, strict=True) if backlog is not None}
 
     def begin_delivery(self, backlog: Mapping[str, BacklogReply]) -> None:
-        """Deliver these backlogs, by the processes' names, and from now on every received block."""
+        """Deliver these backlogs, by the processes' names, and from now on every received block.
+
+        The backlogs and what has arrived since are one delivery.
+        """
+        self._gathering = True
         for name, filler in self._fillers.items():
             filler.begin_delivery(backlog.get(name))
+        self._gathering = False
+        self._hand_over()
 
     def send_heartbeat(self, pages: int) -> None:
         """Send the runtime the server's heartbeat, with the number of operators' pages."""
@@ -281,7 +287,7 @@ class Bridge:
         self._empty_queue()
 
     def _empty_queue(self) -> None:
-        self._emptying = True
+        self._gathering = True
         while self._queue:
             name, data, run = self._queue.popleft()
             try:
@@ -296,12 +302,12 @@ class Bridge:
                 self._fillers[STREAMS[name]].take(run, blocks)
             else:
                 self._pass_on(blocks)
-        self._emptying = False
+        self._gathering = False
         self._hand_over()
 
     def _pass_on(self, blocks: list[Block]) -> None:
         self._ready += blocks
-        if not self._emptying:
+        if not self._gathering:
             self._hand_over()
 
     def _hand_over(self) -> None:

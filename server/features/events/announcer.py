@@ -70,7 +70,9 @@ class EventAnnouncer:
             return  # the recorder has reported it
         for document in documents:
             if name == "state":
-                self._see_alarms("runtime", document["alarms"])
+                # After a start of the server, older states come once more.
+                if document["time"] >= self._began:
+                    self._see_alarms("runtime", document["alarms"])
             else:
                 self._see_mission(block.run, document)
 

@@ -3,7 +3,7 @@
 import asyncio
 import json
 import logging
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from datetime import UTC, datetime
 
 from robot_runtime.clock import Clock
@@ -19,7 +19,7 @@ REST_SECONDS = 5.0
 """Time that it records after the robot is disarmed, until the fins rest and the robot begins to rise."""
 
 ARMING_SECONDS = 2.0
-"""Longest wait of the notice who armed for the session: it is written then without one."""
+"""How long the notice of who armed waits for the session to begin; then it is written all the same."""
 
 
 class AutoRecorder:
@@ -52,15 +52,21 @@ class AutoRecorder:
         if self._recorder.session is not None:
             self._write_arming()
 
-    def see(self, block: Block) -> None:
-        """Process a block of the topic `state`."""
+    def see(self, states: Sequence[Block]) -> None:
+        """Process blocks of the topic `state` that arrived together; the newest counts.
+
+        The others of a backlog are of the past: nobody can record any more what they report.
+        """
         try:
-            state = json.loads(block.payload)[-1]
+            state = json.loads(states[-1].payload)[-1]
             armed = state["armed"] is True
         except (ValueError, LookupError, TypeError, RecursionError):
             return
         if armed:
             self._disarmed_at = None
+            if not self._armed and (self._acts or self._recorder.stopping):
+                # A session is being ended, perhaps, and the next state begins another.
+                return
             if not self._armed and self._recorder.session is None:
                 self._act(self._begin(json.dumps(state)))
         elif self._armed or self._disarmed_at is None:
@@ -83,11 +89,16 @@ class AutoRecorder:
         if self._task is not None:
             await self._task
 
+    @property
+    def _acts(self) -> bool:
+        """True while a session is being started or stopped."""
+        return self._task is not None and not self._task.done()
+
     def _act(self, step: "asyncio._CoroutineLike[None]") -> None:
-        if self._task is None or self._task.done():
-            self._task = asyncio.create_task(step)
-        else:
+        if self._acts:
             step.close()
+        else:
+            self._task = asyncio.create_task(step)
 
     async def _begin(self, state: str) -> None:
         try:

@@ -113,6 +113,11 @@ class Recorder:
         """By the topic's number: when it arrived (s, steady clock), and what."""
         self._reset()
 
+    @property
+    def stopping(self) -> bool:
+        """True while the end of the session is being stored."""
+        return self.session is not None and not self._accepts
+
     async def recover(self) -> InterruptedSession | None:
         """Mark sessions that a crash left recording as interrupted, except one that may continue.
 

@@ -13,6 +13,7 @@ from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, writ
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from server.platform.settings import Settings
 from server.stream.bridge import BACKLOG_SECONDS, ROUND_SECONDS, Bridge
+from tests.server.blocks import depth_block, truth_block
 
 ANSWER = BacklogReply("0123456789abcdef", {}, [])
 
@@ -140,6 +141,17 @@ def test_nobody_sends_the_topics_of_another(settings: Settings, name: str, topic
     bridge._queue.append((name, message(topic), ""))
     bridge._empty_queue()
     assert (delivered, bridge.damaged) == ([], 1)
+
+
+def test_the_backlogs_and_what_came_since_are_one_delivery(settings: Settings) -> None:
+    delivered: list[list[int]] = []
+    bridge = Bridge(settings, lambda blocks: delivered.append([block.first for block in blocks]))
+    old, new = depth_block(0, 5), depth_block(5, 5)
+    bridge._queue.append(("stream", new.data, ANSWER.run))
+    bridge._empty_queue()
+    truth = BacklogReply("fedcba9876543210", {"truth": 8}, [truth_block(7)])
+    bridge.begin_delivery({"runtime": BacklogReply(ANSWER.run, {"depth": 5}, [old]), "simulator": truth})
+    assert delivered == [[0, 5, 7]]
 
 
 def test_a_backlog_holds_only_its_sender_s_topics(settings: Settings) -> None:

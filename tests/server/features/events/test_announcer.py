@@ -68,8 +68,8 @@ def alarm(fault: str, since: float, *, active: bool = True, severity: str = "ala
     return known | words
 
 
-def block(topic: str, **document: Any) -> Block:
-    return Block.of(BY_NAME[topic], 1, 0, json.dumps([document]).encode())
+def block(topic: str, time: float = 100.0, **document: Any) -> Block:
+    return Block.of(BY_NAME[topic], 1, 0, json.dumps([{"time": time, **document}]).encode())
 
 
 def test_an_alarm_begins_once_and_ends_once(announcer: EventAnnouncer, outlet: Notebook) -> None:
@@ -103,6 +103,16 @@ def test_an_alarm_that_was_over_before_anybody_saw_it_is_still_told(
 
 def test_an_old_alarm_is_no_news_at_the_start(announcer: EventAnnouncer, outlet: Notebook) -> None:
     announcer.see(block("state", alarms=[alarm("leak", 1.0, active=False), alarm("low", 2.0)]))
+    assert outlet.take() == [("alarm_began", "low", "active")]
+
+
+def test_alarms_of_the_backlog_are_no_news(announcer: EventAnnouncer, outlet: Notebook) -> None:
+    over, still = alarm("leak", 91.0, active=False), alarm("low", 92.0)
+    announcer.see(block("state", 90.0, alarms=[]))
+    announcer.see(block("state", 95.0, alarms=[alarm("leak", 91.0), still]))
+    announcer.see(block("state", 99.0, alarms=[over, still]))
+    assert outlet.take() == []
+    announcer.see(block("state", 100.5, alarms=[over, still]))
     assert outlet.take() == [("alarm_began", "low", "active")]
 
 

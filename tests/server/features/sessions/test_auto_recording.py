@@ -2,8 +2,13 @@
 
 import asyncio
 import json
+import threading
 from collections.abc import Awaitable, Callable
+from typing import Any
 
+import pytest
+
+import server.features.sessions.recorder as recorder_module
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import Block
 from server.features.sessions.auto_recording import REST_SECONDS, AutoRecorder
@@ -14,9 +19,10 @@ from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import state_block
+from tests.server.waiting import SECONDS, until
 
 
-class _ProcessGroup:
+class _Rig:
     """A recorder with the automatic recording on the robot's state."""
 
     def __init__(self, store: Store, settings: Settings) -> None:
@@ -36,9 +42,14 @@ class _ProcessGroup:
         if event["kind"] == "control":
             self.notices.append((event["text"], self.recording))
 
-    async def see(self, armed: bool) -> None:
-        self.arming.see(state_block(0, armed=armed))
+    async def see(self, *states: bool) -> None:
+        """Show states that arrive together, each armed or not, and wait for what follows."""
+        self.show(*states)
         await self.arming.close()
+
+    def show(self, *states: bool) -> None:
+        """Show these states."""
+        self.arming.see([state_block(0, armed=armed) for armed in states])
 
     async def wait(self, seconds: float) -> None:
         self.clock.forward(seconds)
@@ -51,88 +62,150 @@ class _ProcessGroup:
         return None if session is None else session.origin
 
 
-def play(store: Store, settings: Settings, scenario: Callable[[_ProcessGroup], Awaitable[None]]) -> None:
+def play(store: Store, settings: Settings, scenario: Callable[[_Rig], Awaitable[None]]) -> None:
     async def run() -> None:
-        await scenario(_ProcessGroup(store, settings))
+        await scenario(_Rig(store, settings))
 
     asyncio.run(run())
 
 
 def test_it_records_while_armed_and_until_the_fins_rest(store: Store, settings: Settings) -> None:
-    async def scenario(watched: _ProcessGroup) -> None:
-        await watched.see(armed=False)
-        await watched.wait(60)
-        assert watched.recording is None
-        await watched.see(armed=True)
-        assert watched.recording == "arming"
-        await watched.wait(60)
-        await watched.see(armed=False)
-        await watched.wait(REST_SECONDS - 1)
-        await watched.see(armed=True)
-        await watched.wait(60)
-        assert watched.recording == "arming"
-        await watched.see(armed=False)
-        await watched.see(armed=False)
-        await watched.wait(REST_SECONDS - 0.1)
-        assert watched.recording == "arming"
-        await watched.wait(0.1)
-        assert watched.recording is None
+    async def scenario(rig: _Rig) -> None:
+        await rig.see(False)
+        await rig.wait(60)
+        assert rig.recording is None
+        await rig.see(True)
+        assert rig.recording == "arming"
+        await rig.wait(60)
+        await rig.see(False)
+        await rig.wait(REST_SECONDS - 1)
+        await rig.see(True)
+        await rig.wait(60)
+        assert rig.recording == "arming"
+        await rig.see(False)
+        await rig.see(False)
+        await rig.wait(REST_SECONDS - 0.1)
+        assert rig.recording == "arming"
+        await rig.wait(0.1)
+        assert rig.recording is None
 
     play(store, settings, scenario)
 
 
 def test_the_session_that_arming_starts_says_who_armed(store: Store, settings: Settings) -> None:
-    async def scenario(watched: _ProcessGroup) -> None:
-        await watched.see(armed=False)
-        watched.arming.note_arming("“Anna” armed the robot.")
-        await watched.see(armed=True)
-        assert watched.notices == [("“Anna” armed the robot.", "arming")]
-        watched.arming.note_arming("“Eve” armed the robot.")
-        assert watched.notices[1:] == [("“Eve” armed the robot.", "arming")]
+    async def scenario(rig: _Rig) -> None:
+        await rig.see(False)
+        rig.arming.note_arming("“Anna” armed the robot.")
+        await rig.see(True)
+        assert rig.notices == [("“Anna” armed the robot.", "arming")]
+        rig.arming.note_arming("“Eve” armed the robot.")
+        assert rig.notices[1:] == [("“Eve” armed the robot.", "arming")]
 
     play(store, settings, scenario)
 
 
 def test_who_armed_is_not_told_of_a_later_arming(store: Store, settings: Settings) -> None:
-    async def scenario(watched: _ProcessGroup) -> None:
-        watched.arming.note_arming("“Anna” armed the robot.")
-        await watched.wait(2)
-        assert watched.notices == [("“Anna” armed the robot.", None)]
-        await watched.see(armed=True)
-        assert len(watched.notices) == 1
+    async def scenario(rig: _Rig) -> None:
+        rig.arming.note_arming("“Anna” armed the robot.")
+        await rig.wait(2)
+        assert rig.notices == [("“Anna” armed the robot.", None)]
+        await rig.see(True)
+        assert len(rig.notices) == 1
 
     play(store, settings, scenario)
 
 
 def test_automatic_recording_does_not_end_an_operator_s_session(store: Store, settings: Settings) -> None:
-    async def scenario(watched: _ProcessGroup) -> None:
-        row = new_row(settings, watched.clock, "mine", "", "null")
-        await watched.recorder.start(row)
-        await watched.see(armed=True)
-        await watched.see(armed=False)
-        await watched.wait(2 * REST_SECONDS)
-        assert watched.recording == "operator"
+    async def scenario(rig: _Rig) -> None:
+        row = new_row(settings, rig.clock, "mine", "", "null")
+        await rig.recorder.start(row)
+        await rig.see(True)
+        await rig.see(False)
+        await rig.wait(2 * REST_SECONDS)
+        assert rig.recording == "operator"
 
     play(store, settings, scenario)
 
 
 def test_a_recording_of_an_earlier_server_is_ended_too(store: Store, settings: Settings) -> None:
-    async def scenario(watched: _ProcessGroup) -> None:
-        await watched.recorder.start(await watched.make_row("resumed", "null"))
-        await watched.see(armed=False)
-        await watched.wait(REST_SECONDS)
-        assert watched.recording is None
+    async def scenario(rig: _Rig) -> None:
+        await rig.recorder.start(await rig.make_row("resumed", "null"))
+        await rig.see(False)
+        await rig.wait(REST_SECONDS)
+        assert rig.recording is None
 
     play(store, settings, scenario)
 
 
 def test_an_operator_can_stop_it(store: Store, settings: Settings) -> None:
-    async def scenario(watched: _ProcessGroup) -> None:
-        await watched.see(armed=True)
-        assert watched.recorder.session is not None
-        await watched.recorder.stop(watched.recorder.session.id)
-        await watched.see(armed=True)
-        await watched.wait(1)
-        assert watched.recording is None
+    async def scenario(rig: _Rig) -> None:
+        await rig.see(True)
+        assert rig.recorder.session is not None
+        await rig.recorder.stop(rig.recorder.session.id)
+        await rig.see(True)
+        await rig.wait(1)
+        assert rig.recording is None
+
+    play(store, settings, scenario)
+
+
+def test_a_backlog_starts_no_session_for_what_is_over(store: Store, settings: Settings) -> None:
+    async def scenario(rig: _Rig) -> None:
+        await rig.see(False, True, True, False)
+        assert rig.recording is None
+        await rig.see(True, False, True)
+        assert rig.recording == "arming"
+
+    play(store, settings, scenario)
+
+
+def hold_commits(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
+    """Make the recorder's commits wait for the event that is returned."""
+    release, insert = threading.Event(), recorder_module._insert
+
+    def wait(*arguments: Any) -> None:
+        assert release.wait(SECONDS)
+        insert(*arguments)
+
+    monkeypatch.setattr(recorder_module, "_insert", wait)
+    return release
+
+
+def test_arming_while_a_session_s_end_is_stored_starts_another(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario(rig: _Rig) -> None:
+        await rig.see(True)
+        first = rig.recorder.session
+        await rig.see(False)
+        rig.clock.forward(REST_SECONDS)
+        release = hold_commits(monkeypatch)
+        rig.arming.tick()
+        await until(lambda: rig.recorder.stopping, "the end of the session to begin")
+        rig.show(True)
+        release.set()
+        await rig.arming.close()
+        assert rig.recording is None
+        await rig.see(True)
+        assert first is not None
+        assert rig.recorder.session is not None
+        assert rig.recorder.session.id != first.id
+
+    play(store, settings, scenario)
+
+
+def test_arming_while_an_operator_stops_a_session_starts_another(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario(rig: _Rig) -> None:
+        session = await rig.recorder.start(new_row(settings, rig.clock, "mine", "", "null"))
+        release = hold_commits(monkeypatch)
+        stop = asyncio.create_task(rig.recorder.stop(session.id))
+        await until(lambda: rig.recorder.stopping, "the end of the session to begin")
+        rig.show(True)
+        release.set()
+        await stop
+        await rig.see(True)
+        assert rig.recording == "arming"
 
     play(store, settings, scenario)
