@@ -154,7 +154,7 @@ class Access:
         Raises UnknownDeviceError, RefusedError, StoreError.
         """
         device = self.devices.get(number)
-        if device.role == role:
+        if device.role == device.stored_role == role:
             return
         if role == "viewer":
             self._keep_an_operator(device, by)

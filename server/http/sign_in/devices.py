@@ -63,7 +63,7 @@ class Device:
     """A paired browser or program, as in DeviceRow.
 
     `page_secret` is a digest. `stored` is the last visit in the database, `used` the last one since this
-    server began (s, steady clock).
+    server began (s, steady clock). `stored_role` is the role in the database.
     """
 
     id: int
@@ -76,6 +76,7 @@ class Device:
     limited: bool
     ends: float | None
     page_secret: str | None
+    stored_role: Role
     used: float = -inf
 
     def has_page_secret(self, secret: str) -> bool:
@@ -163,7 +164,7 @@ class Devices:
         return [
             one
             for one in self._devices.values()
-            if (one.kind, one.role) == ("browser", "operator") and self.explain_end(one) is None
+            if (one.kind, one.role) == ("browser", "operator") and self.find_valid(one.id) is not None
         ]
 
     async def add_browser(self, name: str, role: Role) -> tuple[Device, BrowserSecrets]:
@@ -230,7 +231,7 @@ class Devices:
         if role == "viewer":
             device.role = role
         await self._update(number, role=role)
-        device.role = role
+        device.role = device.stored_role = role
 
     async def rename(self, number: int, name: str) -> None:
         """Rename a device.
@@ -293,10 +294,11 @@ class Devices:
         )
 
     def _keep(self, number: int, row: DeviceRow) -> Device:
+        role: Role = "operator" if row.role == "operator" else "viewer"
         device = Device(
             id=number,
             name=row.name,
-            role="operator" if row.role == "operator" else "viewer",
+            role=role,
             kind="program" if row.kind == "program" else "browser",
             paired=row.paired,
             seen=row.seen,
@@ -304,6 +306,7 @@ class Devices:
             limited=row.limited,
             ends=row.ends,
             page_secret=row.page_secret,
+            stored_role=role,
         )
         self._devices[number] = device
         self._by_secret[row.secret] = number
