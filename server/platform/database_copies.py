@@ -50,10 +50,11 @@ def place(folder: DataFolder, kind: Kind, revision: str = "") -> Path:
     return folder.backups / "-".join(["mucat", kind, *([revision] if revision else []), f"{moment}.db"])
 
 
-def thin_out(folder: DataFolder, kind: Kind) -> None:
-    """Remove the oldest copies of this kind. Raises OSError."""
-    copies = sorted(folder.backups.glob(f"mucat-{kind}-*.db"), key=lambda path: path.stem[-19:])
-    for copy in copies[:-COPIES_MOST]:
+def thin_out(folder: DataFolder, kind: Kind, made: Path) -> None:
+    """Remove the oldest copies of this kind, but not the one just made. Raises OSError."""
+    # By its name it is not the newest where the clock was ahead when others were made, or is behind now.
+    others = [path for path in folder.backups.glob(f"mucat-{kind}-*.db") if path != made]
+    for copy in sorted(others, key=lambda path: path.stem[-19:])[: 1 - COPIES_MOST]:
         for part in folder.backups.glob(f"{copy.name}*"):
             part.unlink()
 

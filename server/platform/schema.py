@@ -27,8 +27,9 @@ def prepare(folder: DataFolder) -> None:
             return
         if revision is not None:
             refuse_unknown(revision, folder.database, folder)
-            copy_database(folder.database, place(folder, "before", revision))
-            thin_out(folder, "before")
+            copy = place(folder, "before", revision)
+            copy_database(folder.database, copy)
+            thin_out(folder, "before", copy)
             _make_shrinkable(folder.database)
         _upgrade(folder.database)
     except (sqlite3.DatabaseError, OSError) as problem:

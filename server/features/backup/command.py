@@ -66,7 +66,7 @@ def back_up(folder: DataFolder, file: Path | None) -> str:
         copy_database(folder.database, path)
         checksum = write_checksum(path)
         if file is None:
-            thin_out(folder, "backup")
+            thin_out(folder, "backup", path)
     except (sqlite3.DatabaseError, OSError) as problem:
         where = folder.backups if file is None else file.parent
         raise SetupError(f"No backup was made: {explain(problem, where)}") from problem
@@ -84,7 +84,8 @@ def put_back(folder: DataFolder, file: Path) -> str:
         copy_database(file, fresh)
         aside = _put_aside(folder) if folder.database.exists() else None
         put_in_place(fresh, folder.database)
-        thin_out(folder, "replaced")
+        if aside is not None:
+            thin_out(folder, "replaced", aside)
     except (sqlite3.DatabaseError, OSError) as problem:
         fresh.unlink(missing_ok=True)
         raise SetupError(f"Nothing was restored: {explain(problem, folder.path)}") from problem

@@ -17,7 +17,7 @@ from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform import schema
-from server.platform.database_copies import copy_database
+from server.platform.database_copies import COPIES_MOST, copy_database
 from server.platform.settings import Settings, SetupError
 from server.platform.store import Store
 from tests.server.older import ROWS, fill_tables, make_session, read_tables, upgrade_to
@@ -136,6 +136,16 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
     with closing(sqlite3.connect(settings.data.database)) as database:
         assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def test_an_upgrade_leaves_its_copy_where_others_are_dated_in_the_future(settings: Settings) -> None:
+    upgrade_to(settings, "0003")
+    settings.data.backups.mkdir(exist_ok=True)
+    for day in range(1, 1 + COPIES_MOST):
+        (settings.data.backups / f"mucat-before-0002-2931-01-0{day}_00-00-00.db").touch()
+    schema.prepare(settings.data)
+    (copy,) = settings.data.backups.glob("mucat-before-0003-*.db")
+    assert schema.read_revision(copy) == "0003"
 
 
 @pytest.mark.parametrize("revision", OLDER)

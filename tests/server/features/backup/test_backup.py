@@ -219,6 +219,26 @@ def test_only_the_newest_backups_stay(settings: Settings, monkeypatch: pytest.Mo
     assert len(list(settings.data.backups.iterdir())) == 2 * database_copies.COPIES_MOST
 
 
+def test_copies_dated_in_the_future_do_not_cost_the_one_just_made(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill(settings, "one")
+    settings.data.backups.mkdir(exist_ok=True)
+    for kind in ("backup", "replaced"):
+        for day in range(1, 1 + database_copies.COPIES_MOST):
+            (settings.data.backups / f"mucat-{kind}-2931-01-0{day}_00-00-00.db").touch()
+    assert run(settings, "backup") == 0
+    made = Path(capsys.readouterr().out.partition(": ")[0])
+    assert names(made) == ["one"]
+    assert run(settings, "restore", str(made)) == 0
+    (replaced,) = re.findall(r"The database before is now (\S+\.db)\.", capsys.readouterr().out)
+    assert names(Path(replaced)) == ["one"]
+    for kind in ("backup", "replaced"):
+        copies = sorted(settings.data.backups.glob(f"mucat-{kind}-*.db"))
+        assert len(copies) == database_copies.COPIES_MOST
+        assert not copies[0].name.startswith(f"mucat-{kind}-2931")
+
+
 def test_a_second_writer_is_refused(settings: Settings) -> None:
     prepare(settings.data)
     with closing(Store(settings.data.database)) as store:
