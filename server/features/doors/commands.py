@@ -1,5 +1,6 @@
 """Commands of programs to the robot, with the checks of the HTTP interface: role, control, fields, audit."""
 
+import asyncio
 from collections.abc import Mapping
 from typing import Any
 
@@ -52,21 +53,19 @@ class DoorCommands:
         self._bridge = bridge
         self._arbiter = arbiter
         self._audit = audit
+        self._under_way: set[asyncio.Task[str]] = set()
 
     async def perform(self, pilot: "DoorPilot", name: str, fields: Mapping[str, Any]) -> str:
         """Perform a command, or take or release control; returns a sentence for the program.
 
+        What was begun, and its entry in the audit log, is finished also where the program has left.
         Raises RefusedError, ApiError, StoreError, each with a text for a person.
         """
-        action = {STOP: "STOP", TAKE: "Take control", RELEASE: "Release control"}.get(name, name)
-        try:
-            text = await self._perform(pilot, name, fields)
-        except REFUSALS as problem:
-            silent = isinstance(problem, RuntimeSilentError | StoreError)
-            self._record(pilot, action, str(problem), "failed" if silent else "refused")
-            raise
-        self._record(pilot, action, "" if not fields else str(dict(fields)), "done", name)
-        return text
+        task = asyncio.create_task(self._perform_recorded(pilot, name, fields))
+        self._under_way.add(task)
+        task.add_done_callback(self._under_way.discard)
+        # The robot may carry it out although nobody waits any more.
+        return await asyncio.shield(task)
 
     async def set_parameters(self, pilot: "DoorPilot", values: Mapping[str, Any]) -> str:
         """Set parameters of the robot by their names. Raises as `perform`."""
@@ -95,6 +94,17 @@ class DoorCommands:
     def note_refusal(self, pilot: "DoorPilot", action: str, why: str) -> None:
         """Write into the audit log that something was refused."""
         self._record(pilot, action, why, "refused")
+
+    async def _perform_recorded(self, pilot: "DoorPilot", name: str, fields: Mapping[str, Any]) -> str:
+        action = {STOP: "STOP", TAKE: "Take control", RELEASE: "Release control"}.get(name, name)
+        try:
+            text = await self._perform(pilot, name, fields)
+        except REFUSALS as problem:
+            silent = isinstance(problem, RuntimeSilentError | StoreError)
+            self._record(pilot, action, str(problem), "failed" if silent else "refused")
+            raise
+        self._record(pilot, action, "" if not fields else str(dict(fields)), "done", name)
+        return text
 
     async def _perform(self, pilot: "DoorPilot", name: str, fields: Mapping[str, Any]) -> str:
         if name == STOP:

@@ -1,4 +1,4 @@
-"""The base of both doors' sessions: the limits of a program that sends nonsense or too much."""
+"""The base of the doors' sessions: the limits of a program that sends nonsense or too much."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine
@@ -56,7 +56,7 @@ class DoorSession:
             await asyncio.gather(*calls, return_exceptions=True)
 
     def cancel_calls(self) -> list[asyncio.Task[None]]:
-        """Give up the calls that still wait, but for STOP; returns them."""
+        """Give up waiting for the answers of calls, but for STOP's; returns them."""
         calls = [*self._calls]
         for call in calls:
             call.cancel()

@@ -297,6 +297,45 @@ def test_stop_goes_on_where_its_program_leaves_at_once(
     play_open(settings, scenario)
 
 
+@pytest.mark.parametrize(
+    ("service", "fields", "command"),
+    [
+        ("/mucat/arm", {"mode": "manual"}, "arm"),
+        ("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"}, "parameters"),
+    ],
+)
+def test_a_command_leaves_its_trace_where_its_program_leaves_before_the_answer(
+    settings: Settings,
+    service: str,
+    fields: dict[str, Any],
+    command: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async def scenario(served: Served) -> None:
+        # The answer comes late, but not too late, however busy the computer is.
+        monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", SECONDS)
+        await served.api.post("/control/release")
+        served.runtime.answer = {"changed": {"depth.kp": [2.0, 2.5]}}
+        answered = served.runtime.gates[command]
+        answered.clear()
+        async with open_rosbridge(served, await make_token(served)) as socket:
+            client = RosbridgeClient(socket)
+            assert (await client.call("/mucat/take_control"))["result"] is True
+            await client.say(op="call_service", service=service, args=fields)
+            await until(lambda: command in [name for name, _ in served.runtime.asked], "the command")
+        async with asyncio.timeout(SECONDS):
+            while any(door["clients"] for door in (await served.api.get("/doors")).json()):
+                await asyncio.sleep(0.01)
+        answered.set()
+        async with asyncio.timeout(SECONDS):
+            while ("Program", command, "done") not in await acts_of(served):
+                await asyncio.sleep(0.01)
+        (change,) = (await served.api.get("/parameters/changes")).json()
+        assert (change["who"], change["values"][0]["name"]) == ("Program", "depth.kp")
+
+    play_open(settings, scenario)
+
+
 def test_control_ends_with_the_connection(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await served.api.post("/control/release")
