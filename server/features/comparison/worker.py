@@ -152,4 +152,5 @@ async def _end(process: Process) -> None:
         process.kill()
     assert process.stdin is not None
     process.stdin.close()
-    await process.wait()
+    # `wait` would never return where a pipe is full, and nobody reads it any more.
+    await process.communicate()

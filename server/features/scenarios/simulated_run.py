@@ -175,7 +175,8 @@ async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Pr
         await asyncio.gather(*tasks, return_exceptions=True)
         if process.returncode is None:
             _signal(process, signal.SIGKILL)
-            await process.wait()
+            # `wait` would never return where a pipe is full, and nobody reads it any more.
+            await process.communicate()
 
 
 async def _write_input(process: Process, text: str) -> None:

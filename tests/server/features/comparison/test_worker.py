@@ -225,6 +225,28 @@ def test_a_report_ends_with_the_connection_of_its_receiver(
     play(settings, scenario)
 
 
+def test_a_report_whose_receiver_hangs_up_while_it_is_read_holds_up_no_other_request(
+    settings: Settings, session: int, python: Python, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = tmp_path / "begun"
+    head = b'{"status": 200, "bytes": 200000000}\n'
+    # The first megabyte has passed through the pipe when the file appears; the rest is under way.
+    work = (
+        f"write = sys.stdout.buffer.write; write({head!r}); write(bytes(10**6)); open({str(begun)!r}, 'w'); "
+        "[write(bytes(10**5)) for _ in range(1990)]"
+    )
+
+    async def scenario(served: Served) -> None:
+        with monkeypatch.context() as faked:
+            faked.setattr(worker, "sys", python(work))
+            asking = asyncio.create_task(ask(served, session))
+            await until(begun.exists, "the answer to be read")
+            asking.cancel()
+        assert (await compare(served, session)).status_code == 200
+
+    play(settings, scenario)
+
+
 def test_no_process_is_left_and_a_missing_interpreter_is_an_error_in_words(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,8 +2,10 @@
 
 import asyncio
 import sqlite3
+import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -11,6 +13,7 @@ import pytest
 from robot_runtime.clock import SteadyClock
 from robot_runtime.experiments.scenario.document import read_scenario
 from server.cli import main
+from server.features.scenarios import simulated_run
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import ScenarioState
 from server.features.scenarios.simulated_run import SimulatedExecutor
@@ -19,6 +22,7 @@ from server.features.sessions.session import find_row
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
+from tests.server.waiting import SECONDS
 
 SHORT = """
 name = "short"
@@ -152,6 +156,28 @@ def test_a_failed_process_is_reported_with_its_output(
     assert (last.state, last.session) == ("failed", None)
     assert "has ended with exit status" in last.problem
     assert str(tmp_path) in last.problem
+
+
+def test_a_process_that_goes_on_writing_after_an_invalid_message_is_ended(
+    settings: Settings, store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = tmp_path / "python"
+    script.write_text(
+        f"#!{sys.executable}\nimport sys\nwhile True:\n    sys.stdout.buffer.write(b'\\xff' * 100_000)\n"
+    )
+    script.chmod(0o700)
+    monkeypatch.setattr(simulated_run, "sys", SimpleNamespace(executable=str(script)))
+    # The pipe is full at once.
+    monkeypatch.setattr(simulated_run, "MESSAGE_BYTES_MAX", 1000)
+
+    async def work(runs: ScenarioRunner) -> None:
+        runs.start(read_scenario(SHORT), SHORT, "simulated", "host")
+        async with asyncio.timeout(SECONDS):
+            await runs.wait()
+
+    last = perform(settings, store, work)[-1].last
+    assert last is not None
+    assert "sent a message that is not valid" in last.problem
 
 
 def test_a_scenario_runs_from_the_shell(
