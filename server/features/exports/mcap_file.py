@@ -131,7 +131,8 @@ def _write_about(store: Reader, source: ExportSelection, writer: Any) -> None:
         "scenario_name",
         "seed",
     )
-    writer.add_metadata("session", {name: str(described[name] or "") for name in about})
+    texts = {name: "" if described[name] is None else str(described[name]) for name in about}
+    writer.add_metadata("session", texts)
     writer.add_metadata("configuration", {"robot.toml": row.configuration, "scenario": row.scenario})
     crafts = read_crafts(source)
     writer.add_metadata(

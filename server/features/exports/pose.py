@@ -27,7 +27,8 @@ class Pose:
         self._position: bytes | None = None
         self._last = -PERIOD_NS
         self.known = self._attitude_topic in source.names
-        self.topics = {self._attitude_topic, self._position_topic} if self.known else set()
+        needed = {self._attitude_topic, self._position_topic}
+        self.topics = needed & set(source.names) if self.known else set()
         """The topics that `see` needs."""
 
     def see(self, name: str, data: bytes, time: int) -> tuple[bytes, bytes] | None:

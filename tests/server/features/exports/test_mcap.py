@@ -1,5 +1,6 @@
 """MCAP files, read in full by the two libraries that others read them with."""
 
+import asyncio
 import io
 import json
 import subprocess
@@ -13,6 +14,7 @@ import pytest
 from mcap import records
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.stream_reader import StreamReader, breakup_chunk
+from sqlmodel import update
 
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, row
@@ -20,6 +22,7 @@ from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.session import find_row
+from server.platform.models import SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block, state_block
@@ -163,6 +166,24 @@ def test_the_reader_of_foxglove_and_lichtblick_reads_all_of_it(
     assert found["attachments"]["robot.toml"] == ["application/toml", stored.configuration]
     assert json.loads(found["attachments"]["session.json"][1])["name"] == stored.name
     assert found["metadata"]["session"]["identifier"] == stored.identifier
+
+
+@pytest.mark.parametrize("topics", [["imu"], ["imu", "debug"], ["truth"], ["depth"]], ids=" and ".join)
+def test_any_choice_of_topics_gives_a_file_with_the_pose_where_the_attitude_is_among_them(
+    store: Store, session: int, tmp_path: Path, topics: list[str]
+) -> None:
+    path = write(store, session, tmp_path / "dive.mcap", topics=topics)
+    with path.open("rb") as file:
+        found = {channel.topic for _, channel, _ in SeekingReader(file).iter_messages()}
+    assert {f"/{name}" for name in topics} <= found
+    assert ("/pose" in found) is ("imu" in topics or "truth" in topics)
+
+
+def test_the_seed_zero_is_a_seed(store: Store, session: int, tmp_path: Path) -> None:
+    asyncio.run(store.write(lambda connection: connection.execute(update(SessionRow).values(seed=0))))
+    with write(store, session, tmp_path / "dive.mcap").open("rb") as file:
+        described = {one.name: one.metadata for one in SeekingReader(file).iter_metadata()}
+    assert described["session"]["seed"] == "0"
 
 
 def test_compression_without_its_package_or_for_another_format_is_refused(
