@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Literal
-from urllib.parse import SplitResult, urlsplit
+from urllib.parse import SplitResult, quote, urlsplit
 
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, Craft, CraftDocument, load_craft
 from robot_runtime.contract.limits import SCENE_HEIGHT, SCENE_WIDTH, SET_POINT, ConfigError, Range
@@ -217,12 +217,17 @@ def _check_address(name: str, address: str, schemes: tuple[str, str]) -> SplitRe
     """The parts of an address, which may be empty. Raises ConfigError."""
     try:
         parts = urlsplit(address)
-        usable = parts.scheme in schemes and parts.hostname and parts.port != 0 and "@" not in parts.netloc
+        # Encoded as it is looked up, which a name with an empty part cannot be.
+        host = parts.hostname and parts.hostname.encode("idna")
+        usable = parts.scheme in schemes and host and parts.port != 0 and "@" not in parts.netloc
     except ValueError:
         usable = False
     if address and (not usable or "#" in address or not address.isprintable() or " " in address):
         raise ConfigError(f"{name} is {address!r}; use {schemes[0]}://NAME or {schemes[1]}://NAME")
-    return urlsplit(address)
+    other = "".join(one for one in parts.path + parts.query if not one.isascii())
+    if other:
+        raise ConfigError(f"{name} has {other!r}, which addresses write as {quote(other)}")
+    return parts
 
 
 def _is_here(address: SplitResult) -> bool:

@@ -51,6 +51,9 @@ def test_the_shipped_file_holds_the_defaults() -> None:
         ("[events]\nmqtt = 'mqtt://broker.lab/topic'", "ends with the broker's name"),
         ("[events]\nwebhook = 'file:///etc/passwd'", "events.webhook is 'file:///etc/passwd'"),
         ("[events]\nwebhook = 'https://lab.example:99999/'", "events.webhook is"),
+        ("[events]\nwebhook = 'https://lab..example/'", "events.webhook is"),
+        ("[events]\nmqtt = 'mqtt://lab..example'", "events.mqtt is"),
+        ("[events]\nwebhook = 'https://lab.example/käfig'", "has 'ä', which addresses write as %C3%A4"),
         ("[events]\nmqtt_user = 'turtle'", "go together"),
         (
             "[events]\nmqtt = 'mqtt://broker.lab'\nmqtt_user = 'turtle'\nmqtt_password_file = 'word'",

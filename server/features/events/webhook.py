@@ -52,7 +52,10 @@ class WebhookOutlet:
             authority = self._folder / self._config.ca_file if self._config.ca_file else None
             self._tls = make_tls(authority) if self._address.scheme == "https" else None
             if self._config.webhook_token_file:
-                token = read_secret(self._folder / self._config.webhook_token_file)
+                path = self._folder / self._config.webhook_token_file
+                token = read_secret(path)
+                if not token.isascii():
+                    raise OutletError(f"The token in {path} has letters that a header cannot: ASCII alone.")
                 self._headers["Authorization"] = f"Bearer {token}"
         except OutletError as problem:
             self._tally.set("failed", str(problem))

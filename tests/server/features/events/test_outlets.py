@@ -206,6 +206,16 @@ def test_a_secret_that_others_can_read_is_not_used(tmp_path: Path) -> None:
     assert "cannot be read" in absent.condition().text
 
 
+def test_a_token_that_no_header_can_hold_is_refused_in_words(tmp_path: Path) -> None:
+    (tmp_path / "token").write_text("schlüssel…\n")
+    (tmp_path / "token").chmod(0o600)
+    outlet = WebhookOutlet(EventsConfig(webhook="http://127.0.0.1:1", webhook_token_file="token"), tmp_path)
+    outlet.open()
+    assert outlet.condition().state == "failed"
+    assert "has letters that a header cannot" in outlet.condition().text
+    outlet.close()
+
+
 def test_a_web_address_gets_each_event_with_its_token(tmp_path: Path, receiver: Receiver) -> None:
     (tmp_path / "token").write_text("lab-token\n")
     (tmp_path / "token").chmod(0o600)
