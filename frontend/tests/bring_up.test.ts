@@ -12,13 +12,14 @@ describe('Hold', () => {
   /** A button whose posts take this long (ms) and are accepted until the one of this number. */
   function button(takes: number, refused = Infinity) {
     const posts: { at: number; inputs: object }[] = [];
+    const ended = vi.fn();
     const began = Date.now();
     const hold = new Hold(async (inputs) => {
       posts.push({ at: Date.now() - began, inputs });
       await new Promise((resolve) => setTimeout(resolve, takes));
       return posts.length < refused;
-    }, EVERY);
-    return { hold, posts };
+    }, EVERY, ended);
+    return { hold, posts, ended };
   }
 
   it('repeats its action while held, and ends it once', async () => {
@@ -44,11 +45,12 @@ describe('Hold', () => {
     expect(posts).toEqual([{ at: 0, inputs: {} }, { at: 400, inputs: { stop: 1 } }]);
   });
 
-  it('does not repeat what was refused', async () => {
-    const { hold, posts } = button(10, 2);
+  it('does not repeat what was refused, and says that it has ended', async () => {
+    const { hold, posts, ended } = button(10, 2);
     hold.begin();
     await vi.advanceTimersByTimeAsync(1000);
     expect(posts.map(({ inputs }) => inputs)).toEqual([{}, { on: 1 }, { stop: 1 }]);
+    expect(ended).toHaveBeenCalledTimes(1);
   });
 
   it('begins anew where it is pressed again before it has ended', async () => {

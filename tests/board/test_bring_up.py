@@ -12,7 +12,7 @@ from robot_runtime.contract.packets import Jog, Start
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.bring_up.guide import STEPS
 from server.features.bring_up.report import write_report
-from tests.board.bring_up import NAMED, Person
+from tests.board.bring_up import HOLD, NAMED, Person
 from tests.board.rig import ROOT, build
 
 Begin = Callable[..., Person]
@@ -153,3 +153,24 @@ def test_what_cannot_be_done_is_refused_in_words(
 ) -> None:
     with pytest.raises(RefusedError, match=words):
         begin().work.perform(step, action, given)
+
+
+def test_a_held_motor_stays_stopped_after_stop_until_its_button_is_pressed_anew(begin: Begin) -> None:
+    person = begin()
+    person.press("motor_1", "turn")
+    person.bench.host.run(0.2)
+    assert abs(person.rig.board.fins().speeds[1]) > 1
+    person.work.stop()
+    for _ in range(3):
+        with pytest.raises(RefusedError, match="Release the button"):
+            person.press("motor_1", "turn", on=1)
+        person.bench.host.run(HOLD)
+    assert person.rig.board.fins().speeds == pytest.approx((0, 0, 0, 0), abs=0.05)
+    # Its release is no press.
+    person.press("motor_1", "turn", stop=1)
+    with pytest.raises(RefusedError, match="Release the button"):
+        person.press("motor_1", "turn", on=1)
+    person.press("motor_1", "turn")
+    person.press("motor_1", "turn", on=1)
+    person.bench.host.run(0.2)
+    assert abs(person.rig.board.fins().speeds[1]) > 1

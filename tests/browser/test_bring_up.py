@@ -51,10 +51,11 @@ def test_a_robot_is_brought_up_step_by_step(person: PagePerson, page: Page) -> N
     expect(page.get_by_role("link", name="Report of the last bring-up")).to_be_visible()
 
 
-RELEASES: dict[str, Callable[[Page], object]] = {
-    "Escape": lambda page: page.keyboard.press("Escape"),
-    "another window": lambda page: page.evaluate("window.dispatchEvent(new Event('blur'))"),
-    "a hidden page": lambda page: page.evaluate(
+RELEASES: dict[str, Callable[[Page, Stack], object]] = {
+    "Escape": lambda page, _: page.keyboard.press("Escape"),
+    "STOP of somebody else": lambda _, stack: stack.api.post("/robot/stop").raise_for_status(),
+    "another window": lambda page, _: page.evaluate("window.dispatchEvent(new Event('blur'))"),
+    "a hidden page": lambda page, _: page.evaluate(
         """() => {
             Object.defineProperty(document, 'hidden', { value: true, configurable: true });
             document.dispatchEvent(new Event('visibilitychange'));
@@ -82,7 +83,7 @@ def test_a_held_motor_is_released_a_step_skipped_and_a_step_accessible(
             page.mouse.down()
             wait(lambda: abs(board.fins().speeds[1]) > 1, f"the motor, to be stopped by {how}")
             with page.expect_response("**/api/bring-up/actions"):
-                release(page)
+                release(page, stack)
             expect(page.get_by_role("button", name="Hold to turn it")).to_be_visible()
             wait(lambda: abs(board.fins().speeds[1]) < 0.05, f"rest after {how}")
             page.mouse.up()

@@ -1,5 +1,6 @@
 """The bring-up of one robot: performs a person's actions, and keeps what they showed."""
 
+import threading
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Literal, TypeVar
@@ -37,6 +38,9 @@ class BringUp:
         self._zeros: dict[int, int] = {}
         self._encoders: dict[int, bool] = {}
         self._turned: dict[int, list[Raw]] = {}
+        self._jogging = threading.Lock()
+        self._stopped = False
+        """A STOP came since a motor's button was pressed: what is still held must not turn it again."""
         self._motors: dict[int, bool] = {}
         self._poses: dict[str, Axis] = {}
         self._axes: tuple[Axis, Axis, Axis] | None = None
@@ -83,6 +87,15 @@ class BringUp:
         guide = _find(step, action)
         self._skipped.discard(step)
         self._do[step, action]({**given, **_read(guide, given)})
+
+    def stop(self) -> None:
+        """Stops the motor that turns, until a motor's button is pressed anew. Raises BenchError.
+
+        May be called while another thread performs an action.
+        """
+        with self._jogging:
+            self._stopped = True
+            self._bench.jog(0, 0)
 
     def results(self, step: str) -> list[Result]:
         """The findings of a step, the newest of each check."""
@@ -241,10 +254,15 @@ class BringUp:
             self._bench.jog(fin, 0)
             self._turned.setdefault(fin, []).extend(self._bench.since_mark())
             return
-        if fin not in self._turned or not given.get("on"):
-            self._turned[fin] = []
-            self._bench.mark()
-        self._bench.jog(fin, JOG_DRIVE)
+        held = given.get("on")
+        with self._jogging:
+            if self._stopped and held:
+                raise RefusedError("STOP was pressed. Release the button, then press it again.")
+            self._stopped = False
+            if fin not in self._turned or not held:
+                self._turned[fin] = []
+                self._bench.mark()
+            self._bench.jog(fin, JOG_DRIVE)
 
     def _see(self, fin: int, given: Given) -> None:
         raws = self._turned.get(fin)

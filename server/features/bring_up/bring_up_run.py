@@ -97,10 +97,10 @@ class BringUpRun:
             await asyncio.wait([self._task])
 
     def see_stop(self) -> None:
-        """Stop the motor at a STOP."""
-        if self._bench is not None:
+        """Stop the motor at a STOP; a button that is held then must be released and pressed again."""
+        if self._bench is not None and self._procedure is not None:
             with suppress(BenchError):
-                self._bench.jog(0, 0)
+                self._procedure.stop()
 
     async def perform(self, step: str, action: str, inputs: Mapping[str, float | str]) -> None:
         """Perform an action. Raises RefusedError where it cannot be done."""

@@ -12,10 +12,12 @@ export class Hold {
   /**
    * @param post answers whether it was accepted; what is refused is not repeated
    * @param every ms between two posts. One follows the other: a late one must not come after the last
+   * @param ended called where a refusal has ended it
    */
   constructor(
     private readonly post: (inputs: Record<string, number>) => Promise<boolean>,
     private readonly every: number,
+    private readonly ended: () => void,
   ) {}
 
   begin(): void {
@@ -34,7 +36,10 @@ export class Hold {
       let inputs: Record<string, number> = FIRST;
       while (held()) {
         const pause = new Promise((resolve) => setTimeout(resolve, this.every));
-        if (!(await this.post(inputs))) this.release();
+        if (!(await this.post(inputs))) {
+          this.release();
+          this.ended();
+        }
         inputs = AGAIN;
         if (held()) await pause;
       }

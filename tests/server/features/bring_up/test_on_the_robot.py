@@ -60,7 +60,11 @@ def test_a_bring_up_by_http_and_the_robot_is_back_afterwards(shared_stack: Stack
     assert act(stack, "motor_3", "seen", fin="front left")["state"] == "done"
     refused = stack.api.post("/bring-up/actions", json={"step": "gyro", "action": "rest"})
     assert (refused.status_code, "how the IMU lies" in refused.json()["detail"]) == (409, True)
+    act(stack, "motor_3", "turn")
     assert stack.api.post("/robot/stop").status_code == 204
+    held = {"step": "motor_3", "action": "turn", "inputs": {"on": 1}}
+    refused = stack.api.post("/bring-up/actions", json=held)
+    assert (refused.status_code, "STOP was pressed" in refused.json()["detail"]) == (409, True)
     assert stack.api.delete("/bring-up").status_code == 200
     wait(lambda: state(stack)["phase"] == "idle", "the firmware")
     assert state(stack)["problem"] == ""
