@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
-from playwright.sync_api import Browser, Page, StorageState, ViewportSize, WebSocketRoute, expect
+from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSize, WebSocketRoute, expect
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.documents import Mission
@@ -134,3 +134,77 @@ def test_a_reason_that_goes_away_while_the_button_is_held_does_not_arm(phone: Pa
     # Answered: a command that comes later would be one of the next test.
     with phone.expect_response("**/commands/arm"):
         phone.mouse.down()
+
+
+ENDS = {
+    "Esc": "window.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }))",
+    "STOP by another finger": "document.querySelector('button.stop').click()",
+    "another page": "location.hash = '#/people'",
+}
+"""What ends a hold while the pointer stays down."""
+# In one turn: on a busy computer the hold could be over before its end comes.
+HOLD_AND_END = """(button) => {
+    button.dispatchEvent(new PointerEvent('pointerdown', { button: 0, bubbles: true }));
+    %s;
+}"""
+# What the page asks the server for from now on.
+FOLLOW_REQUESTS = """() => {
+    const fetch = globalThis.fetch;
+    globalThis.asked = [];
+    globalThis.fetch = (address, options) => (globalThis.asked.push(`${address}`), fetch(address, options));
+}"""
+# The button's own frame comes before this one.
+FRAMES_OF_A_HOLD = """async () => {
+    const begun = performance.now();
+    while (performance.now() - begun < 800) await new Promise(requestAnimationFrame);
+    return globalThis.asked;
+}"""
+# No frame is drawn, so a hold does not end, until `drawOn` is called.
+DRAW_NOTHING = """() => {
+    const draw = globalThis.requestAnimationFrame, awaited = [];
+    globalThis.requestAnimationFrame = (frame) => awaited.push(frame);
+    globalThis.drawOn = () => {
+        globalThis.requestAnimationFrame = draw;
+        for (const frame of awaited) draw(frame);
+    };
+}"""
+
+
+def open_to_arm(page: Page, site: DiveSite) -> Locator:
+    """The button to arm, once it would."""
+    page.goto(f"{site.url}/#/operate")
+    # The address alone opens no new socket.
+    page.reload()
+    panel = page.get_by_role("region", name="Arm")
+    expect(panel.get_by_text("Ready to arm")).to_be_visible()
+    page.evaluate(FOLLOW_REQUESTS)
+    return panel.get_by_role("button").last
+
+
+def asks_to_arm(page: Page) -> bool:
+    """True if the page has asked to arm, once a hold would have armed."""
+    return any(address.endswith("/commands/arm") for address in page.evaluate(FRAMES_OF_A_HOLD))
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_a_hold_that_was_ended_does_not_arm(page: Page, site: DiveSite, end: str) -> None:
+    button = open_to_arm(page, site)
+    button.evaluate(HOLD_AND_END % ENDS[end])
+    if end != "another page":
+        expect(button).to_have_text("Release, then hold again")
+    assert not asks_to_arm(page)
+
+
+def test_a_reason_that_comes_and_goes_during_a_hold_does_not_arm(page: Page, site: DiveSite) -> None:
+    refusals = Refusals(page)
+    button = open_to_arm(page, site)
+    page.evaluate(DRAW_NOTHING)
+    button.dispatch_event("pointerdown", {"button": 0})
+    refusals.reason = REASON
+    expect(button).to_have_text("Not now: see below")
+    refusals.reason = None
+    expect(button).to_have_text("Release, then hold again")
+    page.evaluate("drawOn()")
+    assert not asks_to_arm(page)
+    button.dispatch_event("pointerup")
+    expect(button).to_have_text("Hold to arm")

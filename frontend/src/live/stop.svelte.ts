@@ -12,6 +12,8 @@ export type StopState = 'idle' | 'sending' | 'confirmed';
  */
 export class Stop {
   state = $state<StopState>('idle');
+  /** counts the presses of this page: what is held ends with each */
+  presses = $state(0);
   attempts = $state(0);
   problem = $state('');
   #rest: ReturnType<typeof setTimeout> | undefined;
@@ -20,6 +22,7 @@ export class Stop {
 
   readonly press = (): void => {
     this.bySocket();
+    this.presses += 1;
     if (this.state === 'sending') return;
     clearTimeout(this.#rest);
     this.state = 'sending';
