@@ -18,13 +18,23 @@ constexpr uint16_t kFactorUnit = 10000;
 constexpr uint16_t kFactorMin = 8000;
 constexpr uint16_t kFactorMax = 12500;
 
+uint8_t magnitude(int8_t axis) { return axis < 0 ? -axis : axis; }
+
 bool possible(const Calibration& calibration) {
   uint8_t axes = 0;
+  bool mirrored = false;
+  uint8_t before = magnitude(calibration.axes[2]);
   for (int8_t axis : calibration.axes) {
     if (axis < -3 || axis > 3) return false;
-    axes |= 1 << (axis < 0 ? -axis : axis);
+    const uint8_t number = magnitude(axis);
+    axes |= 1 << number;
+    // Each reversed axis mirrors. Of the axes in the wrong cyclic order all three are out of place.
+    mirrored ^= axis < 0;
+    mirrored ^= number != before % 3 + 1;
+    before = number;
   }
-  return axes == 0xE && calibration.battery_factor >= kFactorMin && calibration.battery_factor <= kFactorMax;
+  return axes == 0xE && !mirrored && calibration.battery_factor >= kFactorMin &&
+         calibration.battery_factor <= kFactorMax;
 }
 
 }  // namespace

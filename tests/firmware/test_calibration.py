@@ -1,11 +1,13 @@
 """The calibration in EEPROM: refused, stored, read back, applied; what cannot be is not kept."""
 
 from dataclasses import replace
+from itertools import permutations, product
 from math import pi
 
 import pytest
 
 from robot_runtime.contract.calibration import EMULATED, STEPS, CalibrationValues, StepName
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     Beacon,
@@ -142,6 +144,7 @@ def test_a_record_with_a_wrong_byte_is_none(robot: Robot, index: int) -> None:
         {"axes": (0, 1, 2)},
         {"axes": (1, 2, 4)},
         {"axes": (1, 2, -128)},
+        {"axes": (1, 2, -3)},
         {"battery_factor": 0.0},
         {"battery_factor": 0.79},
         {"battery_factor": 1.26},
@@ -151,6 +154,26 @@ def test_what_cannot_be_is_not_kept(robot: Robot, impossible: dict[str, object])
     robot.greet()
     assert store(robot, replace(KEPT, **impossible)) == KEPT  # type: ignore[arg-type]
     assert start(robot)
+
+
+def is_turn(axes: tuple[int, int, int]) -> bool:
+    try:
+        CalibrationValues.from_packet(replace(KEPT, axes=axes))
+    except ConfigError:
+        return False
+    return True
+
+
+def test_the_board_accepts_the_axes_that_this_computer_accepts(robot: Robot) -> None:
+    robot.greet()
+    triples = [
+        (a * forward, b * right, c * down)
+        for forward, right, down in permutations((1, 2, 3))
+        for a, b, c in product((1, -1), repeat=3)
+    ]
+    accepted = [axes for axes in triples if store(robot, replace(KEPT, axes=axes)).axes == axes]
+    assert accepted == [axes for axes in triples if is_turn(axes)]
+    assert len(accepted) == 24
 
 
 def test_an_armed_board_keeps_what_it_has(robot: Robot) -> None:
