@@ -258,6 +258,20 @@ def test_an_imu_that_fell_asleep_is_woken(robot: Robot) -> None:
     assert counts(robot.run(1000))["Imu"] == 100
 
 
+def test_an_imu_that_answers_only_zeros_is_faulty_until_it_measures(robot: Robot) -> None:
+    robot.greet()
+    robot.run(500)
+    awake = robot.imu.force, robot.imu.rate
+    robot.imu.force = robot.imu.rate = (0, 0, 0)
+    robot.run(100)
+    statuses = [packet for packet in robot.run(3000) if isinstance(packet, Status)]
+    assert [status.faults for status in statuses] == [DeviceFault.IMU] * 30
+    robot.imu.force, robot.imu.rate = awake
+    robot.run(300)
+    assert robot.status().faults == 0
+    assert robot.texts[-2:] == ["IMU: no sensible answer", "IMU: ok"]
+
+
 def test_a_single_exchange_of_the_pressure_sensor_that_fails_costs_no_depth(robot: Robot) -> None:
     robot.greet()
     robot.run(500)

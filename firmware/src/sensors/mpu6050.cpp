@@ -65,7 +65,8 @@ bool Mpu6050::step(ImuReading* reading) {
   }
   if (!ready_) {
     ready_ = set_up();
-    faulty_ = !ready_;
+    // A chip that only answers the settings has given no reading yet.
+    if (!ready_) faulty_ = true;
     wait_ = ready_ ? kSettle : kRetry;
     return false;
   }
@@ -87,6 +88,7 @@ bool Mpu6050::step(ImuReading* reading) {
     reading->force[axis] = big_endian(bytes + 2 * axis);
     reading->rate[axis] = big_endian(bytes + 8 + 2 * axis);
   }
+  faulty_ = false;
   return true;
 }
 
