@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from robot_runtime.contract.packets import Debug, Imu, ResetCause, Start, Status, StatusFlag
+from robot_runtime.contract.packets import Debug, Heartbeat, Imu, ResetCause, Start, Status, StatusFlag
 from robot_runtime.link.session import LinkSession, SessionStage
 from tests.firmware.robot import Robot
 from tests.runtime.link.line import Noise, Wire
@@ -61,6 +61,15 @@ class Pair:
     def start(self, epoch: int) -> None:
         self._to_board.send(self.session.send([Start(epoch=epoch)], self.now), self.now)
 
+    def beat(self) -> None:
+        self._to_board.send(self.session.send([Heartbeat(time=0)], self.now), self.now)
+
+    def run_unheard(self, seconds: float) -> bytes:
+        """Run the board without the host; returns the bytes that it sends."""
+        self.robot.firmware.robot_run(self.robot._robot, round(seconds * 1000))
+        size = self.robot.firmware.board_take(self._room, len(self._room))
+        return self._room.raw[:size]
+
     def run(self, seconds: float) -> None:
         for _ in range(round(seconds / STEP)):
             self._to_board.send(self.session.poll(self.now), self.now)
@@ -104,6 +113,28 @@ def test_on_a_bad_line_every_command_and_every_line_arrives_once_and_in_order(pa
     statistics = pair.session.statistics()
     assert statistics.frames_repeated > 10
     assert statistics.frames_invalid > 100
+
+
+def test_after_an_outage_lines_are_sent_once_again(pair: Pair) -> None:
+    """In the outage a line was sent so often that the order of transmissions, 8 bits, has wrapped past it."""
+    pair.set_line(Noise(delay=0.03))
+    pair.run(2.0)
+    pair.start(1000)
+    pair.run(0.5)
+    pair.robot.send(pair.session.send([Start(epoch=1001)], pair.now))
+    copies = 0
+    while copies < 160:
+        copies += b"START refused" in pair.run_unheard(0.01)
+    pair.run(1.0)
+    before = pair.session.statistics().frames_duplicate
+    for number in range(30):
+        pair.start(1002 + number)
+        for _ in range(20):
+            pair.beat()
+            pair.run(STEP)
+    assert pair.session.statistics().frames_duplicate - before < 5
+    assert pair.statuses[-1].debug_lost == 0
+    assert [line.text for line in pair.lines].count("START refused: epoch of another boot") == 32
 
 
 def test_every_gap_in_the_telemetry_is_counted(pair: Pair) -> None:

@@ -128,6 +128,8 @@ void Link::handle_acknowledgement() {
   messages_bytes_ -= bytes;
   in_flight_ -= count;
   for (uint8_t i = 0; i < in_flight_; ++i) flights_[i] = flights_[i + count];
+  // While a host was away, so many copies may have been sent that the order has wrapped past it.
+  if (in_flight_ == 0) newest_order_ = order_;
   note_losses();
 }
 
