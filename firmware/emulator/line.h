@@ -7,8 +7,9 @@
 #include "chip.h"
 #include "line_faults.h"
 
-#define LINE_CHARACTERS_MAX \
-  16  // a power of two; at most two are on the line at a time, and two more for each by faults
+// A power of two. Between ends of like speed at most two are on the line at a time, and two more for each by
+// faults. A receiver that is much slower than the sender misses those beyond.
+#define LINE_CHARACTERS_MAX 16
 
 struct line_character {
   double start;     // cycle of its start bit's edge

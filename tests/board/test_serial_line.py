@@ -63,6 +63,17 @@ def test_another_speed_gives_garbage_and_framing_errors(make_rig: Make, baud: in
     assert rig.board.stats()["framing_errors_board"] > 0
 
 
+def test_bytes_before_a_much_slower_receiver_take_as_long_as_on_copper(make_rig: Make) -> None:
+    rig = make_rig("echo")
+    rig.board.run(START)
+    assert rig.exchange(bytes([1]), 0.002) == bytes([1])  # from now on at 9600
+    rig.port.set_baud(250_000)
+    rig.port.write(random_bytes(500))
+    rig.run_until(lambda: rig.board.stats()["waiting"] > 0, step=1e-5, limit=0.1)
+    took = rig.run_until(lambda: rig.board.stats()["waiting"] == 0, step=1e-5, limit=0.1)
+    assert took == pytest.approx(500 * CHARACTER_BITS / 250_000, abs=2e-4)
+
+
 def test_a_program_that_does_not_read_keeps_three_bytes_and_detects_the_overrun(make_rig: Make) -> None:
     rig = make_rig("deaf")
     rig.board.run(START)
