@@ -1,5 +1,6 @@
 """The whole robot: telemetry and its rates, failing devices, surface, battery, LED, debug lines."""
 
+import math
 from collections import Counter
 from itertools import pairwise
 
@@ -23,7 +24,7 @@ from robot_runtime.contract.packets import (
     ZeroDepth,
 )
 from tests.firmware.devices import OVERCURRENT
-from tests.firmware.robot import BRIDGES, IMU, PRESSURE, SURFACE, Robot, hello, navigation
+from tests.firmware.robot import BRIDGES, IMU, PRESSURE, SURFACE, TICK, Robot, hello, navigation
 
 WATER = 9810.0
 """Pa a metre."""
@@ -344,6 +345,22 @@ def test_a_fin_that_does_not_follow_its_drive_is_stopped(
     robot.arm()
     robot.swim(1000, navigation(z=1))
     assert robot.status().faults == 0
+
+
+def test_a_fin_whose_encoder_is_back_is_not_driven_for_what_it_drifted_meanwhile(robot: Robot) -> None:
+    drifted = 20
+    robot.arm()
+    robot.beat(500)
+    robot.blind.add(1)
+    robot.beat(500)
+    robot.motors[1].shaft += drifted * math.tau / 1024
+    robot.blind.clear()
+    drives = []
+    for _ in range(10):
+        robot.run(TICK)
+        drives.append(abs(robot.bridges[1].drive))
+    # The loop's gain alone, 0.625 for each count.
+    assert max(drives) == 12
 
 
 FINS = ("front right", "back right", "back left", "front left")

@@ -61,7 +61,10 @@ int8_t Fins::find_drive(uint8_t fin, int16_t gain) {
     // The bridge may have tripped since its last reading.
     if (watch.failed() && newly_tripped(fin)) watch.restart();
   }
-  if (encoder_faults_ & bit || watch.failed()) return 0;
+  if (encoder_faults_ & bit || watch.failed()) {
+    loops_[fin].restart();
+    return 0;
+  }
   return loops_[fin].step(calibration, counts_from_angle(calibration, set_points_[fin]), counts_[fin], gain);
 }
 

@@ -2,7 +2,9 @@
 //
 // Armed only by a START that names this boot, after 500 ms of steady traffic from a host built from the same
 // packet definitions. 250 ms after the last NAVIGATION the fins stop; 1 s after the last valid frame the
-// board disarms; STOP disarms at once. Every tick checks all ages, so that none can wrap around unnoticed.
+// board disarms; STOP disarms at once. Every tick checks these ages, so that they cannot wrap around
+// unnoticed. That of the traffic can: after 50 days of it START is refused for half a second, and the host
+// asks again.
 #pragma once
 #include <stdint.h>
 
