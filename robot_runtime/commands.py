@@ -95,6 +95,7 @@ class Commands:
         with self._robot.parameters.changing() as changed:
             answer = handler(command) or {}
         self._robot.announce()
+        self._robot.store_settings()
         return {"changed": {name: list(values) for name, values in changed.items()}, **answer}
 
     def begin_mission(self, command: MissionCommand) -> Arming:

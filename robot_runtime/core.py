@@ -302,6 +302,9 @@ class Core:
         self.control.colour = settings.colour
         self._publish_vision()
 
+    def store_settings(self) -> None:
+        """Stores the settings that commands have changed. Not for the control loop: a card may be slow."""
+
     def vision_settings(self) -> dict[str, Any]:
         """Returns the vision settings in force and the configured ones, as a JSON object."""
         now, configured = self.vision.settings, self.config.vision.settings

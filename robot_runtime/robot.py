@@ -66,6 +66,8 @@ class Robot(Core):
             heartbeat=heartbeat,
         )
         self._vision_file = vision_file
+        self._vision_unstored: VisionSettings | None = None
+        self._storing = threading.Lock()
         self._restore_vision()
         self._server_run = ""
         messages.subscribe_runs(HEARTBEAT, lambda _name, payload, run: self._see_server(payload, run))
@@ -83,18 +85,25 @@ class Robot(Core):
         self._messages.serve_bytes("query/blocks", self.cache.answer)
 
     def set_vision(self, settings: VisionSettings) -> None:
-        """Applies vision settings from the next picture on, and stores them for the next start."""
+        """Applies vision settings from the next picture on; `store_settings` stores them."""
         super().set_vision(settings)
         # What a mission sets is put back at its end, and must not outlive a runtime that is killed.
-        if self._vision_file is None or self.missions.active:
-            return
-        try:
-            if settings == self.config.vision.settings:
-                self._vision_file.forget()
-            else:
-                self._vision_file.write(settings)
-        except OSError as problem:
-            self._publish_vision_event(f"The settings apply, but could not be stored: {problem.strerror}")
+        if not self.missions.active:
+            self._vision_unstored = settings
+
+    def store_settings(self) -> None:
+        """Stores changed vision settings for the next start."""
+        with self._storing:
+            settings, self._vision_unstored = self._vision_unstored, None
+            if settings is None or self._vision_file is None:
+                return
+            try:
+                if settings == self.config.vision.settings:
+                    self._vision_file.forget()
+                else:
+                    self._vision_file.write(settings)
+            except OSError as problem:
+                self._publish_vision_event(f"The settings apply, but could not be stored: {problem.strerror}")
 
     def run(self) -> None:
         """Runs until `close` is called, then disarms the board and closes everything."""

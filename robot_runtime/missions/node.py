@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.documents import Event, Mission, Mode, Severity
+from robot_runtime.contract.documents import Event, Mission, Mode, ParameterValue, Severity
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import MissionLimits, MissionPhase
 from robot_runtime.errors import RefusedError
@@ -31,6 +31,7 @@ LATE = 1.0
 """s that a tick may take of the mission's clock at most; a longer one stops the robot anyway."""
 _SWIMS_IN: tuple[Mode, ...] = ("automatic", "manual")
 """The modes in which a mission runs or is paused; any other one ends it."""
+_ERROR = "An error in the software ended it; see the runtime's log."
 _ENDS: dict[Mode, str] = {
     "disarmed": "The robot was stopped.",
     "failsafe": "The robot was stopped for a fault; see its alarms.",
@@ -154,7 +155,7 @@ class MissionRunner:
             self._advance(run, mode)
         except Exception:
             log.exception("a mission failed")
-            self._finish(run, "failed", "An error in the software ended it; see the runtime's log.", mode)
+            self._finish(run, "failed", _ERROR, mode)
 
     def _require(self) -> "MissionRun":
         run = self._run
@@ -235,10 +236,15 @@ class MissionRunner:
         return ""
 
     def _finish(self, run: "MissionRun", phase: MissionPhase, text: str, mode: Mode) -> None:
-        self._run = None
+        left: dict[str, ParameterValue] = {}
         try:
             left = run.end()
+        except Exception:
+            log.exception("a mission could not be ended in order")
+            phase, text = "failed", _ERROR
         finally:
+            # Not before: what a mission puts back is no change of an operator's, which would be stored.
+            self._run = None
             if mode in _SWIMS_IN:
                 self._stop(f"The mission is over: {text}")
         if left:
