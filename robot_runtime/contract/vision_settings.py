@@ -20,6 +20,16 @@ Aspect = Annotated[float, Range(0.05, 20)]
 MarkerNumber = Annotated[int, Range(0, 1023)]
 WhiteBalance = Literal["none", "grey_world", "underwater"]
 MarkerDictionary = Literal["none", "4x4_50", "5x5_100", "6x6_250", "7x7_1000", "original", "april_36h11"]
+MARKER_COUNTS: Mapping[MarkerDictionary, int] = {
+    "none": 0,
+    "4x4_50": 50,
+    "5x5_100": 100,
+    "6x6_250": 250,
+    "7x7_1000": 1000,
+    "original": 1024,
+    "april_36h11": 587,
+}
+"""Markers of a dictionary; their numbers count from 0."""
 
 NAME = re.compile(r"[^\W\d_][\w .-]{0,31}")
 """A colour's name: a letter, then up to 31 letters, digits, blanks and . _ -"""

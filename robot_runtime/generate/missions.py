@@ -1,5 +1,6 @@
 """docs/reference/missions.md: what the document of a mission may contain, from the classes of its steps."""
 
+import json
 import typing
 from collections.abc import Iterator
 from dataclasses import MISSING, Field, fields
@@ -48,7 +49,7 @@ heading or course. A [swim](#swim) without `yaw` leaves the heading alone.
 
 
 def missions_page() -> str:
-    """The whole text of missions.md."""
+    """Returns the whole text of missions.md."""
     leaves = [cls for cls in NODES.values() if issubclass(cls, Leaf)]
     branches = [cls for cls in NODES.values() if issubclass(cls, Branch)]
     parts = [
@@ -90,7 +91,10 @@ def _field_rows(cls: type[MissionNode]) -> Iterator[tuple[str, ...]]:
 def _default(one: "Field[typing.Any]") -> str:
     if one.default is MISSING:
         return "required"
-    return "" if one.default is None else f"{one.default:g}"
+    if one.default is None:
+        return ""
+    # Texts and switches as in TOML, which here are those of JSON.
+    return f"{one.default:g}" if isinstance(one.default, float) else json.dumps(one.default)
 
 
 def _meaning(cls: type[MissionNode]) -> str:

@@ -3,7 +3,7 @@
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Detection, Document
 from robot_runtime.contract.packets import Beacon
-from robot_runtime.contract.vision_settings import MARKER, VisionSettings, marker_name
+from robot_runtime.contract.vision_settings import MARKER, MARKER_COUNTS, VisionSettings, marker_name
 from robot_runtime.control.fault_detector import FaultDetector
 from robot_runtime.control.node import BEACON_STALE, VISION_STALE, ControlNode
 from robot_runtime.transport.bus import Bus
@@ -66,11 +66,13 @@ class MissionSenses:
         settings: VisionSettings = self._vision.settings
         if what == LIGHT or what in settings.colours:
             return ""
-        if not MARKER.fullmatch(what):
+        if (marker := MARKER.fullmatch(what)) is None:
             known = ", ".join([*settings.colours, LIGHT])
             return f"Nothing is called {what!r}; there are {known}, and markers such as “marker 7”."
         if settings.markers == "none":
             return "The camera looks for no markers. Choose their dictionary in the vision settings."
+        if int(marker[1]) >= (count := MARKER_COUNTS[settings.markers]):
+            return f"There is no {what} in the dictionary {settings.markers}; its last is marker {count - 1}."
         numbers = settings.marker_numbers
         if numbers and what not in map(marker_name, numbers):
             return f"The camera does not look for {what}. Add it to the markers in the vision settings."

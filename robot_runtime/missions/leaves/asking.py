@@ -12,7 +12,11 @@ _SIGHT = {"description": 'a colour, a marker such as "marker 7", or "light"', "k
 
 @mission_node("wait_for")
 class WaitForLeaf(Leaf):
-    """Waits until a fresh picture shows a colour or a marker, or a detector sees the light."""
+    """Waits until a fresh picture shows a colour or a marker, or a detector sees the light.
+
+    Of several colours in a picture the robot sees one: the target colour, else one with an action, else the
+    largest. A step `set` of `vision.colour` before this one makes its colour the target.
+    """
 
     sees: str = field(metadata=_SIGHT)
     timeout: MissionSeconds = field(

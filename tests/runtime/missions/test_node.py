@@ -2,6 +2,7 @@
 
 import pytest
 
+from robot_runtime.contract.vision_settings import VisionSettings
 from tests.runtime.missions.mission_rig import MissionRig
 from tests.runtime.missions.water import HOLD, mission
 
@@ -116,3 +117,11 @@ def test_what_failed_in_a_first_of_stays_failed_while_the_next_one_runs() -> Non
     assert seen == [*one, *one]
     progress = [one.progress for one in rig.documents]
     assert progress == sorted(progress)
+
+
+def test_a_marker_beyond_its_dictionary_is_refused() -> None:
+    rig = MissionRig()
+    rig.core.set_vision(VisionSettings(markers="4x4_50"))
+    assert rig.senses.check_sight("marker 49") == ""
+    said = "There is no marker 50 in the dictionary 4x4_50; its last is marker 49."
+    assert rig.senses.check_sight("marker 50") == said

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from robot_runtime.contract.vision_settings import COLOURS, MarkerDictionary, VisionSettings
+from robot_runtime.contract.vision_settings import COLOURS, MARKER_COUNTS, MarkerDictionary, VisionSettings
 from robot_runtime.vision.balance import BALANCES, grey_world, underwater
 from robot_runtime.vision.detector import DICTIONARIES, Detector, Sight
 from robot_runtime.vision.patches import COUNTED, DROPPED, GROUND, OUTLINE, OUTLINE_REFUSED, draw_mask
@@ -215,6 +215,14 @@ def test_markers_are_selected_by_dictionary_and_number() -> None:
     assert [one.number for one in look(marked(7), markers="4x4_50", marker_numbers=(7,)).markers] == [7]
     assert look(marked(7), markers="6x6_250").markers == []
     assert look(marked(7), markers="4x4_50", actions={"marker 8": 1.0}).target is None
+
+
+def test_the_counts_of_the_dictionaries_are_opencvs() -> None:
+    counts = {
+        name: len(cv2.aruco.getPredefinedDictionary(number).bytesList)
+        for name, number in DICTIONARIES.items()
+    }
+    assert {"none": 0, **counts} == MARKER_COUNTS
 
 
 @pytest.mark.parametrize("name", sorted(DICTIONARIES))
