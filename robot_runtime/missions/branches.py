@@ -119,7 +119,7 @@ class TimeoutBranch(Branch):
 
 @mission_node("call")
 class CallBranch(Branch):
-    """The steps of another mission of the library; that mission's limits apply too."""
+    """The steps of another mission of the library; the limits that it names apply too."""
 
     least = most = 0
     mission: str = field(metadata={"description": "its name"})

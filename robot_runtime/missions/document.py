@@ -220,7 +220,9 @@ class _Reading:
         head, limits = None, OwnLimits()
         try:
             head = parse(_Head, known)
-            self._tighten({"alone": head.alone, "pause": head.pause})
+            # An entry that a called mission leaves out is no limit, as in its `[limits]`.
+            own = {"alone": head.alone, "pause": head.pause}
+            self._tighten({name: own[name] for name in own if name in table or not self._is_called})
         except ConfigError as problem:
             self._problems += [_name_all(one) for one in problem.problems]
         try:
@@ -244,7 +246,8 @@ class _Reading:
             if looser and not self._is_called:
                 words = f"is {value:g} {unit}; robot.toml allows {robot:g} {unit} ([missions] {name})"
                 self._problems.append(entry.problem(words))
-            elif not looser and (name == "unwatched" and value == 0) is False:
+            elif not looser and not (name == "unwatched" and value == 0):
+                # 0: any time, which tightens nothing.
                 values[name] = value
         self._limits = MissionLimits(**values)
 
@@ -382,17 +385,31 @@ class _Reading:
 
     def _check_limits(self, root: MissionStep) -> None:
         limits = self._limits
-        for step in root.walk():
-            if isinstance(step.node, Leaf) and step.node.deepest > limits.depth:
-                words = f"goes to {step.node.deepest:g} m, and the depth is limited to {limits.depth:g} m"
-                name = f"step {step.place}" if step.path else "mission"
-                self._problems.append(DocumentEntry(name, _entry_path(step.path)).problem(words))
+        self._problems += [entry.problem(words) for entry, words in _find_deep(root, limits.depth)]
         if root.longest > limits.time:
             words = (
                 f"may take {root.longest:.0f} s, and limits.time is {limits.time:g} s; "
                 "shorten its timeouts and repetitions"
             )
             self._problems.append(_ROOT.problem(words))
+
+
+def _find_deep(step: MissionStep, limit: float, base: int = 0) -> Iterator[tuple[DocumentEntry, str]]:
+    """The entries of steps that go deeper than this (m), with the words; `base` is their mission's level.
+
+    What a called mission does is a problem of the call: no other step of it is in this document.
+    """
+    path = step.path[base:]
+    name = f"step {'.'.join(map(str, path))}" if path else "mission"
+    entry = DocumentEntry(name, _entry_path(path))
+    if isinstance(step.node, Leaf) and step.node.deepest > limit:
+        yield entry, f"goes to {step.node.deepest:g} m, and the depth is limited to {limit:g} m"
+    for one in step.steps:
+        if not one.called:
+            yield from _find_deep(one, limit, base)
+            continue
+        for below, words in _find_deep(one, limit, len(one.path)):
+            yield entry.field("mission"), f"is {one.called!r}: {below.problem(words).text}"
 
 
 def is_condition(step: MissionStep) -> bool:

@@ -108,6 +108,36 @@ def test_calls_are_read_from_the_library_and_circles_are_refused() -> None:
     assert "test → a → b → a" in problems(call("a", "test"), deep)[0]
 
 
+def _call_step(name: str) -> str:
+    return f"{{ do = 'call', mission = '{name}' }}"
+
+
+def test_a_called_mission_that_goes_too_deep_is_a_problem_of_the_call() -> None:
+    library = {"deep": mission(HOLD, "{ do = 'dive', depth = 2.5 }"), "way": mission(_call_step("deep"))}
+    goes = "goes to 2.5 m, and the depth is limited to 1 m"
+    text = mission(DIVE, _call_step("deep"), _call_step("way"), limits="time = 400\ndepth = 1")
+    with pytest.raises(ConfigError) as refused:
+        read_mission(text, library)
+    assert refused.value.texts == [
+        f"step 2: mission is 'deep': step 2 {goes}",
+        f"step 3: mission is 'way': step 1: mission is 'deep': step 2 {goes}",
+    ]
+    assert [getattr(one, "path", None) for one in refused.value.problems] == [
+        ("mission", "steps", 1, "mission"),
+        ("mission", "steps", 2, "mission"),
+    ]
+
+
+def test_a_called_mission_limits_only_what_it_names() -> None:
+    head = HEAD.replace("alone = 0", "alone = 60").replace("pause = 20", "pause = 300")
+    bare = 'format = 1\nname = "b"\n'
+    text = mission(_call_step("b"), head=head)
+    limits = read_mission(text, {"b": mission(HOLD, head=bare)}).limits
+    assert (limits.alone, limits.pause) == (60, 300)
+    limits = read_mission(text, {"b": mission(HOLD, head=f"{bare}alone = 5\n")}).limits
+    assert (limits.alone, limits.pause) == (5, 300)
+
+
 def test_a_document_of_any_size_is_refused_in_bounded_time() -> None:
     many = mission(*["{ do = 'surface' }"] * 2_000)
     assert f"mission has more than {NODES_MAX} steps" in problems(many)[0]
