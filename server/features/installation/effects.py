@@ -4,10 +4,12 @@ Each effect is whole or not at all, so that after a power cut between any two of
 done again. `before` is called with the words of each effect: tests cut the power there.
 """
 
+import lzma
 import os
 import shutil
 import subprocess
 import zipfile
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -18,6 +20,8 @@ from server.platform.disk_space import explain_write_error
 from server.platform.settings import SetupError
 
 WORDS_SHOWN = 300
+DAMAGED = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError)
+"""What zipfile raises for an archive that is not whole."""
 Run = Callable[[Sequence[str], Mapping[str, str], float], "subprocess.CompletedProcess[str]"]
 """Runs a command with these additions to its environment, for so many s at most."""
 
@@ -143,7 +147,7 @@ class Effects:
             raise SetupError(explain_write_error(problem, folder)) from problem
 
     def copy(self, files: Sequence[Path], folder: Path) -> None:
-        """Copy the files into a new folder: nobody else can change what lies there."""
+        """Copy the files into a folder: nobody else can change what lies there."""
         if not self._begin(f"copy {len(files)} files into {folder}"):
             return
         try:
@@ -167,10 +171,15 @@ class Effects:
                     name = member.filename.rpartition("/")[2]
                     if names.fullmatch(name):
                         _unpack_member(content, member, folder / name)
-        except (zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError) as problem:
+        except DAMAGED as problem:
             raise SetupError(f"{archive} is no whole ZIP file: {problem}. Copy it again.") from problem
         except OSError as problem:
             raise SetupError(explain_write_error(problem, folder)) from problem
+
+    def sync_disk(self) -> None:
+        """Flush to the disk what commands have written."""
+        if self._begin("flush the disk"):
+            os.sync()
 
     def remove(self, path: Path) -> None:
         """Remove a file, a link or a folder with all that is in it; where it is not there nothing happens."""

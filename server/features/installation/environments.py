@@ -5,7 +5,7 @@ from pathlib import Path
 
 from server.features.installation.effects import CommandFailedError, Effects
 from server.features.installation.places import COMPLETE, InstallPlaces
-from server.features.installation.release import WHEEL, Release
+from server.features.installation.release import SUMS, Release
 from server.platform.settings import SetupError
 from server.platform.word_size import BITS
 
@@ -16,18 +16,24 @@ BUILD_SECONDS = 3600.0
 """A Raspberry Pi Zero unpacks some 300 MB on a slow card."""
 WHEELS = "wheels"
 """Folder of an environment with the wheels that it was made of: a later release may lack those it shares."""
+VERSIONS = "constraints.txt"
+"""File of an environment with the versions of the release that it was made of."""
 
 
 def build_environment(effects: Effects, places: InstallPlaces, release: Release) -> Path:
     """Build the release's environment, unless it is complete; no network is needed. Raises SetupError.
 
-    One that was cut off is built anew.
+    One that was cut off is built anew, and one of another release with this version, unless it is in use.
     """
     environment = places.version(release.version)
-    if places.is_complete(environment):
+    if places.is_complete(environment) and (
+        release.version == places.version_of(places.current) or _is_made_of(environment, release)
+    ):
         effects.say(f"{environment} is there")
         _share_system_packages(effects, places, environment)
         return environment
+    if release.folder.resolve().is_relative_to(environment.resolve()):
+        raise SetupError(f"{environment} is not complete: name the folder of a release. Nothing was changed.")
     if BITS == 32:
         _check_system_packages(places)
     effects.remove(environment)
@@ -41,6 +47,7 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
     sources: list[str | Path] = [
         word for folder in (release.folder, *shared) for word in ("--find-links", folder)
     ]
+    effects.write(environment / VERSIONS, _list_versions(release))
     try:
         effects.run(
             *pip,
@@ -48,6 +55,8 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
             "--quiet",
             "--no-index",
             *sources,
+            "--constraint",
+            environment / VERSIONS,
             "--no-cache-dir",
             *_packages(release),
             environment={"PIP_CONFIG_FILE": "/dev/null", "PYTHONPATH": ""},
@@ -56,7 +65,11 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
     except CommandFailedError as problem:
         effects.remove(environment)
         raise SetupError(_explain(str(problem), release)) from problem
-    _keep_wheels(effects, environment, release, shared)
+    _store_wheels(effects, places, environment, release, shared)
+    if sums := _read_sums(release.folder):
+        effects.write(environment / SUMS, sums)
+    # pip syncs nothing: a power cut could empty its files beside a whole mark.
+    effects.sync_disk()
     effects.write(environment / COMPLETE, f"{release.version}\n")
     return environment
 
@@ -94,19 +107,55 @@ def _check_system_packages(places: InstallPlaces) -> None:
         )
 
 
-def _keep_wheels(effects: Effects, environment: Path, release: Release, shared: list[Path]) -> None:
-    files = {
-        file.name: file for one in shared for file in one.glob("*.whl") if not WHEEL.fullmatch(file.name)
-    }
-    files |= {file.name: file for file in release.folder.glob("*.whl")}
-    effects.gather(list(files.values()), environment / WHEELS)
+def _is_made_of(environment: Path, release: Release) -> bool:
+    """True where the environment was built of these very files, or the release has no checksums."""
+    sums = _read_sums(release.folder)
+    return not sums or _read_sums(environment) == sums
+
+
+def _read_sums(folder: Path) -> str:
+    path = folder / SUMS
+    return path.read_text(encoding="ascii", errors="replace") if path.exists() else ""
+
+
+def _list_versions(release: Release) -> str:
+    """The versions of the release's wheels, as constraints: those of the version in use may be newer."""
+    versions: dict[str, set[str]] = {}
+    for wheel in release.folder.glob("*.whl"):
+        name, version = wheel.name.split("-")[:2]
+        versions.setdefault(name, set()).add(version)
+    return "".join(f"{name}=={found.pop()}\n" for name, found in sorted(versions.items()) if len(found) == 1)
+
+
+def _store_wheels(
+    effects: Effects, places: InstallPlaces, environment: Path, release: Release, shared: list[Path]
+) -> None:
+    """Store the release's wheels, and of the shared ones those that the environment was made of."""
+    present = {_normalise(one.stem) for one in environment.glob("lib/python*/site-packages/*.dist-info")}
+    own = sorted(release.folder.glob("*.whl"))
+    others = [
+        file
+        for folder in shared
+        for file in sorted(folder.glob("*.whl"))
+        if file.name not in {one.name for one in own}
+        and _normalise("-".join(file.name.split("-")[:2])) in present
+    ]
+    if others:
+        effects.gather(others, environment / WHEELS)
+    # Only root can change what lies in `incoming`.
+    put = effects.gather if release.folder == places.incoming else effects.copy
+    put(own, environment / WHEELS)
+
+
+def _normalise(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def _explain(problem: str, release: Release) -> str:
-    if "not a supported wheel" in problem or "No matching distribution" in problem:
+    if "No matching distribution" in problem:
         missing = problem.rpartition("No matching distribution found for ")[2].split(" ")[0]
         return (
-            f"{release.folder} has no wheel of {missing or 'a package'} for this computer and its Python: "
+            f"{release.folder} has no wheel of {missing} for this computer and its Python: "
             "take the release for its architecture. Nothing was changed."
         )
     if "No space left" in problem:

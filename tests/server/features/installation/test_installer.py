@@ -1,5 +1,6 @@
 """An installation into a folder: whole, repeated, cut off at every effect, and taken away again."""
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -10,7 +11,7 @@ from robot_runtime.config import load
 from server.features.installation.boot_settings import describe_change, edit_config, edit_kernel_line
 from server.features.installation.environments import WHEELS
 from server.features.installation.installer import adapt_config
-from server.features.installation.places import InstallPlaces
+from server.features.installation.places import COMPLETE, InstallPlaces
 from server.features.installation.release import read_release
 from server.features.installation.units import write_command, write_units
 from server.platform.settings import SetupError
@@ -96,6 +97,41 @@ def test_an_environment_that_was_cut_off_is_built_anew(tmp_path: Path, release: 
     assert not (half / "half").exists()
 
 
+def test_an_environment_is_complete_only_when_all_of_it_is_on_the_disk(
+    tmp_path: Path, release: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    computer = Computer(tmp_path / "pi")
+    environment = computer.places.version("1.0.0")
+    synced: list[tuple[bool, bool]] = []
+
+    def sync() -> None:
+        synced.append(((environment / WHEELS).exists(), computer.places.is_complete(environment)))
+
+    monkeypatch.setattr(os, "sync", sync)
+    install(computer, release)
+    assert synced == [(True, False)]
+
+
+def test_nobody_but_root_can_change_what_later_updates_take(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    install(computer, release)
+    for wheel in release.iterdir():
+        stored = computer.places.current / WHEELS / wheel.name
+        before = stored.read_text()
+        wheel.write_text("changed")
+        assert stored.read_text() == before
+
+
+def test_an_installation_is_not_built_anew_of_its_own_wheels(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    install(computer, release)
+    (computer.places.current / COMPLETE).unlink()
+    before = computer.tree()
+    with pytest.raises(SetupError, match="name the folder of a release"):
+        install(computer, computer.places.current / WHEELS)
+    assert computer.tree() == before
+
+
 def test_a_dry_run_says_all_and_changes_nothing(tmp_path: Path, release: Path) -> None:
     computer = Computer(tmp_path / "pi")
     before = computer.tree()
@@ -152,7 +188,6 @@ def test_it_is_removed_without_the_data(tmp_path: Path, release: Path) -> None:
             "ERROR: Could not find a version\nERROR: No matching distribution found for numpy",
             "no wheel of numpy",
         ),
-        ("ERROR: x.whl is not a supported wheel on this platform.", "for this computer"),
         ("OSError: [Errno 28] No space left on device", "disk is full"),
         ("something else", "something else"),
     ],

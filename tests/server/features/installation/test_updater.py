@@ -13,6 +13,7 @@ import pytest
 
 from server.features.installation import installer, updater
 from server.features.installation.effects import Effects
+from server.features.installation.environments import WHEELS
 from server.features.installation.release import SUMS, read_release
 from server.features.installation.report import UpdateReport, hold
 from server.features.installation.updater import Updater
@@ -249,6 +250,36 @@ def test_a_cut_zip_file_is_refused(tmp_path: Path, keys: Path, content: bytes, w
     with pytest.raises(SetupError, match=words):
         update(computer, path)
     assert computer.tree() == before
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA])
+def test_a_damaged_zip_file_is_refused(tmp_path: Path, keys: Path, release: Path, method: int) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    path, name = tmp_path / "release.zip", "mucat-2.0.0-py3-none-any.whl"
+    with zipfile.ZipFile(path, "w", method) as archive:
+        archive.write(release / name, name)
+    damaged = bytearray(path.read_bytes())
+    with zipfile.ZipFile(path) as archive:
+        begin = len(archive.infolist()[0].FileHeader())
+    damaged[begin : begin + 20] = b"\xff" * 20
+    path.write_bytes(damaged)
+    with pytest.raises(SetupError, match="no whole ZIP file") as caught:
+        update(computer, path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_corrected_release_of_the_same_version_is_built_anew(tmp_path: Path, keys: Path) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    computer.wrong["2.0.0"] = "OpenCV cannot be loaded."
+    with pytest.raises(SetupError, match="OpenCV"):
+        update(computer, signed(tmp_path / "first", keys, "2.0.0"))
+    computer.wrong.clear()
+    corrected = place_release(tmp_path / "corrected", "2.0.0")
+    wheel = read_release(corrected).wheel
+    wheel.write_text("corrected")
+    sign(corrected, keys / "secret.pem")
+    assert update(computer, corrected) == "2.0.0"
+    assert (computer.places.current / WHEELS / wheel.name).read_text() == "corrected"
 
 
 def test_an_archive_that_unpacks_to_more_than_a_release_is_refused(
