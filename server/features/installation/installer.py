@@ -11,7 +11,7 @@ from server.features.installation.environments import build_environment
 from server.features.installation.places import SERVICES, USER, InstallPlaces
 from server.features.installation.release import Release
 from server.features.installation.units import JOURNAL, write_command, write_units
-from server.features.installation.versions import look_at
+from server.features.installation.versions import look_at, refuse_in_use
 from server.platform.disk_space import free_bytes
 from server.platform.settings import SetupError
 
@@ -19,7 +19,7 @@ GROUPS = ("dialout", "gpio", "video")
 INSTALL_BYTES = 700_000_000
 """Room for an environment with its wheels."""
 BACKUP = ".before-mucat"
-HEALTHY_SECONDS = 180.0
+FIRST_START_SECONDS = 180.0
 """The first start, on a Raspberry Pi Zero."""
 LOOK_SECONDS = 0.5
 Confirm = Callable[[str], bool]
@@ -34,7 +34,10 @@ class Installer:
         self._confirm = confirm
 
     def install(self, release: Release) -> None:
-        """Install the release, or mend an installation. Raises SetupError."""
+        """Install the release, or mend an installation of its version. Raises SetupError."""
+        self._refuse_other(release)
+        if self._must_restart():
+            refuse_in_use(self._effects, self._places)
         self._check_room(release)
         self.add_user()
         environment = build_environment(self._effects, self._places, release)
@@ -44,6 +47,21 @@ class Installer:
         changed = self.write_services()
         self.change_boot_settings()
         self.start(changed)
+
+    def _refuse_other(self, release: Release) -> None:
+        version = self._places.version_of(self._places.current)
+        if version not in ("", release.version):
+            raise SetupError(
+                f"µ-CAT {version} is installed here: sudo mucat update {release.folder}. Nothing was changed."
+            )
+
+    def _must_restart(self) -> bool:
+        """True where the services are there and differ from those that are to be written."""
+        units = self._places.units
+        return any(
+            (units / name).exists() and (units / name).read_text(encoding="utf-8") != text
+            for name, text in write_units(self._places).items()
+        )
 
     def _check_room(self, release: Release) -> None:
         places = self._places
@@ -140,7 +158,7 @@ class Installer:
     def start(self, changed: bool) -> None:
         """Start the services, or restart them where they have changed, and wait until the page is there."""
         self._effects.run("systemctl", "restart" if changed else "start", "mucat-update.path", *SERVICES)
-        wait_until_healthy(self._effects, self._places, HEALTHY_SECONDS)
+        wait_until_healthy(self._effects, self._places, FIRST_START_SECONDS)
 
     def uninstall(self) -> None:
         """Remove services and software; data, configuration and user stay."""

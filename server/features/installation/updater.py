@@ -246,7 +246,9 @@ class Updater:
         """
         old = self._places.version(switch.before)
         if not self._places.is_complete(old):
-            raise SetupError(f"{old} is not there any more: install a release with mucat install.")
+            raise SetupError(
+                f"{old} is not there any more: sudo mucat uninstall (the data stay), then install a release."
+            )
         found = look_at(self._effects, self._places, old)
         if not found.reads and not found.copy:
             raise SetupError(

@@ -22,6 +22,7 @@ from tests.server.features.installation.computer import (
     PowerCutError,
     place_release,
 )
+from tests.server.features.installation.updatable import UpdatableComputer
 
 
 def install(computer: Computer, folder: Path, cut: int = -1) -> None:
@@ -130,6 +131,30 @@ def test_an_installation_is_not_built_anew_of_its_own_wheels(tmp_path: Path, rel
     with pytest.raises(SetupError, match="name the folder of a release"):
         install(computer, computer.places.current / WHEELS)
     assert computer.tree() == before
+
+
+def test_another_version_comes_by_an_update_alone(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    install(computer, release)
+    before = computer.tree()
+    with pytest.raises(SetupError, match=r"1\.0\.0 is installed here: sudo mucat update"):
+        install(computer, place_release(tmp_path / "later", "2.0.0"))
+    assert computer.tree() == before
+
+
+def test_an_armed_robot_is_not_restarted(tmp_path: Path, release: Path) -> None:
+    computer = UpdatableComputer(tmp_path / "pi")
+    install(computer, release)
+    computer.armed = True
+    # Nothing is restarted where nothing is mended.
+    install(computer, release)
+    (computer.places.units / "mucat.service").write_text("[Service]\n")
+    before = computer.tree()
+    computer.commands.clear()
+    with pytest.raises(SetupError, match="Disarm it first"):
+        install(computer, release)
+    assert computer.tree() == before
+    assert not any(one.startswith("systemctl") for one in computer.commands)
 
 
 def test_a_dry_run_says_all_and_changes_nothing(tmp_path: Path, release: Path) -> None:
@@ -247,7 +272,7 @@ def test_a_server_that_does_not_start_is_one_line(
 ) -> None:
     computer = Computer(tmp_path / "pi")
     computer.broken["installation.survey"] = "No server works on it"
-    monkeypatch.setattr("server.features.installation.installer.HEALTHY_SECONDS", 0.1)
+    monkeypatch.setattr("server.features.installation.installer.FIRST_START_SECONDS", 0.1)
     monkeypatch.setattr("server.features.installation.installer.LOOK_SECONDS", 0.01)
     with pytest.raises(SetupError, match=r"not healthy within 0\.1 s: .*No server works on it"):
         install(computer, release)
