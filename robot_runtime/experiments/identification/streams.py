@@ -9,6 +9,7 @@ from scipy.interpolate import BSpline, make_interp_spline, make_smoothing_spline
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from robot_runtime.contract.craft import Craft
+from robot_runtime.contract.packets import Depth, Imu
 from robot_runtime.experiments.identification.bodies import CHANNELS, STATES, FinMotions, Floats
 
 STEP = 0.01
@@ -153,14 +154,15 @@ def _starts(session: SessionStreams) -> Iterator[float]:
         return
     # Time for the interpolation, and for a delay of the fins.
     first, last = max(times[0] for times in streams) + 0.3, min(times[-1] for times in streams) - 0.1
-    broken = np.concatenate([times[:-1][np.diff(times) > GAP] for times in streams])
+    gaps = [(times[:-1][np.diff(times) > GAP], times[1:][np.diff(times) > GAP]) for times in streams]
     shallow = session.depth_times[session.depths < COVERED]
-    bad = np.sort(np.concatenate((broken, shallow)))
+    bad_from = np.concatenate([shallow, *(before for before, _ in gaps)])
+    bad_to = np.concatenate([shallow, *(after for _, after in gaps)])
     start = float(first)
     while start + WINDOW <= last:
-        inside = bad[(bad >= start - 0.3) & (bad <= start + WINDOW + 0.1)]
-        if len(inside):
-            start = float(inside[-1]) + 0.31
+        overlapping = bad_to[(bad_to >= start - 0.3) & (bad_from <= start + WINDOW + 0.1)]
+        if len(overlapping):
+            start = float(overlapping.max()) + 0.31
         else:
             yield start
             start += WINDOW
@@ -242,14 +244,18 @@ def sensor_noise(session: SessionStreams) -> dict[str, float]:
     """
     columns = {"pressure": session.pressures[:, None], "gyroscope": session.rates}
     columns["accelerometer"] = session.forces
-    steps = {"pressure": 1.0, "gyroscope": 0.00026632423, "accelerometer": 0.0011971008}
+    wires = {
+        "pressure": Depth.wires["pressure"],
+        "gyroscope": Imu.wires["rate"],
+        "accelerometer": Imu.wires["force"],
+    }
     found = {}
     for name, values in columns.items():
         if len(values) < 100:
             continue
         fourth = np.diff(values, 4, axis=0) / np.sqrt(70)
-        # Quieter half: where a fin turns round, the hull jerks.
+        # The quietest 90 %: where a fin turns round, the hull jerks.
         quiet = np.sort(fourth**2, axis=0)[: int(0.9 * len(fourth))]
         variance = float(np.min(quiet.mean(axis=0))) / _TRIMMED
-        found[name] = float(np.sqrt(max(variance - steps[name] ** 2 / 12, 0.0)))
+        found[name] = float(np.sqrt(max(variance - wires[name].scale ** 2 / 12, 0.0)))
     return found

@@ -126,6 +126,22 @@ def test_windows_leave_out_gaps_and_the_surface() -> None:
         cut([replace(whole, depths=whole.depths * 0)], START)
 
 
+@pytest.mark.parametrize("silence", [0.5, 5.0, 12.0])
+def test_no_window_reaches_into_a_gap(silence: float) -> None:
+    whole = swim(START, 6, 40)
+    heard = (whole.imu_times < 10) | (whole.imu_times > 10 + silence)
+    broken = replace(
+        whole,
+        imu_times=whole.imu_times[heard],
+        rates=whole.rates[heard],
+        forces=whole.forces[heard],
+        attitudes=whole.attitudes[heard],
+    )
+    starts = cut([broken], START).starts
+    assert starts[0] == pytest.approx(0.33, abs=0.01)
+    assert starts[1] == pytest.approx(10 + silence + 0.32, abs=0.03)
+
+
 def test_a_session_without_samples_has_no_window() -> None:
     none, three, four = np.empty(0), np.empty((0, 3)), np.empty((0, 4))
     empty = SessionStreams("x", none, four, none, three, three, four, none, none, none)
