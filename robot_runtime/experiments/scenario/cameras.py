@@ -11,7 +11,7 @@ from robot_runtime.experiments.scenario.events import CommandEvent
 from robot_runtime.simulation.scene.contents import Contents, SceneWater, Target
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.vision.camera import Camera, CameraFrame
-from robot_runtime.vision.cards import CameraCard as Held
+from robot_runtime.vision.cards import CameraCard
 
 
 def needs_camera(scenario: Scenario) -> bool:
@@ -30,17 +30,17 @@ class RenderedSceneCamera(Camera):
         config: VisionConfig,
         clock: Clock,
         simulator: Simulator,
-        card: Callable[[], Held | None],
+        card: Callable[[], CameraCard | None],
     ) -> None:
         # Loads MuJoCo, which most scenarios do without.
-        from robot_runtime.simulation.scene.scene import SceneRenderer as Rendered
+        from robot_runtime.simulation.scene.scene import SceneRenderer
 
         self._size = (config.width, config.height)
         self._clock = clock
         self._simulator = simulator
         self._card = card
         self._place = scenario.scene
-        self._rendered = Rendered(_contents(self._place, simulator), scenario.robot)
+        self._rendered = SceneRenderer(_contents(self._place, simulator), scenario.robot)
 
     def read(self) -> CameraFrame:
         """Renders the current picture."""
@@ -56,7 +56,7 @@ class RenderedSceneCamera(Camera):
         return CameraFrame(picture, time)
 
     def close(self) -> None:
-        """Give back what rendering took."""
+        """Releases the renderer."""
         self._rendered.close()
 
     def __str__(self) -> str:

@@ -41,7 +41,7 @@ class RunListener(Protocol):
         ...
 
     def event(self, event: str, **more: Any) -> None:
-        """Receive an event of the run: started, progress, marker or ended."""
+        """Receives an event of the run: started, progress, marker or ended."""
         ...
 
 
