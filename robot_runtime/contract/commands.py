@@ -23,6 +23,7 @@ from robot_runtime.contract.limits import (
     RelayCycles,
     SettleSeconds,
     VisionRate,
+    describe_value,
     make_strict,
 )
 from robot_runtime.contract.vision_settings import VisionSettings
@@ -218,7 +219,8 @@ class LoopCommand(RobotCommand):
             raise ValueError("loop needs on, set_point, controller or gains")
         span = SET_POINTS[self.name]
         if self.set_point is not None and not span.minimum <= self.set_point <= span.maximum:
-            raise ValueError(f"set_point must lie between {span.minimum:.3g} and {span.maximum:.3g}")
+            low, high = (describe_value(self.name, one) for one in (span.minimum, span.maximum))
+            raise ValueError(f"set_point must lie between {low} and {high}")
 
     @property
     def words(self) -> str:
@@ -347,17 +349,22 @@ class ExperimentCommand(RobotCommand):
 
     def __post_init__(self) -> None:
         if self.low >= self.high:
-            raise ConfigError(f"low is {self.low:g} and high {self.high:g}; the limits must be apart")
+            low, high = (describe_value(self.loop, one) for one in (self.low, self.high))
+            raise ConfigError(f"low is {low} and high {high}; the limits must be apart")
 
     def _require_within(self, name: str, value: float) -> None:
         if not self.low < value < self.high:
-            raise ConfigError(
-                f"{name} is {value:g}; it must lie between the limits {self.low:g} and {self.high:g}"
-            )
+            found, low, high = (describe_value(self.loop, one) for one in (value, self.low, self.high))
+            raise ConfigError(f"{name} is {found}; it must lie between the limits {low} and {high}")
 
     def _require_set_point(self, name: str, value: float) -> None:
         span = SET_POINTS[self.loop]
-        _require_between(name, value, span.minimum, span.maximum)
+        self._require_between(name, value, span.minimum, span.maximum)
+
+    def _require_between(self, name: str, value: float, low: float, high: float) -> None:
+        if not low <= value <= high:
+            found, least, most = (describe_value(self.loop, one) for one in (value, low, high))
+            raise ConfigError(f"{name} is {found}; it must lie between {least} and {most}")
 
 
 @command("step_experiment", None, tunes=True)
@@ -376,7 +383,7 @@ class StepExperimentCommand(ExperimentCommand):
         ExperimentCommand.__post_init__(self)
         self._require_set_point("start", self.start)
         self._require_set_point("target", self.target)
-        _require_between("tolerance", self.tolerance, 0, self.high - self.low)
+        self._require_between("tolerance", self.tolerance, 0, self.high - self.low)
         if self.start == self.target:
             raise ConfigError("start and target are the same; a step leads from one to the other")
         self._require_within("start", self.start)
@@ -398,7 +405,7 @@ class RelayExperimentCommand(ExperimentCommand):
     def __post_init__(self) -> None:
         ExperimentCommand.__post_init__(self)
         self._require_set_point("set_point", self.set_point)
-        _require_between("hysteresis", self.hysteresis, 0, HYSTERESIS_SHARE * (self.high - self.low))
+        self._require_between("hysteresis", self.hysteresis, 0, HYSTERESIS_SHARE * (self.high - self.low))
         self._require_within("set_point", self.set_point)
 
 
@@ -446,11 +453,6 @@ class MissionEndCommand(RobotCommand):
 def http_commands() -> list[type[RobotCommand]]:
     """The commands with the common route `POST /api/robot/commands/NAME`; STOP has a faster one."""
     return [cls for cls in COMMANDS.values() if cls.policy.need is not None and cls is not StopCommand]
-
-
-def _require_between(name: str, value: float, low: float, high: float) -> None:
-    if not low <= value <= high:
-        raise ConfigError(f"{name} is {value:g}; it must lie between {low:g} and {high:g}")
 
 
 def is_required(one: Field[Any]) -> bool:

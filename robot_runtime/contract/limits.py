@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import pi
+from math import degrees, pi
 from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, GroupedMetadata, Le
@@ -76,6 +76,13 @@ SET_POINTS: dict[LoopName, Range] = {
     "roll": Range(-TILT_MAX, TILT_MAX),
 }
 """Range of each loop's set point, in m or rad."""
+
+
+def describe_value(loop: LoopName, value: float) -> str:
+    """Returns a loop's value with its unit; of an angle, as people read it and as commands have it."""
+    return f"{value:.3g} m" if loop == "depth" else f"{degrees(value):.3g}° ({value:.3g} rad)"
+
+
 VISION_RATE = Range(2, 30)
 """Hz; a lower rate leaves the newest detection stale before the next one."""
 ALONE = Range(0, 3600)

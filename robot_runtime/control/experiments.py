@@ -11,6 +11,7 @@ from typing import ClassVar
 from robot_runtime.clock import Clock
 from robot_runtime.contract.commands import RelayExperimentCommand, StepExperimentCommand
 from robot_runtime.contract.documents import Experiment, ExperimentKind, ExperimentPhase, Mode
+from robot_runtime.contract.limits import LoopName, describe_value
 from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.control.controllers.base import Controller, GainLimits
 from robot_runtime.control.loop import ControlLoop, LoopOverride
@@ -37,7 +38,7 @@ class LoopExperiment(ABC):
 
     kind: ClassVar[ExperimentKind]
 
-    def __init__(self, clock: Clock, low: float, high: float) -> None:
+    def __init__(self, clock: Clock, loop: LoopName, low: float, high: float) -> None:
         self.phase: ExperimentPhase = "settling"
         self.phase_since = self._began = clock.now()
         self.progress = 0.0
@@ -49,6 +50,7 @@ class LoopExperiment(ABC):
         """Mean command of a relay, which balances the load, -1 to 1."""
         self.middle = (low + high) / 2
         self._clock = clock
+        self._loop: LoopName = loop
         self._low, self._high = low, high
         self._inside = False
 
@@ -65,8 +67,8 @@ class LoopExperiment(ABC):
     def observe(self, value: float) -> None:
         """Takes the loop's measured value; ends the experiment beyond the limits."""
         if self._inside and not self._low <= value <= self._high:
-            span = f"{self._low:g} to {self._high:g}"
-            self.end("failed", f"It ended at {value:.2f}, which is beyond the limits ({span}).")
+            last, low, high = (describe_value(self._loop, one) for one in (value, self._low, self._high))
+            self.end("failed", f"It ended at {last}, which is beyond the limits, {low} to {high}.")
         # It may begin at a limit, such as the surface.
         margin = MARGIN * (self._high - self._low)
         self._inside = self._inside or self._low + margin <= value <= self._high - margin
@@ -92,7 +94,7 @@ class StepExperiment(LoopExperiment):
     kind = "step"
 
     def __init__(self, settings: StepExperimentCommand, clock: Clock) -> None:
-        super().__init__(clock, settings.low, settings.high)
+        super().__init__(clock, settings.loop, settings.low, settings.high)
         self._settings = settings
         self._last_outside = self._began
 
@@ -129,7 +131,7 @@ class RelayExperiment(LoopExperiment):
     kind = "relay"
 
     def __init__(self, settings: RelayExperimentCommand, clock: Clock) -> None:
-        super().__init__(clock, settings.low, settings.high)
+        super().__init__(clock, settings.loop, settings.low, settings.high)
         self._settings = settings
         self._override = LoopOverride(_Relay(self), settings.set_point)
         self._side = 0.0

@@ -1,5 +1,6 @@
 """Experiments on the depth: a step and a relay, on a robot in simulated water, and their ends."""
 
+import re
 from typing import Any
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.commands import RelayExperimentCommand, StepExperimentCommand
 from robot_runtime.contract.documents import Experiment, State
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.control.experiments import RelayExperiment, StepExperiment
 from robot_runtime.errors import RefusedError
 from tests.runtime.control.flight import Flight
@@ -191,7 +193,33 @@ def test_it_ends_beyond_its_limits() -> None:
         lab.begin(RELAY | {"amplitude": 1.0, "high": 0.65, "set_point": 0.6, "hysteresis": 0.05})
         over = lab.until_over(30.0)
         assert over.phase == "failed"
-        assert "beyond the limits (0 to 0.65)" in over.text
+        assert over.text.endswith("m, which is beyond the limits, 0 m to 0.65 m.")
+
+
+TILT: dict[str, Any] = {
+    name: value
+    for name, value in (
+        STEP | {"loop": "pitch", "start": 0.0, "target": 0.2, "low": -0.4, "high": 0.4}
+    ).items()
+    if name != "kind"
+}
+
+
+def test_an_experiment_on_an_angle_speaks_in_degrees() -> None:
+    experiment = StepExperiment(StepExperimentCommand(**TILT), SimulatedClock())
+    for value in (0.0, 0.5):
+        experiment.observe(value)
+    assert experiment.text == (
+        "It ended at 28.6° (0.5 rad), which is beyond the limits, -22.9° (-0.4 rad) to 22.9° (0.4 rad)."
+    )
+    for wrong, why in (
+        ({"start": 0.593}, "start is 34° (0.593 rad); it must lie between -28.6° (-0.5 rad) and 28.6°"),
+        ({"target": 0.45}, "target is 25.8° (0.45 rad); it must lie between the limits -22.9°"),
+        ({"tolerance": 1.0}, "tolerance is 57.3° (1 rad); it must lie between 0° (0 rad) and 45.8°"),
+        ({"low": 0.5}, "low is 28.6° (0.5 rad) and high 22.9° (0.4 rad); the limits must be apart"),
+    ):
+        with pytest.raises(ConfigError, match=re.escape(why)):
+            StepExperimentCommand(**(TILT | wrong))
 
 
 def test_a_relay_without_cycles_gives_up() -> None:
@@ -208,7 +236,7 @@ WRONG = [
     (STEP | {"loop": "depths"}, "loop is 'depths'; it must be one of"),
     (STEP | {"cycles": 3}, "'cycles' is not known here"),
     (STEP | {"target": NAN}, "target is nan"),
-    (STEP | {"target": 11.0, "high": 20.0}, "between 0 and 10"),
+    (STEP | {"target": 11.0, "high": 20.0}, "between 0 m and 10 m"),
     (STEP | {"target": 1.3}, "between the limits"),
     (STEP | {"target": 0.4}, "are the same"),
     (STEP | {"duration": 0.5}, "between 2 and 300"),

@@ -272,7 +272,7 @@ def test_cards_have_the_colours_that_the_vision_node_knows() -> None:
         (BARE + event("card", "colour = 'pink'"), "event 1: colour is 'pink'; it must be one of 'red', "),
         (
             BARE + event("loop", "name = 'pitch'\nset_point = 0.6"),
-            "event 1: set_point must lie between -0.5 and 0.5",
+            "event 1: set_point must lie between -28.6° (-0.5 rad) and 28.6° (0.5 rad)",
         ),
         (BARE + event("loop", "name = 'roll'"), "event 1: loop needs on, set_point, controller or gains"),
         (

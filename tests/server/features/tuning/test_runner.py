@@ -231,7 +231,9 @@ def test_runs_are_named_and_deleted(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
         robot.arm()
         run = await begin(served, STEP)
-        robot.notify(run, "failed", 102.0, text="It ended at 1.60, which is beyond the limits (0 to 1.5).")
+        robot.notify(
+            run, "failed", 102.0, text="It ended at 1.6 m, which is beyond the limits, 0 m to 1.5 m."
+        )
         await over(served)
         named = await served.api.patch(f"/tuning/runs/{run}", json={"name": "with tape"})
         assert named.json()["name"] == "with tape"
