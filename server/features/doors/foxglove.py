@@ -6,7 +6,7 @@ from struct import Struct, error
 from typing import Any
 
 from server.features.doors.channels import ChannelMessage, DoorChannel, encode_json
-from server.features.doors.commands import REFUSALS, DoorCommands, DoorPilot, parameter_values
+from server.features.doors.commands import REFUSALS, STOP, DoorCommands, DoorPilot, parameter_values
 from server.features.doors.foxglove_channels import CLOCK, PARAMETERS, schema_text
 from server.features.doors.foxglove_services import SERVICES, advertise_services
 from server.features.doors.graph import Graph, draw_graph, list_changes
@@ -222,19 +222,22 @@ class FoxgloveSession(DoorSession):
 
     async def _stop(self) -> None:
         try:
-            await self._commands.perform(self._pilot, "stop", {})
+            await self._commands.perform(self._pilot, STOP, {})
         except REFUSALS as problem:
             self._say(ERROR, f"STOP has not been confirmed: {problem}")
 
     def _call_service(self, service: int, call: int, encoding: bytes, payload: bytes) -> None:
         name = SERVICES.get(service)
+        if name == STOP:
+            self.begin(self._answer_call(service, call, name, {}), always=True)  # whatever the message is
+            return
         try:
             if name is None:
                 raise UnusableMessageError(f"There is no service {service}.")
             if encoding != b"json":
                 raise UnusableMessageError("Services take json alone.")
             fields = mapping_of(_read_json(payload) if payload else {}, "A request")
-            self.begin(self._answer_call(service, call, name, fields), always=name == "stop")
+            self.begin(self._answer_call(service, call, name, fields))
         except UnusableMessageError as problem:
             self._fail_call(service, call, str(problem))
 

@@ -122,8 +122,10 @@ class Ros2Session(DoorSession):
 
     def _act(self, incoming: Incoming, node: Ros2Node) -> None:
         endpoint = incoming.endpoint
-        if endpoint.name == STOP_TOPIC and endpoint.kind == "MS":
-            self.begin(self._stop(), always=True)  # whatever the message is
+        if endpoint.name == STOP_TOPIC:  # whatever the message is
+            # Without its attachment a call cannot be answered; STOP is carried out nevertheless.
+            stop = self._stop() if incoming.query is None else self._answer(incoming, STOP, node)
+            self.begin(stop, always=True)
             return
         if not incoming.typed:
             raise UnusableMessageError(
@@ -141,11 +143,8 @@ class Ros2Session(DoorSession):
         await self._perform(STOP)
 
     def _call(self, incoming: Incoming, payload: bytes, node: Ros2Node) -> None:
-        name = incoming.endpoint.name.rpartition("/")[2]
-        if name != STOP:
-            _decode(f"{TRIGGER}_Request", payload)
-        # Without its attachment a call cannot be answered; STOP is carried out nevertheless.
-        self.begin(self._answer(incoming, name, node), always=name == STOP)
+        _decode(f"{TRIGGER}_Request", payload)
+        self.begin(self._answer(incoming, incoming.endpoint.name.rpartition("/")[2], node))
 
     async def _answer(self, incoming: Incoming, name: str, node: Ros2Node) -> None:
         success, message = await self._perform(name)

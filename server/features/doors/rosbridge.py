@@ -10,7 +10,6 @@ from server.features.doors.house import Door, Doors
 from server.features.doors.ros_channels import type_name
 from server.features.doors.rosapi import RosApi
 from server.features.doors.session import (
-    BusyError,
     DoorSession,
     UnusableMessageError,
     mapping_of,
@@ -216,15 +215,17 @@ class RosbridgeSession(DoorSession):
 
     def _call_service(self, message: dict[str, Any]) -> None:
         name = topic_name(message.get("service"))
-        arguments = self._api.arguments(name, message.get("args", {}))
-        identifier = message.get("id")
-        if identifier is not None:
-            _identifier(message)
-        fragment = _fragment_size(message.get("fragment_size"))
-        stop = name == STOP_TOPIC
+        given = message.get("id")
+        identifier = given if isinstance(given, str | int) else None
+        if name == STOP_TOPIC:
+            self.begin(self._answer_call(name, {}, identifier, 0), always=True)  # whatever the message is
+            return
         try:
-            self.begin(self._answer_call(name, arguments, identifier, fragment), always=stop)
-        except BusyError as problem:
+            _identifier(message)
+            arguments = self._api.arguments(name, message.get("args", {}))
+            fragment = _fragment_size(message.get("fragment_size"))
+            self.begin(self._answer_call(name, arguments, identifier, fragment))
+        except UnusableMessageError as problem:
             self._respond(name, identifier, str(problem), False)
 
     async def _answer_call(

@@ -153,6 +153,20 @@ def test_an_invalid_message_is_answered_in_words(settings: Settings) -> None:
     play_open(settings, scenario)
 
 
+@pytest.mark.parametrize(("encoding", "payload"), [(b"cdr", b"\0"), (b"json", b"{"), (b"json", b"7")])
+def test_stop_is_carried_out_whatever_its_request_is(
+    settings: Settings, encoding: bytes, payload: bytes
+) -> None:
+    (stop,) = (one["id"] for one in advertise_services() if one["name"] == "/mucat/stop")
+
+    async def scenario(served: Served) -> None:
+        async with open_foxglove(served, await make_token(served, "read")) as socket:
+            await socket.send(pack("<BIII", 2, stop, 1, len(encoding)) + encoding + payload)
+            await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
+
+    play_open(settings, scenario)
+
+
 def test_time_never_goes_back(settings: Settings) -> None:
     """Samples come later than they were taken, and health between them has the time at which it is sent."""
 

@@ -48,7 +48,10 @@ def test_what_is_not_valid_is_refused_and_counted(settings: Settings) -> None:
             assert served.runtime.driven == []
             await put(session, "0/mucat/stop/std_msgs::msg::dds_::Bool_/RIHS01_0", b"")
             await until(lambda: ("stop", {}) in served.runtime.asked, "STOP by whatever message")
-            assert [name for name, _ in served.runtime.asked if name != "there"] == ["stop"]
+            stop = await asyncio.to_thread(key_of, session, "%mucat%stop", "SS")
+            await asyncio.to_thread(answers, session, stop, bytes(PAYLOAD_MAX + 1))
+            asked = [name for name, _ in served.runtime.asked if name != "there"]
+            assert asked == ["stop", "stop"]
             await until(lambda: refused(served) >= len(bad) + 4, "the calls to be refused")
             (client,) = await doors_of(served)
             assert client["refused"] >= len(bad) + 4
@@ -129,9 +132,9 @@ def test_a_message_that_is_too_large_is_not_read() -> None:
     assert read_payload(None) == b""
 
 
-def key_of(session: zenoh.Session, name: str) -> str:
+def key_of(session: zenoh.Session, name: str, kind: str = "*") -> str:
     """The key of the robot's topic or service with this name, by its token."""
-    pattern = f"@ros2_lv/0/*/*/*/*/%/%/mucat/{name}/*/*/*"
+    pattern = f"@ros2_lv/0/*/*/*/{kind}/%/%/mucat/{name}/*/*/*"
     (reply,) = session.liveliness().get(pattern)
     assert reply.ok is not None
     return "/".join(["0", name.strip("%").replace("%", "/"), *str(reply.ok.key_expr).split("/")[10:12]])

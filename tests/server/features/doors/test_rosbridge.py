@@ -430,7 +430,7 @@ INVALID = (
     '{"op": "publish", "topic": "/depth"}',
     '{"op": "publish", "topic": "/cmd_vel"}',
     '{"op": "set_level", "level": "all"}',
-    '{"op": "call_service", "service": "/mucat/arm", "args": 7}',
+    '{"op": "call_service", "service": 7}',
     "[" * 2000,
 )
 
@@ -448,6 +448,28 @@ def test_an_invalid_operation_is_answered_in_words(settings: Settings) -> None:
                 await socket.send("{")
             with pytest.raises(ConnectionClosed):
                 await client.next("never")
+
+    play_open(settings, scenario)
+
+
+TRIFLES: tuple[dict[str, Any], ...] = ({"args": [{}]}, {"args": 7}, {"fragment_size": 100}, {"id": "x" * 201})
+
+
+@pytest.mark.parametrize("trifle", TRIFLES, ids=lambda one: next(iter(one)))
+def test_an_invalid_call_is_answered_with_the_reason_and_stop_is_carried_out_nevertheless(
+    settings: Settings, trifle: dict[str, Any]
+) -> None:
+    async def scenario(served: Served) -> None:
+        async with open_rosbridge(served, await make_token(served)) as socket:
+            client = RosbridgeClient(socket)
+            called = {"op": "call_service", "id": "1", **trifle}
+            await client.say(op="set_level", level="none")
+            await client.say(service="/rosapi/nodes", **called)
+            refused = await client.next("service_response", id=called["id"])
+            assert (refused["result"], refused["values"].endswith(".")) == (False, True)
+            await client.say(service="/mucat/stop", **called)
+            assert (await client.next("service_response", id=called["id"]))["result"] is True
+            assert served.runtime.asked[-1] == ("stop", {})
 
     play_open(settings, scenario)
 
