@@ -139,7 +139,8 @@ def _first_state(recording: Recording) -> list[tuple[float, Block]]:
 def _range(name: str, start: float, end: float, history: float | None) -> _Range:
     if history is None:
         return _Range(start, start, end, newest=False)
-    since = -inf if name in LINES else start - min(history, BY_NAME[name].charted)
+    charted = BY_NAME[name].charted if name in BY_NAME else 0.0
+    since = -inf if name in LINES else start - min(history, charted)
     return _Range(since, start, end, newest=True)
 
 

@@ -314,9 +314,10 @@ def test_samples_of_an_unknown_topic_are_counted(store: Store, dive: Recording) 
     change(store, """UPDATE session SET topics = replace(topics, '"depth":', '"sonar":')""")
     change(store, "UPDATE chunk SET topic = 'sonar' WHERE topic = 'depth'")
     assert dive.row.id is not None
-    stretch = read_blocks_between(read(store, dive.row.id), 100.0, 110.0)
-    assert depths(stretch.data) == []
-    assert stretch.left_out == 500
+    for history in (None, 5.0):
+        stretch = read_blocks_between(read(store, dive.row.id), 100.0, 110.0, history)
+        assert depths(stretch.data) == []
+        assert stretch.left_out == 500
 
 
 def test_the_timeline_has_events_bookmarks_and_gaps(store: Store, settings: Settings) -> None:
