@@ -142,7 +142,7 @@ class Container:
         self.bookmarks = Bookmarks(self.store, self.clock, self.recorder)
         self.mission_marks = MissionMarks(self.recorder, self.bookmarks)
         self.retention = RetentionWorker(self.store, self.settings, self.notices, self.clock)
-        self.clock_correction = ClockCorrection(self.store, self.notices, self.clock)
+        self.clock_correction = ClockCorrection(self.store, self.notices, self.clock, self.catalogue.notify)
         self.arming = AutoRecorder(self.recorder, self.clock, self.notices, self._armed_row)
         self.jobs = Jobs(self.settings.data, self.store, self.clock)
         self.imports = Imports(self.settings.data, self.store)

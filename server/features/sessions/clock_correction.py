@@ -12,9 +12,10 @@ from collections.abc import Callable
 from datetime import UTC, datetime
 
 from sqlalchemy import Connection, update
-from sqlmodel import col, select
+from sqlmodel import col, func, select
 
 from robot_runtime.clock import Clock, boot
+from server.features.sessions.session import REAL_ORIGINS
 from server.platform.models import BookmarkRow, SessionRow
 from server.platform.notices import Notices
 from server.platform.store import Store, StoreError
@@ -24,8 +25,6 @@ log = logging.getLogger(__name__)
 
 PERIOD = 10.0
 """s between two looks at the clock."""
-REAL = ("operator", "arming", "scenario")
-"""Origins of sessions whose steady times are those of this computer."""
 MINUTE = "%Y-%m-%d %H:%M"
 """The date in the name that a session gets where nobody names it."""
 
@@ -42,12 +41,14 @@ class ClockCorrection:
         store: Store,
         notices: Notices,
         clock: Clock,
+        corrected: Callable[[int], object],
         synchronised: Callable[[], bool] = is_synchronised,
         suspended: Callable[[], bool] = was_suspended,
     ) -> None:
         self._store = store
         self._notices = notices
         self._clock = clock
+        self._corrected = corrected
         self._synchronised = synchronised
         self._suspended = suspended
         self._was_unknown = False
@@ -70,12 +71,15 @@ class ClockCorrection:
             rows = await asyncio.to_thread(self._find_wrong, ahead, all_of_them=all_of_them)
             if rows:
                 await self._store.write(lambda connection: _correct(connection, rows, ahead, now))
+                for row in rows:
+                    if row.state == "recording" and row.id is not None:
+                        self._corrected(row.id)
                 self._notices.notify("clock", "info", _describe(rows, ahead))
         # Only what is corrected is forgotten: a database that fails is tried again.
         self._was_unknown = not known
 
     def _find_wrong(self, ahead: float, *, all_of_them: bool) -> list[SessionRow]:
-        query = select(SessionRow).where(SessionRow.boot == boot(), col(SessionRow.origin).in_(REAL))
+        query = select(SessionRow).where(SessionRow.boot == boot(), col(SessionRow.origin).in_(REAL_ORIGINS))
         with self._store.read() as database:
             rows = database.exec(query).all()
         return [
@@ -96,8 +100,8 @@ def _correct(connection: Connection, rows: list[SessionRow], ahead: float, now: 
             .where(col(SessionRow.id) == row.id)
             .values(
                 started=right,
-                ended=None if row.ended is None else row.ended + late,
-                # One that was deleted by the right clock already has no date in the future.
+                # What happened by the right clock already has no date in the future.
+                ended=None if row.ended is None else min(row.ended + late, now),
                 deleted=None if row.deleted is None else min(row.deleted + late, now),
                 name=row.name.replace(written, shown),
             )
@@ -105,7 +109,7 @@ def _correct(connection: Connection, rows: list[SessionRow], ahead: float, now: 
         connection.execute(
             update(BookmarkRow)
             .where(col(BookmarkRow.session_id) == row.id)
-            .values(made=BookmarkRow.made + late)
+            .values(made=func.min(BookmarkRow.made + late, now))
         )
 
 

@@ -167,7 +167,7 @@ class Recorder:
                 self._skip |= sender.first
         if "notice" in interrupted.last:
             self._notices.continue_from(interrupted.last["notice"].following)
-        self.session = from_row(row)
+        self.session = from_row(row, interrupted.tags, interrupted.markers)
         self._accepts = True
         away = self._clock.now() - row.started_steady - row.duration
         self._notices.notify(
@@ -228,9 +228,9 @@ class Recorder:
         return done
 
     def amend(self, session: Session) -> None:
-        """Take over new texts of the session, if it is the one that records."""
+        """Take over new texts, or another start, of the session, if it is the one that records."""
         if self.session is not None and self.session.id == session.id:
-            written = session.model_dump(include={"name", "note", "tags", "markers", "kept"})
+            written = session.model_dump(include={"name", "note", "tags", "markers", "kept", "started"})
             self.session = self.session.model_copy(update=written)
             self._changed()
 

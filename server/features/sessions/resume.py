@@ -11,12 +11,11 @@ from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.topics import BY_NAME, Topic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from robot_runtime.transport.replay_cache import BacklogReply
-from server.platform.models import Chunk, SessionRow
+from server.features.sessions.session import REAL_ORIGINS
+from server.platform.models import BookmarkRow, Chunk, SessionRow, SessionTag
 from server.platform.store import Store
 
 _STATE = BY_NAME["state"]
-RESUMED_ORIGINS = ("operator", "arming", "scenario")
-"""Not one in simulated time, which was computed by the server itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +30,12 @@ class TopicEnd:
 
 @dataclass(frozen=True, slots=True)
 class InterruptedSession:
-    """A session that was left recording, and the ends of its topics by name."""
+    """A session that was left recording, the ends of its topics by name, its tags and number of bookmarks."""
 
     row: SessionRow
     last: Mapping[str, TopicEnd]
+    tags: Sequence[str]
+    markers: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,7 @@ def find_interrupted(store: Store) -> InterruptedSession | None:
             .where(
                 SessionRow.state == "recording",
                 SessionRow.boot == boot(),
-                col(SessionRow.origin).in_(RESUMED_ORIGINS),
+                col(SessionRow.origin).in_(REAL_ORIGINS),
             )
             .order_by(col(SessionRow.id).desc())
             .limit(1)
@@ -72,8 +73,11 @@ def find_interrupted(store: Store) -> InterruptedSession | None:
             end.topic: TopicEnd((end.first + end.count) % NUMBERS, end.last_time, end.run, end.number + 1)
             for end in ends
         }
+        tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == row.id)).all()
+        marked = select(func.count()).select_from(BookmarkRow).where(BookmarkRow.session_id == row.id)
+        markers = database.exec(marked).one()
         database.expunge(row)
-    return InterruptedSession(row, last)
+    return InterruptedSession(row, last, tags, markers)
 
 
 def find_missing(

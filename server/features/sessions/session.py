@@ -25,6 +25,9 @@ IMPORTING = "importing"
 """State of a row whose samples are still being imported."""
 HIDDEN = (REMOVING, IMPORTING)
 """States of rows that count as sessions only for retention and import."""
+REAL_ORIGINS = ("operator", "arming", "scenario")
+"""Origins of sessions in real time, whose steady times are those of this computer; the server itself computes
+those in simulated time."""
 
 
 class UnknownSessionError(NotFoundError):

@@ -10,6 +10,7 @@ from sqlmodel import col, select
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import Block
+from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.clock_correction import ClockCorrection
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
@@ -37,7 +38,12 @@ class Pi:
         self.notices = Notices(self.clock, self._hear)
         self.recorder = Recorder(store, self.clock, self.notices, lambda: None)
         self.correction = ClockCorrection(
-            store, self.notices, self.clock, lambda: self.synchronised, lambda: self.suspended
+            store,
+            self.notices,
+            self.clock,
+            Catalogue(store, self.recorder).notify,
+            lambda: self.synchronised,
+            lambda: self.suspended,
         )
 
     def _hear(self, block: Block) -> None:
@@ -92,6 +98,35 @@ def test_a_session_of_1970_has_its_right_date_once_the_clock_is_set(pi: Pi) -> N
         ]
         await pi.look()
         assert len(pi.told) == 1
+
+    asyncio.run(scenario())
+
+
+def test_the_session_that_records_has_its_right_date_at_once(pi: Pi) -> None:
+    async def scenario() -> None:
+        row = new_row(pi.settings, pi.clock, "Armed 1970-01-01 00:08 UTC", "", "null", origin="arming")
+        row.started = OLD
+        await pi.recorder.start(row)
+        await pi.look()
+        session = pi.recorder.session
+        assert session is not None
+        assert (session.started.timestamp(), session.name) == (RIGHT, "Armed 2030-03-17 17:46 UTC")
+
+    asyncio.run(scenario())
+
+
+def test_nothing_that_happened_after_the_clock_was_set_gets_a_date_in_the_future(pi: Pi) -> None:
+    async def scenario() -> None:
+        session = await pi.record(OLD)
+        await pi.store.execute(
+            update(SessionRow).where(col(SessionRow.id) == session).values(ended=RIGHT + 9.0)
+        )
+        mark = {"session_id": session, "time": 1009.0, "text": "here", "made": RIGHT + 9.0}
+        await pi.store.write(lambda connection: insert_row(connection, BookmarkRow, mark))
+        await pi.look()
+        assert pi.row(session).ended == RIGHT + 10.0
+        with pi.store.read() as database:
+            assert database.exec(select(BookmarkRow.made)).one() == RIGHT + 10.0
 
     asyncio.run(scenario())
 

@@ -13,6 +13,7 @@ from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import BY_NAME, SENT_BY
 from robot_runtime.transport.blocks import NUMBERS, Block, row
 from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
+from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.resume import MissingSamples, find_missing
 from server.platform.models import Chunk, SessionRow
@@ -128,6 +129,20 @@ def test_a_resumed_session_has_no_gap_and_no_duplicate(wreck: Wreck, first: int)
         assert wreck.after.gaps() == []
         assert [chunk.number for chunk in wreck.after.chunks()] == [0, 1, 2]
         assert wreck.after.told[0].startswith("The server was killed. Recording of “dive” continues")
+
+    play(scenario)
+
+
+def test_a_resumed_session_shows_its_tags_and_bookmarks(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        before = wreck.before
+        await Catalogue(before.store, before.recorder).change(wreck.session, tags=["pool", "Fins"])
+        await Bookmarks(before.store, before.clock, before.recorder).add(wreck.session, None, "here")
+        await wreck.resume()
+        session = wreck.after.recorder.session
+        assert session is not None
+        assert (session.tags, session.markers) == (["Fins", "pool"], 1)
 
     play(scenario)
 
