@@ -2,12 +2,13 @@
 
 The check of Host guards against DNS rebinding, where a foreign name points here; that of Origin against
 foreign pages in the operator's browser. No address is trusted; `server.public_url` is
-one more name of the server.
+one more name of the server, and so is the very address at which a request arrives: it may be new since the
+server began, and no foreign name is an address.
 """
 
 import json
 from collections.abc import Collection
-from urllib.parse import urlsplit
+from ipaddress import IPv6Address, ip_address
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -45,9 +46,8 @@ class SecurityMiddleware:
 
     def __init__(self, app: ASGIApp, allowed_hosts: Collection[str], port: int, public_url: str = "") -> None:
         self._app = app
-        self._hosts = {f"{host}:{port}" for host in allowed_hosts}
-        if port in (80, 443):
-            self._hosts.update(allowed_hosts)
+        self._ports = (f":{port}", "") if port in (80, 443) else (f":{port}",)
+        self._hosts = {host + port for host in allowed_hosts for port in self._ports}
         self._public_scheme, _, self._public_host = public_url.partition("://")
         if public_url:
             self._hosts.add(self._public_host)
@@ -76,7 +76,7 @@ class SecurityMiddleware:
         """Reason to refuse this request; None if it is allowed."""
         headers = Headers(scope=scope)
         hosts, origins = headers.getlist("host"), headers.getlist("origin")
-        if len(hosts) != 1 or hosts[0].lower() not in self._hosts:
+        if len(hosts) != 1 or not self._is_own_host(hosts[0].lower(), scope):
             named = hosts[0] if hosts else "none"
             return (
                 f"The address {named[:100]} is not one of this server's. Use one of "
@@ -94,11 +94,28 @@ class SecurityMiddleware:
             return f"Pages of {origins[0][:100]} may not talk to this robot. Open this server's own page."
         return None
 
+    def _is_own_host(self, host: str, scope: Scope) -> bool:
+        if host in self._hosts:
+            return True
+        address = _own_address(scope)
+        return address is not None and host in {address + port for port in self._ports}
+
+
+def _own_address(scope: Scope) -> str | None:
+    """The server's address at which the request arrived, as a URL has it; None at a Unix socket."""
+    try:
+        address = ip_address((scope.get("server") or ("",))[0])
+    except ValueError:
+        return None
+    if isinstance(address, IPv6Address):
+        # A socket for both families shows an IPv4 address as an IPv6 one.
+        return f"[{address}]" if address.ipv4_mapped is None else str(address.ipv4_mapped)
+    return str(address)
+
 
 def _is_own(origin: str, host: str, scheme: str) -> bool:
     page_scheme = {"ws": "http", "wss": "https"}.get(scheme, scheme)
-    parts = urlsplit(origin)
-    return origin.lower() == f"{page_scheme}://{host}".lower() and parts.netloc.lower() == host.lower()
+    return origin.lower() == f"{page_scheme}://{host}".lower()
 
 
 def _with_headers(send: Send, scope: Scope) -> Send:

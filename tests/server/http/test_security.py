@@ -10,8 +10,11 @@ HOSTS = ("localhost", "127.0.0.1", "[::1]", "turtle.local")
 OWN = "http://localhost:8000"
 
 
-def ask(kind: str = "http", method: str = "GET", *, port: int = 8000, **headers: Any) -> int:
-    """The status of a request with these headers; 101 where a WebSocket is accepted."""
+def ask(
+    kind: str = "http", method: str = "GET", *, port: int = 8000, at: str | None = None, **headers: Any
+) -> int:
+    """The status of a request with these headers that arrived `at` this address; 101 where a WebSocket is
+    accepted."""
     sent: list[Message] = []
 
     async def inner(scope: Scope, _receive: Receive, send: Send) -> None:
@@ -36,6 +39,7 @@ def ask(kind: str = "http", method: str = "GET", *, port: int = 8000, **headers:
         "method": method,
         "path": "/api/x",
         "headers": raw,
+        "server": at and (at, port),
         "scheme": "ws" if kind == "websocket" else "http",
     }
     asyncio.run(SecurityMiddleware(inner, HOSTS, port)(scope, receive, send))
@@ -69,6 +73,31 @@ def test_foreign_hosts_are_refused(host: str) -> None:
     assert ask("websocket", host=host, origin=f"http://{host}") == 403
 
 
+@pytest.mark.parametrize(
+    ("host", "at"),
+    [
+        ("192.168.1.7:8000", "192.168.1.7"),
+        ("192.168.1.7:8000", "::ffff:192.168.1.7"),
+        ("[fd00::7]:8000", "fd00::7"),
+        ("[FD00::7]:8000", "fd00::7"),
+    ],
+)
+def test_the_address_at_which_a_request_arrives_is_the_server_s_own(host: str, at: str) -> None:
+    assert ask(host=host) == 403
+    assert ask(host=host, at=at) == 200
+    assert ask("websocket", host=host, at=at, origin=f"http://{host}") == 101
+    assert ask(host=host, at=at, origin="http://evil.example", method="POST") == 403
+
+
+@pytest.mark.parametrize("host", ["192.168.1.8:8000", "192.168.1.7", "192.168.1.7:80", "evil.example:8000"])
+def test_another_address_than_that_of_the_request_is_foreign(host: str) -> None:
+    assert ask(host=host, at="192.168.1.7") == 403
+
+
+def test_a_unix_socket_has_no_address_of_its_own() -> None:
+    assert ask(host="/run/mucat:8000", at="/run/mucat") == 403
+
+
 def test_exactly_one_host_header_is_accepted() -> None:
     assert ask() == 403
     assert ask(host=["localhost:8000", "localhost:8000"]) == 403
@@ -93,6 +122,8 @@ def test_port_80_needs_no_port() -> None:
         "http://localhost:8000.evil.example",
         "http://localhost:8000/",
         "ws://localhost:8000",
+        "http://[",
+        "http://[localhost:8000",
     ],
 )
 @pytest.mark.parametrize(("kind", "method"), [("http", "GET"), ("http", "POST"), ("websocket", "GET")])
