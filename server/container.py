@@ -2,7 +2,8 @@
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Sequence
+import logging
+from collections.abc import AsyncIterator, Coroutine, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import asdict
 from typing import Any
@@ -68,6 +69,8 @@ from server.processes.managed_process import ProcessCommand
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import Hub
+
+log = logging.getLogger(__name__)
 
 HEALTH_SECONDS = 1.0
 BEAT_SECONDS = 1.0
@@ -218,7 +221,7 @@ class Container:
             self.access.open()
             self.events.open()
             await self.bridge.open()
-            tasks.append(asyncio.create_task(self._beat()))
+            tasks.append(self._begin(self._beat()))
             await self.processes.end_others()
             await self._catch_up(interrupted)
             self._notify_session()
@@ -231,7 +234,7 @@ class Container:
             self.scenarios.announce()
             self.tuning.announce()
             tasks += [
-                asyncio.create_task(work)
+                self._begin(work)
                 for work in (
                     self.board_reservation.start_processes(),
                     self.recorder.run(),
@@ -271,6 +274,19 @@ class Container:
             await self.access.devices.close()
             await asyncio.to_thread(self.audit.close)
             await asyncio.to_thread(self.store.close)
+
+    def _begin(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
+        """Begin a background task, whose failure is logged and an alarm."""
+        task = asyncio.create_task(work, name=getattr(work, "__qualname__", None))
+        task.add_done_callback(self._see_failed)
+        return task
+
+    def _see_failed(self, task: asyncio.Task[None]) -> None:
+        if task.cancelled() or (problem := task.exception()) is None:
+            return
+        name = task.get_name()
+        log.error("the background task %s has failed", name, exc_info=problem)
+        self.alarms.begin("server_task_failed", f"Its task {name} ended: {problem}.")
 
     async def _catch_up(self, interrupted: InterruptedSession | None) -> None:
         """Take in what the parts of a killed server have sent since, before anybody is served."""

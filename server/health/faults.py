@@ -27,7 +27,13 @@ FAULTS: dict[str, FaultText] = {
         what="",
         cause=_PART,
         remedy="A robot that was armed is stopped where the server is away for more than 4 s. "
-        "Nothing is to be done; where it happens again, look into the words that it prints.",
+        "Nothing is to be done; where it happens again, read the service's log: journalctl -u mucat.",
+    ),
+    "server_task_failed": FaultText(
+        severity="alarm",
+        what="A part of the server has failed.",
+        cause="A mistake in its software: the service's log says more (journalctl -u mucat).",
+        remedy="Surface. Then restart it: sudo systemctl restart mucat.",
     ),
     "disk_low": FaultText(
         severity="caution",

@@ -81,15 +81,23 @@ class Watchdog:
             self._silent = 0.0
             runtime.end_hung(f"said nothing for {HUNG_SECONDS:g} s, and was ended")
         see("simulator_silent", self._settings.mode != "robot" and self._is_silent("simulator"))
-        disk = shutil.disk_usage(self._settings.data.path)
-        limit = min(DISK_LOW_BYTES, DISK_LOW_SHARE * disk.total)
-        self._is_disk_low = disk.free < (DISK_WELL * limit if self._is_disk_low else limit)
+        disk_there = self._look_at_disk()
         see("disk_low", self._is_disk_low)
-        see("store_failing", self._store.failing is not None)
+        see("store_failing", self._store.failing is not None or not disk_there)
         see("configuration_damaged", bool(problem := self._settings.configuration_problem), problem)
         if self._checked - self._supply_seen >= SUPPLY_SECONDS:
             see("undervoltage", self._is_supply_low())
         see("server_restarted", False)
+
+    def _look_at_disk(self) -> bool:
+        """Note if the disk is almost full; False where it is gone, as a stick that was pulled."""
+        try:
+            disk = shutil.disk_usage(self._settings.data.path)
+        except OSError:
+            return False
+        limit = min(DISK_LOW_BYTES, DISK_LOW_SHARE * disk.total)
+        self._is_disk_low = disk.free < (DISK_WELL * limit if self._is_disk_low else limit)
+        return True
 
     def _is_supply_low(self) -> bool:
         """True where the supply is too low now, or was for a moment since the last look."""

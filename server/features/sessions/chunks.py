@@ -108,13 +108,13 @@ def encode_documents(payloads: Sequence[bytes], count: int) -> tuple[bytes, floa
 
     Raises ValueError for anything else.
     """
-    documents = [document for payload in payloads for document in json.loads(payload)]
+    try:
+        documents = [document for payload in payloads for document in json.loads(payload)]
+        first, last = float(documents[0]["time"]), float(documents[-1]["time"])
+    except (KeyError, TypeError, IndexError, OverflowError) as problem:
+        raise ValueError("documents must be lists of JSON objects with a time") from problem
     if len(documents) != count:
         raise ValueError(f"{len(documents)} documents instead of {count}")
-    try:
-        first, last = float(documents[0]["time"]), float(documents[-1]["time"])
-    except (KeyError, TypeError, IndexError) as problem:
-        raise ValueError("documents must be JSON objects with a time") from problem
     lines = "".join(
         json.dumps(document, separators=(",", ":"), allow_nan=False) + "\n" for document in documents
     )

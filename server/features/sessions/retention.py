@@ -73,7 +73,7 @@ class RetentionWorker:
             self._requested.clear()
             try:
                 await self.apply(time())
-            except StoreError as problem:
+            except (StoreError, OSError) as problem:
                 log.warning("the rules of retention cannot be applied: %s", problem)
             # Not wait_for: in Python 3.11 it ignores a cancellation that comes with the request.
             with suppress(TimeoutError):

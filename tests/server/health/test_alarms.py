@@ -1,4 +1,5 @@
 import asyncio
+import errno
 import shutil
 from dataclasses import replace
 from types import SimpleNamespace
@@ -9,6 +10,7 @@ import pytest
 from robot_runtime.contract.documents import Alarm, Event
 from robot_runtime.control.alarms import Alarms
 from server.app import create_app
+from server.features.sessions.recorder import Recorder
 from server.health.faults import FAULTS
 from server.health.watchdog import (
     DOWN,
@@ -24,6 +26,7 @@ from server.platform.store import Store
 from server.processes.managed_process import ManagedProcess
 from tests.server.health.monitor_rig import MonitorRig
 from tests.server.new_database import place_with_samples
+from tests.server.waiting import until
 
 
 class AlarmRig(MonitorRig):
@@ -202,6 +205,22 @@ def test_a_failing_database_is_an_alarm(rig: AlarmRig, store: Store) -> None:
     assert rig.active() == set()
 
 
+def test_a_disk_that_is_gone_is_an_alarm_and_the_watch_goes_on(
+    rig: AlarmRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(_: object) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    with monkeypatch.context() as gone:
+        gone.setattr(shutil, "disk_usage", refuse)
+        rig.spend(PERIOD, all=rig.receive)
+        assert rig.active() == {"store_failing"}
+        rig.spend(2 * SILENT_SECONDS)
+        assert "runtime_silent" in rig.active()
+    rig.spend(PERIOD, all=rig.receive)
+    assert rig.active() == set()
+
+
 def test_a_supply_that_is_too_low_is_an_alarm_also_for_a_moment(rig: AlarmRig) -> None:
     told = []
     for bits in (0x0, 0x10001, 0x10000, 0x10000, None):
@@ -229,6 +248,28 @@ def test_every_fault_has_a_cause_and_a_remedy() -> None:
     for fault in FAULTS.values():
         assert fault.cause.endswith(".")
         assert fault.remedy.endswith(".")
+
+
+def test_a_background_task_that_fails_is_an_alarm_and_in_the_log(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def fail(_: Recorder) -> None:
+        raise TypeError("not a document")
+
+    async def scenario() -> Alarm:
+        await place_with_samples(settings.data)
+        app = create_app(settings)
+        async with app.router.lifespan_context(app):
+            alarms: Alarms = app.state.container.alarms
+            await until(lambda: any(one.fault == "server_task_failed" for one in alarms.listed()), "an alarm")
+            return next(one for one in alarms.listed() if one.fault == "server_task_failed")
+
+    monkeypatch.setattr(Recorder, "run", fail)
+    alarm = asyncio.run(scenario())
+    assert "not a document" in alarm.what
+    assert (alarm.severity, alarm.active) == ("alarm", True)
+    (record,) = [one for one in caplog.records if one.name == "server.container"]
+    assert record.exc_info is not None
 
 
 def test_a_restarted_server_raises_an_alarm(settings: Settings) -> None:

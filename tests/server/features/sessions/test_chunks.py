@@ -60,7 +60,18 @@ def test_documents_become_lines() -> None:
 
 
 @pytest.mark.parametrize(
-    "payload", [b"nonsense", b"[1]", b"[]", b'[{"text": "x"}]', b'{"time": 1}', b"[" * 5000]
+    "payload",
+    [
+        b"nonsense",
+        b"[1]",
+        b"[]",
+        b"5",
+        b"null",
+        b'[{"text": "x"}]',
+        b'{"time": 1}',
+        b'[{"time": 1%s}]' % (b"0" * 400),
+        b"[" * 5000,
+    ],
 )
 def test_bytes_that_are_no_list_of_documents_are_refused(payload: bytes) -> None:
     with pytest.raises((ValueError, RecursionError)):

@@ -271,6 +271,31 @@ def test_free_space_is_read_from_the_real_disk(store: Store, settings: Settings)
     )
 
 
+def test_the_worker_goes_on_where_the_disk_cannot_be_examined(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario() -> None:
+        clock, looks = SimulatedClock(), asyncio.Semaphore(0)
+        loop = asyncio.get_running_loop()
+
+        def refuse(_: object) -> None:
+            loop.call_soon_threadsafe(looks.release)
+            raise OSError("Input/output error")
+
+        monkeypatch.setattr(shutil, "disk_usage", refuse)
+        rules = replace(settings, sessions=SessionsConfig(keep_free=1.0))
+        worker = RetentionWorker(store, rules, Notices(clock, print), clock)
+        running = asyncio.create_task(worker.run())
+        async with asyncio.timeout(SECONDS):
+            await looks.acquire()
+            worker.wake()
+            await looks.acquire()
+        running.cancel()
+        await asyncio.wait([running])
+
+    asyncio.run(scenario())
+
+
 async def take_turns(count: int) -> None:
     """Waits for so many turns of the event loop."""
     for _ in range(count):
