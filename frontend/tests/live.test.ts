@@ -96,6 +96,14 @@ describe('Live', () => {
     expect(live.since(recently)).toBeCloseTo(35, 3);
   });
 
+  it('follows the robot’s calendar where that is set', () => {
+    server().greet();
+    server().tell({ op: 'pong', id: 1, steady: 110, utc: 1e9 + 10.1 });
+    expect(live.date(100).getTime()).toBe(1e12);
+    server().tell({ op: 'pong', id: 2, steady: 111, utc: 1e9 + 11 + 10_800 });
+    expect(live.date(100).getTime()).toBe(1e12 + 10_800_000);
+  });
+
   it('opens again for ever, and takes a replay only once', () => {
     server().greet();
     const line = (time: number, text: string) => ({ time, level: 1, text });

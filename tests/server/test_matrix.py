@@ -400,7 +400,10 @@ class LiveSocket:
         before = len(self.told)
         for one in (message, {"op": "ping", "id": before}):
             self.to_server.put_nowait({"type": "websocket.receive", "text": json.dumps(one)})
-        await until(lambda: {"op": "pong", "id": before} in self.told, "the answer to a ping")
+        await until(
+            lambda: any(one["op"] == "pong" and one["id"] == before for one in self.told),
+            "the answer to a ping",
+        )
         return [one["text"] for one in self.told[before:] if one["op"] == "error"]
 
 

@@ -8,7 +8,7 @@ import { nameClient } from '../http';
 import { readBlocks, type Block } from './blocks';
 import { SteadyClock } from './clock';
 import { Live } from './live.svelte';
-import { readMessage, type Hello } from './messages';
+import { readMessage, type Hello, type ServerMessage } from './messages';
 import { Past } from './past';
 import { LiveSocket } from './socket';
 import { Stop } from './stop.svelte';
@@ -16,6 +16,8 @@ import { Progress } from './store';
 
 /** s by which the robot's clock may seem to jump before it is taken for another clock. */
 const CLOCK_JUMP = 5;
+/** s by which the robot's calendar may drift before the page follows it */
+const DATE_JUMP = 0.5;
 /** s without rows; below FIRST_SECONDS (65 s, server/stream/hub.py), within which the server sends what was missed */
 const AWAY = 50;
 
@@ -123,7 +125,15 @@ export class LiveFeed {
     else if (message.op === 'control') this.#control.hear(message);
     else if (message.op === 'alarms') live.serverAlarms = message.alarms;
     else if (message.op === 'error') live.serverError = message.text;
-    else this.#socket.answered(message.id);
+    else this.#hearPong(message);
+  }
+
+  #hearPong({ id, steady, utc }: Extract<ServerMessage, { op: 'pong' }>): void {
+    this.#socket.answered(id);
+    const { instant } = this.live;
+    // Only where the robot's calendar was set: all times that the page shows are computed anew.
+    if (instant === null || Math.abs(utc - steady - (instant.utc - instant.steady)) <= DATE_JUMP) return;
+    this.live.instant = { steady, utc };
   }
 
   #greet(hello: Hello): void {
@@ -131,7 +141,7 @@ export class LiveFeed {
     this.#pageVersion ??= hello.page_version;
     live.outdated = hello.definitions !== DEFINITIONS_HASH || hello.page_version !== this.#pageVersion;
     if (this.#steady.known && Math.abs(this.#steady.now() - hello.steady) > CLOCK_JUMP) {
-      // Another clock speaks: the robot's computer was restarted, or this one slept. Times from before mean nothing on it.
+      // Another clock speaks: the robot's computer was restarted, or this one slept. Times from before mean nothing.
       this.#steady.reset();
       this.#progress.forget();
       this.#past.forget();

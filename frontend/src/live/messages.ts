@@ -2,6 +2,7 @@
 import type { Cell, Part, Role, ScenarioState, Session, TuningState } from '../api';
 import type { components } from '../generated/api';
 import type { Alarm } from '../generated/topics';
+import type { Instant } from './clock';
 
 /** Who a page is to the robot. `client` is its number at the control lease, for as long as the live socket is open. */
 export interface You {
@@ -55,7 +56,7 @@ export type ServerMessage =
   | ControlMessage
   | { op: 'alarms'; alarms: Alarm[] }
   | { op: 'error'; text: string }
-  | { op: 'pong'; id: number };
+  | ({ op: 'pong'; id: number } & Instant);
 
 const OPERATIONS: ReadonlySet<unknown> = new Set<ServerMessage['op']>([
   'hello',

@@ -61,6 +61,7 @@ class _LiveConnection:
         arbiter: ControlArbiter,
         bridge: Bridge,
         audit: AuditLog,
+        clock: Clock,
     ) -> None:
         self._socket = socket
         self._owner = owner
@@ -68,6 +69,7 @@ class _LiveConnection:
         self._arbiter = arbiter
         self._bridge = bridge
         self._audit = audit
+        self._clock = clock
         self._stopping: asyncio.Task[None] | None = None
         self._stop_again = False
 
@@ -107,7 +109,8 @@ class _LiveConnection:
                     raise InvalidMessageError(
                         "A ping's id is a number that JSON can write; this one is too large."
                     )
-                client.answer({"op": "pong", "id": number})
+                # With both clocks: the wall clock may be set while the page is open.
+                client.answer({"op": "pong", "id": number, "steady": self._clock.now(), "utc": time()})
             case "stop":
                 self._stop(client)
             case "watch":
@@ -166,6 +169,7 @@ async def live(
     arbiter: Provided[ControlArbiter],
     bridge: Provided[Bridge],
     audit: Provided[AuditLog],
+    clock: Provided[Clock],
     greeting: Annotated[Greeting, Depends(greet)],
 ) -> None:
     """Serve one page until it leaves."""
@@ -178,7 +182,7 @@ async def live(
         if access.refresh(caller) != caller:
             raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
-            listen = _LiveConnection(socket, owner, hub, arbiter, bridge, audit).listen
+            listen = _LiveConnection(socket, owner, hub, arbiter, bridge, audit, clock).listen
             serving = hub.serve(send, greeting(owner), listen, caller)
             await end_after(access.devices.count_seconds(caller.device), serving)
     except WebSocketDisconnect:

@@ -33,7 +33,8 @@ class ClockCorrection:
     """Corrects the sessions of this start of the computer whose date was not known when they began.
 
     Those are the sessions of an impossible date; and all of them, where a time server has set the clock while
-    this server runs, and the computer was never suspended.
+    this server runs, and the computer was never suspended. `corrected` is called with the number of one that
+    records.
     """
 
     def __init__(

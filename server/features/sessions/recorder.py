@@ -228,7 +228,7 @@ class Recorder:
         return done
 
     def amend(self, session: Session) -> None:
-        """Take over new texts, or another start, of the session, if it is the one that records."""
+        """Take over new texts and the corrected date of the session, if it is the one that records."""
         if self.session is not None and self.session.id == session.id:
             written = session.model_dump(include={"name", "note", "tags", "markers", "kept", "started"})
             self.session = self.session.model_copy(update=written)

@@ -108,9 +108,13 @@ def said_of_recording(blocks: list[Block]) -> list[str]:
 def test_ping_and_stop(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as page:
+            hello = await next_text(page, "hello")
             for identifier in (7, "a", 1.5):
                 await page.send(json.dumps({"op": "ping", "id": identifier}))
-                assert (await next_text(page, "pong"))["id"] == identifier
+                pong = await next_text(page, "pong")
+                assert pong["id"] == identifier
+                assert pong["steady"] >= hello["steady"]
+                assert pong["utc"] - pong["steady"] == pytest.approx(hello["utc"] - hello["steady"], abs=1)
             await page.send('{"op": "stop"}')
             await until(lambda: served.runtime.asked == [("stop", {})], "the STOP")
 

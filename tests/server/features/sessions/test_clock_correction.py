@@ -13,6 +13,7 @@ from robot_runtime.transport.blocks import Block
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.clock_correction import ClockCorrection
 from server.features.sessions.recorder import Recorder
+from server.features.sessions.schemas import Session
 from server.features.sessions.session import new_row
 from server.platform.models import BookmarkRow, SessionRow
 from server.platform.notices import Notices
@@ -34,9 +35,11 @@ class Pi:
         self.settings = settings
         self.clock = SimulatedClock(1000.0)
         self.told: list[str] = []
+        self.changes: list[Session | None] = []
+        """The recording session at each of its changes."""
         self.synchronised, self.suspended = False, False
         self.notices = Notices(self.clock, self._hear)
-        self.recorder = Recorder(store, self.clock, self.notices, lambda: None)
+        self.recorder = Recorder(store, self.clock, self.notices, self._see_session)
         self.correction = ClockCorrection(
             store,
             self.notices,
@@ -45,6 +48,9 @@ class Pi:
             lambda: self.synchronised,
             lambda: self.suspended,
         )
+
+    def _see_session(self) -> None:
+        self.changes.append(self.recorder.session)
 
     def _hear(self, block: Block) -> None:
         self.told += [one["text"] for one in json.loads(block.payload) if one["kind"] == "clock"]
@@ -77,6 +83,21 @@ class Pi:
 @pytest.fixture
 def pi(store: Store, settings: Settings) -> Pi:
     return Pi(store, settings)
+
+
+def test_pages_get_the_right_date_of_the_session_that_records(pi: Pi) -> None:
+    async def scenario() -> None:
+        row = new_row(pi.settings, pi.clock, "Armed 1970-01-01 00:08 UTC", "", "null", origin="arming")
+        row.started = OLD
+        await pi.recorder.start(row)
+        told = len(pi.changes)
+        await pi.look()
+        assert pi.recorder.session is not None
+        assert pi.recorder.session.started.timestamp() == RIGHT
+        assert pi.recorder.session.name == "Armed 2030-03-17 17:46 UTC"
+        assert pi.changes[told:] == [pi.recorder.session]
+
+    asyncio.run(scenario())
 
 
 def test_a_session_of_1970_has_its_right_date_once_the_clock_is_set(pi: Pi) -> None:
