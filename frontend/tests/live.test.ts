@@ -184,6 +184,12 @@ describe('Live', () => {
     expect(live.freshness('depth').state).toBe('fresh');
   });
 
+  it('measures the age of every row of a tick by the control rate', () => {
+    server().greet();
+    server().give(documentBlock(OTHER_TOPICS.state, [{ time: 100, control_rate: 0.5, paces: [] }]));
+    expect((['control', 'turning', 'navigation'] as const).map((topic) => live.period(topic))).toEqual([2, 2, 2]);
+  });
+
   it('asks for a reload, and reads no rows, where definitions differ', () => {
     server().greet({ definitions: 'deadbeef' });
     server().give(depthBlock(99, [0.1]));

@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import { ROW_TOPICS, type Rows } from '../src/generated/topics';
 import { BlockError } from '../src/live/blocks';
 import { RowRing } from '../src/live/ring';
+import { createRings } from '../src/live/store';
 import { join, rowBytes } from './bytes';
 
 const topic = ROW_TOPICS.depth;
@@ -11,6 +12,20 @@ const rows = (...times: number[]) =>
 function orderOf(ring: RowRing<'depth'>): number[] {
   return Array.from({ length: ring.length }, (_, order) => ring.time[ring.place(order)] ?? NaN);
 }
+
+describe('the rings', () => {
+  it.each([
+    ['control', 50],
+    ['turning', 50],
+    ['navigation', 70],
+    ['truth', 20],
+    ['imu', 100],
+  ] as const)('hold ten minutes of %s at its highest rate, and not much more', (name, rate) => {
+    const { capacity } = createRings()[name];
+    expect(capacity).toBeGreaterThanOrEqual(600 * rate);
+    expect(capacity).toBeLessThan(650 * rate);
+  });
+});
 
 describe('RowRing', () => {
   it.each(Object.keys(ROW_TOPICS) as (keyof Rows)[])('reads every field of %s where the runtime wrote it', (name) => {

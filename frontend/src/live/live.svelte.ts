@@ -23,7 +23,7 @@ import { Lines } from './lines.svelte';
 import type { Part, ScenarioState, Session, TuningState } from '../api';
 import type { Hello } from './messages';
 import { Pace } from './pace';
-import { PERIODS, THUMBNAIL_PERIOD, type Timed } from './periods';
+import { OBSERVER_PERIOD, PERIODS, THUMBNAIL_PERIOD, type Timed } from './periods';
 import type { Stop } from './stop.svelte';
 import { createRings, Gaps } from './store';
 import { connection } from '../texts/connection';
@@ -212,8 +212,8 @@ export class Live {
   period(topic: Timed): number {
     if (topic === 'picture' && this.replayed) return THUMBNAIL_PERIOD;
     if (topic === 'detection' || topic === 'picture' || topic === 'mask') return 1 / (this.state?.vision_rate ?? 1);
-    if (topic === 'observer') return PERIODS.truth;
-    if (topic === 'control' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
+    if (topic === 'observer') return OBSERVER_PERIOD;
+    if (topic === 'control' || topic === 'turning' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
     return this.state?.paces.find((pace) => pace.topic === topic)?.period ?? PERIODS[topic];
   }
 

@@ -13,9 +13,18 @@ export const PERIODS: Record<keyof Rows | 'state', number> = {
   control: 0.1,
   turning: 0.1,
   link: 1,
-  truth: 0.02,
+  truth: 0.05,
   state: 1,
 };
+
+/**
+ * Most rows a second where that is more than a row each period: control.rate is at most 50 Hz, and by hand each of the
+ * pilot's 20 inputs a second is a row beside the ticks.
+ */
+export const RATES_MOST: Partial<Record<keyof Rows, number>> = { control: 50, turning: 50, navigation: 70 };
+
+/** s between two pictures of the bystander (robot_runtime/simulation/scene/process.py) */
+export const OBSERVER_PERIOD = 1 / 12;
 
 /** s between two pictures of a recording: its thumbnails */
 export const THUMBNAIL_PERIOD = 2;

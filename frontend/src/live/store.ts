@@ -1,5 +1,5 @@
 import { ROW_TOPICS, type Rows } from '../generated/topics';
-import { HISTORY, PERIODS } from './periods';
+import { HISTORY, PERIODS, RATES_MOST } from './periods';
 import { RowRing } from './ring';
 
 export type Rings = { readonly [K in keyof Rows]: RowRing<K> };
@@ -7,7 +7,8 @@ export type Rings = { readonly [K in keyof Rows]: RowRing<K> };
 /** An empty ring for every topic of rows, large enough for what the server keeps. */
 export function createRings(): Rings {
   const names = Object.keys(ROW_TOPICS) as (keyof Rows)[];
-  const rings = names.map((name) => [name, new RowRing(ROW_TOPICS[name], Math.ceil(HISTORY / PERIODS[name]))]);
+  const capacity = (name: keyof Rows) => Math.ceil(HISTORY * (RATES_MOST[name] ?? 1 / PERIODS[name]));
+  const rings = names.map((name) => [name, new RowRing(ROW_TOPICS[name], capacity(name))]);
   return Object.fromEntries(rings) as Rings;
 }
 
