@@ -15,10 +15,17 @@ class Session implements Source {
   /** answers wait for `release` */
   held: (() => void)[] | null = null;
   made: Partial<Timeline> = {};
+  /** the server does not answer */
+  away = false;
+  /** s from here on, a second's samples are damaged */
+  damagedFrom = NaN;
+  /** samples at the very end, of which the duration tells */
+  atEnd = 0;
 
   constructor(readonly duration = 100) {}
 
   timeline(): Promise<Answer<Timeline>> {
+    if (this.away) return Promise.resolve({ problem: 'The server does not answer.' });
     return Promise.resolve({
       value: {
         name: 'a dive',
@@ -41,7 +48,7 @@ class Session implements Source {
     if (this.failing !== '') return { problem: this.failing };
     const from = Math.max(0, start - (history ?? 0));
     const first = Math.ceil(from * 50);
-    const last = Math.min(Math.ceil(end * 50), this.duration * 50);
+    const last = Math.min(Math.ceil(end * 50), this.duration * 50 + this.atEnd);
     const depths = Array.from({ length: Math.max(0, last - first) }, (_, index) => (first + index) / 50);
     const lines = [];
     for (let second = Math.ceil(from); second < Math.min(end, this.duration); second += 1) {
@@ -50,7 +57,7 @@ class Session implements Source {
     const state = history === undefined ? [] : [documentBlock(OTHER_TOPICS.state, [{ time: ZERO + Math.max(0, start - 1), paces: [] }])];
     return {
       value: {
-        leftOut: 0,
+        leftOut: this.damagedFrom >= from && this.damagedFrom < end ? 50 : 0,
         blocks: join(...state, depthBlock(ZERO + first / 50, depths), documentBlock(OTHER_TOPICS.debug, lines)).buffer,
       },
     };
@@ -108,6 +115,35 @@ describe('Player', () => {
     expect(player.live.replayed).toBe(true);
     await pass(1);
     expect(player.position).toBe(30);
+  });
+
+  it('opens at the same moment where it is tried again', async () => {
+    session.away = true;
+    await player.open(30);
+    expect(player.problem).toBe('The server does not answer.');
+    session.away = false;
+    player.retry();
+    await settle();
+    expect(player.position).toBe(30);
+    expect(newest()).toBeCloseTo(29.98, 6);
+  });
+
+  it('names damaged samples only near them', async () => {
+    session.damagedFrom = 2;
+    await player.open(0);
+    expect(player.leftOut).toBe(50);
+    player.play();
+    await pass(20);
+    expect(player.leftOut).toBe(0);
+  });
+
+  it('shows the last sample at the end', async () => {
+    make(new Session(8));
+    session.atEnd = 1;
+    await player.open(6);
+    player.play();
+    await pass(5);
+    expect(newest()).toBeCloseTo(8, 6);
   });
 
   it('plays at the pace of the clock, every sample once', async () => {

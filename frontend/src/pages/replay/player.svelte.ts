@@ -11,8 +11,8 @@ const SEEK_AHEAD = 5;
 /** s of playing that one later answer brings, and s of playing in store below which the next is fetched */
 const WINDOW = 6;
 const STORE_LEAST = 5;
-/** s that charts show before a moment */
-const HISTORY_SHOWN = 300;
+/** s before a moment that a seek brings for charts; robot_runtime/contract/topics.py says of which topics */
+const SEEK_BACK = 300;
 /** s between two frames beyond which the page was asleep, and the replay with it */
 const SLEPT = 0.25;
 /** s: so near behind a marker, "previous" means the one before */
@@ -36,7 +36,7 @@ export class Player {
   /** what is to be shown next is being fetched */
   waiting = $state(false);
   problem = $state('');
-  /** samples of what is in store or shown that could not be given */
+  /** samples of the stretch fetched last that could not be given */
   leftOut = $state(0);
 
   readonly #reel = new Reel();
@@ -68,6 +68,7 @@ export class Player {
 
   /** Fetch what the session is about, and show the moment `at`. */
   async open(at: number): Promise<void> {
+    this.position = at;
     this.problem = '';
     const answer = await this.source.timeline();
     if (this.#ended) return;
@@ -187,7 +188,7 @@ export class Player {
     this.#turn += 1;
     const turn = this.#turn;
     const end = Math.min(to + SEEK_AHEAD, this.#limit);
-    const answer = await this.source.blocks(to, end, HISTORY_SHOWN);
+    const answer = await this.source.blocks(to, end, SEEK_BACK);
     if (this.#ended || turn !== this.#turn) return;
     if ('problem' in answer) {
       this.problem = answer.problem;
@@ -218,12 +219,12 @@ export class Player {
       return;
     }
     this.#reel.add(answer.value.blocks);
-    this.leftOut += answer.value.leftOut;
+    this.leftOut = answer.value.leftOut;
     this.#fetched = end;
   }
 
   #show(to: number): void {
     this.#shown = to;
-    this.#reel.unroll(this.#zero + to, this.live);
+    this.#reel.unroll(this.#zero + (to < this.duration ? to : this.#limit), this.live);
   }
 }
