@@ -123,19 +123,6 @@ def test_a_session_of_1970_has_its_right_date_once_the_clock_is_set(pi: Pi) -> N
     asyncio.run(scenario())
 
 
-def test_the_session_that_records_has_its_right_date_at_once(pi: Pi) -> None:
-    async def scenario() -> None:
-        row = new_row(pi.settings, pi.clock, "Armed 1970-01-01 00:08 UTC", "", "null", origin="arming")
-        row.started = OLD
-        await pi.recorder.start(row)
-        await pi.look()
-        session = pi.recorder.session
-        assert session is not None
-        assert (session.started.timestamp(), session.name) == (RIGHT, "Armed 2030-03-17 17:46 UTC")
-
-    asyncio.run(scenario())
-
-
 def test_nothing_that_happened_after_the_clock_was_set_gets_a_date_in_the_future(pi: Pi) -> None:
     async def scenario() -> None:
         session = await pi.record(OLD)
