@@ -97,7 +97,7 @@ class DoorClient:
                 continue
             left = one.due - self._clock.now()
             if left <= 0:
-                one.due = max(one.due + one.period, self._clock.now() - one.period)
+                one.due = max(one.due, self._clock.now()) + one.period
                 for message in one.form(one.queue.popleft()):
                     await self._send(message)
                 await self._send_answers()

@@ -175,6 +175,9 @@ def test_throttle_and_queue_length_hold_samples_back(settings: Settings) -> None
                 for _ in range(3)
             ]
             assert depths == [0.7, 0.8, 0.9]
+            served.runtime.publish(rows_block("depth", 10, *((time + 10, row) for time, row in rows)))
+            for _ in range(3):
+                assert (await client.next("publish"))["topic"] == "/mucat/depth"
             await client.call("/rosapi/get_time")
             await client.say(op="unsubscribe", topic="/depth")
             await client.say(op="unsubscribe", topic="/mucat/depth")
