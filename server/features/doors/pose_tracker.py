@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.packets import Depth, Imu
 from server.features.doors.channels import Sample
+from server.features.exports.pose import PERIOD_NS
 
 SOURCES = ("truth", "depth", "imu")
-PERIOD_NS = 100_000_000
-"""Time between two poses, as in an MCAP export."""
 
 
 class PoseTracker:
@@ -30,7 +29,11 @@ class PoseTracker:
             self._position, self._true = value.position, True
         elif isinstance(value, Depth) and not self._true:
             self._position = (0.0, 0.0, value.depth)
-        elif isinstance(value, Imu) and self._position is not None and sample.time - self._last >= PERIOD_NS:
+        elif isinstance(value, Imu) and self._position is not None and self._is_due(sample.time):
             self._last = sample.time
             return self._position, value.attitude
         return None
+
+    def _is_due(self, time: int) -> bool:
+        # Time goes back where the computer's clock is set.
+        return not 0 <= time - self._last < PERIOD_NS
