@@ -124,11 +124,14 @@ class Ros2Door:
                     continue
                 if self._door.strangers >= STRANGERS_MAX:
                     connection.close()
-                    continue
-                self._begin(self._serve(connection, str(address[0]), context))
+                else:
+                    self._door.strangers += 1
+                    self._begin(self._serve(connection, str(address[0]), context))
+                # `sock_accept` itself lets nobody else work while connections wait.
+                await asyncio.sleep(0)
 
     async def _serve(self, connection: socket.socket, address: str, context: ssl.SSLContext) -> None:
-        self._door.strangers += 1
+        """Serve a connection that is counted as a stranger's."""
         try:
             reader, writer = await _shake_hands(connection, context)
         except (OSError, TimeoutError):  # without a certificate of this robot
@@ -138,7 +141,7 @@ class Ros2Door:
             self._door.strangers -= 1
         try:
             await self._admit(reader, writer, address)
-        except (EvictedError, ConnectionError, ssl.SSLError) as problem:
+        except (EvictedError, OSError) as problem:
             log.info("ROS 2 at %s: %s", address, problem)
         finally:
             writer.transport.abort()

@@ -105,6 +105,8 @@ class Ros2Session(DoorSession):
         self._waiting.put_nowait(incoming)
 
     def _note_match(self, name: str, subscribed: bool) -> None:
+        if self.client not in self._door.clients:
+            return  # it is being disconnected, and nobody would end a subscription any more
         subscription = self.client.subscriptions.pop(name, None)
         if subscription is not None:
             self._door.publisher.unsubscribe(subscription)

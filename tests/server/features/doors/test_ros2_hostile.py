@@ -1,15 +1,21 @@
 """Programs of ROS 2 that send nonsense or too much, or read nothing: with the real Zenoh."""
 
 import asyncio
-from contextlib import suppress
+import select
+import socket
+from contextlib import ExitStack, suppress
 
 import pytest
 import zenoh
 
+from server.features.doors import ros2_door
 from server.features.doors.ros2_messages import PAYLOAD_MAX
+from server.features.doors.ros2_names import Endpoint
 from server.features.doors.ros2_node import read_payload
+from server.features.doors.ros2_session import Ros2Session
 from server.platform.settings import Settings
 from tests.server.blocks import picture_block
+from tests.server.features.doors.fuzz_rig import join_door
 from tests.server.features.doors.rig import (
     RosbridgeClient,
     hurry,
@@ -27,7 +33,7 @@ from tests.server.features.doors.ros2_rig import (
     tls_settings,
 )
 from tests.server.serving import Served
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 
 
 def test_what_is_not_valid_is_refused_and_counted(settings: Settings) -> None:
@@ -122,6 +128,51 @@ def test_a_flood_of_a_program_is_slowed_down_and_stop_passes(settings: Settings)
             # Megabytes may lie before the door, which reads them slowly; Zenoh waits 10 s to say goodbye.
             with suppress(zenoh.ZError):
                 await asyncio.to_thread(session.close)
+
+    play_ros2(settings, scenario)
+
+
+def test_of_many_connections_at_once_no_more_than_the_limit_are_let_in(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ros2_door, "HANDSHAKE_SECONDS", 10 * SECONDS)
+    refused_count = 50
+
+    async def scenario(served: Served) -> None:
+        with ExitStack() as stack:
+            # They wait in the listener's backlog, since the door does not run meanwhile.
+            connections = [
+                stack.enter_context(socket.create_connection(served.container.ros2.address))
+                for _ in range(ros2_door.STRANGERS_MAX + refused_count)
+            ]
+            for one in connections:
+                one.setblocking(False)
+
+            def ended() -> int:
+                return len(select.select(connections, [], [], 0)[0])
+
+            await until(lambda: ended() >= refused_count, "the others to be refused")
+            assert ended() == refused_count
+            assert served.container.doors.doors["ros2"].strangers == ros2_door.STRANGERS_MAX
+
+    play_ros2(settings, scenario)
+
+
+def test_a_subscriber_that_comes_while_its_program_is_disconnected_gets_nothing(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        container = served.container
+        door = container.doors.doors["ros2"]
+        with join_door(container, "ros2") as (client, pilot, commands):
+
+            async def writable() -> None:
+                pass
+
+            session = Ros2Session(client, pilot, container.doors, commands, writable)
+            (topic, *_) = door.publisher.channels
+            session.match(Endpoint("MP", topic, "", "", 1, False), True)
+            await asyncio.sleep(0)
+            await asyncio.sleep(0)
+            assert door.publisher.sources() == frozenset()
 
     play_ros2(settings, scenario)
 
