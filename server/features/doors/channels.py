@@ -2,6 +2,7 @@
 
 import base64
 import json
+import struct
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -112,12 +113,12 @@ def read_samples(block: Block) -> list[tuple[float, Value]]:
     """The times (s, steady clock) and samples of a block. Raises ValueError where it is damaged."""
     if block.topic.kind is Kind.ROWS:
         return [(time, record) for time, record in read_rows(block)]
-    if block.topic.kind is Kind.PICTURE:
-        payload = block.payload
-        return [(TIME.unpack_from(payload)[0], payload[JPEG_START:])]
     try:
+        if block.topic.kind is Kind.PICTURE:
+            payload = block.payload
+            return [(TIME.unpack_from(payload)[0], payload[JPEG_START:])]
         return [(float(one["time"]), one) for one in json.loads(block.payload)]
-    except (LookupError, TypeError, RecursionError) as problem:
+    except (LookupError, TypeError, RecursionError, struct.error) as problem:
         raise ValueError(f"a block of {block.topic.name} is damaged: {problem!r}") from problem
 
 

@@ -154,27 +154,34 @@ class FoxgloveSession(DoorSession):
             raise UnusableMessageError("A binary message is cut off.") from problem
 
     def _subscribe(self, said: dict[str, Any]) -> None:
-        for one in _list(said, "subscriptions"):
-            asked = mapping_of(one, "A subscription")
-            number, channel = _number(asked, "id"), self._channels.get(_number(asked, "channelId"))
-            if channel is None:
-                raise UnusableMessageError(f"There is no channel {asked['channelId']}.")
-            if number in self.client.subscriptions:
-                raise UnusableMessageError(f"The subscription {number} exists already.")
-            if len(self.client.subscriptions) >= SUBSCRIPTIONS_MAX:
-                raise UnusableMessageError(f"A program may have {SUBSCRIPTIONS_MAX} subscriptions.")
-            subscription = DoorSubscription(channel, _form(number))
-            self.client.subscriptions[number] = subscription
-            self._door.publisher.greet(self.client, subscription, self._doors.newest())
-            self._door.publisher.subscribe(self.client, subscription)
-        self._doors.count_audience()
+        try:
+            for one in _list(said, "subscriptions"):
+                self._subscribe_one(mapping_of(one, "A subscription"))
+        finally:
+            # Those before one that is refused hold.
+            self._doors.count_audience()
+
+    def _subscribe_one(self, asked: dict[str, Any]) -> None:
+        number, channel = _number(asked, "id"), self._channels.get(_number(asked, "channelId"))
+        if channel is None:
+            raise UnusableMessageError(f"There is no channel {asked['channelId']}.")
+        if number in self.client.subscriptions:
+            raise UnusableMessageError(f"The subscription {number} exists already.")
+        if len(self.client.subscriptions) >= SUBSCRIPTIONS_MAX:
+            raise UnusableMessageError(f"A program may have {SUBSCRIPTIONS_MAX} subscriptions.")
+        subscription = DoorSubscription(channel, _form(number))
+        self.client.subscriptions[number] = subscription
+        self._door.publisher.greet(self.client, subscription, self._doors.newest())
+        self._door.publisher.subscribe(self.client, subscription)
 
     def _unsubscribe(self, said: dict[str, Any]) -> None:
-        for number in _list(said, "subscriptionIds"):
-            subscription = self.client.subscriptions.pop(_whole(number), None)
-            if subscription is not None:
-                self._door.publisher.unsubscribe(subscription)
-        self._doors.count_audience()
+        try:
+            for number in _list(said, "subscriptionIds"):
+                subscription = self.client.subscriptions.pop(_whole(number), None)
+                if subscription is not None:
+                    self._door.publisher.unsubscribe(subscription)
+        finally:
+            self._doors.count_audience()
 
     def _advertise(self, said: dict[str, Any]) -> None:
         for one in _list(said, "channels"):
@@ -283,8 +290,10 @@ class FoxgloveSession(DoorSession):
     def _watch_parameters(self, said: dict[str, Any]) -> None:
         current = parameter_values(self._doors.document("parameters"))
         # The names of the robot's parameters alone: nobody fills the memory with others.
-        self._watched |= set(_names(said)) & current.keys()
-        self._known = current
+        added = (set(_names(said)) & current.keys()) - self._watched
+        self._watched |= added
+        # What the program has not been sent yet of the others stays so.
+        self._known |= {name: current[name] for name in added}
 
     def _forget_parameters(self, said: dict[str, Any]) -> None:
         self._watched -= set(_names(said))

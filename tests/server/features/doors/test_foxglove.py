@@ -1,3 +1,4 @@
+import asyncio
 import json
 from struct import pack, unpack_from
 from typing import Any
@@ -8,10 +9,16 @@ from websockets.exceptions import ConnectionClosed
 
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Depth
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block
+from server.container import Container
+from server.features.doors.channels import read_samples
+from server.features.doors.foxglove import FoxgloveSession
 from server.features.doors.foxglove_services import advertise_services
 from server.features.doors.session import INVALID_MAX
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block
+from tests.server.features.doors.fuzz_rig import join_door
 from tests.server.features.doors.rig import (
     address,
     imu,
@@ -165,6 +172,49 @@ def test_stop_is_carried_out_whatever_its_request_is(
             await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
 
     play_open(settings, scenario)
+
+
+def test_a_subscription_before_one_that_is_refused_holds(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with open_foxglove(served, await make_token(served, "read")) as socket:
+            listed = (await next_op(socket, "advertise"))["channels"]
+            (camera,) = (one["id"] for one in listed if one["topic"] == "/camera")
+            both = [{"id": 1, "channelId": camera}, {"id": 2, "channelId": 999}]
+            await socket.send(json.dumps({"op": "subscribe", "subscriptions": both}))
+            assert "no channel 999" in (await next_op(socket, "status"))["message"]
+            await served.heard("picture")
+            await socket.send(json.dumps({"op": "unsubscribe", "subscriptionIds": [1, "x"]}))
+            await next_op(socket, "status")
+            await until(lambda: not served.runtime.is_heard("picture"), "the picture to be left")
+
+    play_open(settings, scenario)
+
+
+def parameters_block(number: int, **values: float) -> Block:
+    """The document of these parameters."""
+    listed = [{"name": name, "value": value} for name, value in values.items()]
+    data = json.dumps([{"time": 1.0, "parameters": listed}]).encode()
+    return Block.of(BY_NAME["parameters"], 1, number, data)
+
+
+def test_a_change_is_sent_also_where_another_parameter_is_watched_before(container: Container) -> None:
+    async def scenario() -> list[bytes | str]:
+        doors = container.doors
+        doors._open = True
+        with join_door(container, "foxglove") as (client, pilot, commands):
+            session = FoxgloveSession(client, pilot, doors, doors.doors["foxglove"], commands)
+            for number, (watched, value) in enumerate((("a", 1), ("b", 2))):
+                doors.see(parameters_block(number, a=value, b=0))
+                session.act(json.dumps({"op": "subscribeParameterUpdates", "parameterNames": [watched]}))
+            return session._parameter_changes()
+
+    (changes,) = asyncio.run(scenario())
+    assert json.loads(changes)["parameters"] == [{"name": "a", "value": 2}]
+
+
+def test_a_picture_that_is_cut_off_is_a_damaged_block() -> None:
+    with pytest.raises(ValueError, match="picture is damaged"):
+        read_samples(Block.of(BY_NAME["picture"], 1, 0, bytes(7)))
 
 
 def test_time_never_goes_back(settings: Settings) -> None:
