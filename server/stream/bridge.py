@@ -159,11 +159,11 @@ class Bridge:
         except NoAnswerError as problem:
             raise RuntimeSilentError(str(problem), waited=False) from problem
 
-    def watch_pictures(self, first_numbers: frozenset[str]) -> None:
+    def watch_pictures(self, names: frozenset[str]) -> None:
         """Subscribe to these picture topics and no other; a picture is encoded only for subscribers."""
-        for name in self._pictures.keys() - first_numbers:
+        for name in self._pictures.keys() - names:
             self._pictures.pop(name).close()
-        for name in first_numbers - self._pictures.keys():
+        for name in names - self._pictures.keys():
             self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:

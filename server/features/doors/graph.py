@@ -1,6 +1,5 @@
 """The connections between programs, topics and services at a door, as Foxglove draws them."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -43,8 +42,8 @@ def list_changes(before: Graph, after: Graph) -> dict[str, list[Any]]:
         "publishedTopics": _changed(before.published, after.published, "publisherIds"),
         "subscribedTopics": _changed(before.subscribed, after.subscribed, "subscriberIds"),
         "advertisedServices": _changed(before.services, after.services, "providerIds"),
-        "removedTopics": _sorted(gone - after.published.keys() - after.subscribed.keys()),
-        "removedServices": _sorted(before.services.keys() - after.services.keys()),
+        "removedTopics": sorted(gone - after.published.keys() - after.subscribed.keys()),
+        "removedServices": sorted(before.services.keys() - after.services.keys()),
     }
 
 
@@ -55,7 +54,3 @@ def _changed(before: Edges, after: Edges, key: str) -> list[dict[str, Any]]:
         for name in names
         if before.get(name, []) != after.get(name, [])
     ]
-
-
-def _sorted(names: Iterable[str]) -> list[str]:
-    return sorted(names)

@@ -1,4 +1,4 @@
-"""Layouts of Foxglove and Lichtblick for this robot, which they fetch as assets, or a person as a file."""
+"""Layouts for Foxglove and Lichtblick: sent to them as assets; people import the files."""
 
 from pathlib import Path
 

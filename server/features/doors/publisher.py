@@ -13,9 +13,7 @@ Evict = Callable[[DoorClient, EvictedError], None]
 class Publisher:
     """The channels of one door, and who subscribes to them."""
 
-    def __init__(
-        self, channels: Iterable[DoorChannel], evict: Callable[[DoorClient, EvictedError], None]
-    ) -> None:
+    def __init__(self, channels: Iterable[DoorChannel], evict: Evict) -> None:
         self.channels = {channel.name: channel for channel in channels}
         self._evict = evict
         self._by_source: defaultdict[str, list[DoorChannel]] = defaultdict(list)
