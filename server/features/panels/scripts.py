@@ -1,5 +1,6 @@
 """The scripts of your own panels, in a folder of the data folder."""
 
+import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -32,7 +33,8 @@ class OwnPanelScript(BaseModel):
 
 def list_panels(folder: Path) -> Sequence[OwnPanel]:
     """All `*.js` of the folder, by name; none if there is no such folder."""
-    return [OwnPanel(name=file.stem, problem=_problem(file)) for file in sorted(folder.glob("*.js"))]
+    files = sorted(folder.glob("*.js"))
+    return [OwnPanel(name=_readable(file.stem), problem=_problem(file)) for file in files]
 
 
 def read_panel(folder: Path, name: str) -> OwnPanelScript:
@@ -49,7 +51,7 @@ def read_panel(folder: Path, name: str) -> OwnPanelScript:
 
 def _problem(file: Path) -> str:
     if not NAME.fullmatch(file.stem):
-        return f"{file.name} needs another name: up to 40 letters without accents, digits, spaces, - and _."
+        return f"{_readable(file.name)} needs another name: up to 40 letters without accents, digits, spaces, - and _."
     try:
         if file.stat().st_size > SCRIPT_BYTES_MAX:
             return f"{file.name} has more than {SCRIPT_BYTES_MAX // 1000} kB."
@@ -59,3 +61,8 @@ def _problem(file: Path) -> str:
     except OSError as problem:
         return f"{file.name} cannot be read: {problem.strerror}."
     return ""
+
+
+def _readable(name: str) -> str:
+    """A file's name without what cannot be sent: it may have come in another encoding than UTF-8."""
+    return os.fsencode(name).decode(errors="replace")

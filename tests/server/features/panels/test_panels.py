@@ -1,6 +1,7 @@
 """Own panels: the files that count as panels, and the frame that isolates them."""
 
 import asyncio
+import os
 import re
 import subprocess
 from base64 import b64encode
@@ -66,10 +67,14 @@ def test_webrtc_is_gone_before_a_panel_opens() -> None:
 
 def test_panels_are_listed_and_served(settings: Settings) -> None:
     put(settings.data.panels, "Climb rate.js", b"// hello")
+    # From an archive whose names are in Latin-1.
+    put(settings.data.panels, os.fsdecode(b"tief\xe4.js"))
 
     async def scenario() -> None:
         async with serve(settings) as served:
-            assert (await served.api.get("/panels")).json() == [{"name": "Climb rate", "problem": ""}]
+            fine, odd = (await served.api.get("/panels")).json()
+            assert fine == {"name": "Climb rate", "problem": ""}
+            assert (odd["name"], "needs another name" in odd["problem"]) == ("tief\ufffd", True)
             script = await served.api.get("/panels/own/Climb%20rate")
             assert script.json() == {"name": "Climb rate", "script": "// hello"}
             gone = await served.api.get("/panels/own/nothing")
