@@ -51,7 +51,8 @@ def read_panel(folder: Path, name: str) -> OwnPanelScript:
 
 def _problem(file: Path) -> str:
     if not NAME.fullmatch(file.stem):
-        return f"{_readable(file.name)} needs another name: up to 40 letters without accents, digits, spaces, - and _."
+        allowed = "up to 40 letters without accents, digits, spaces, - and _"
+        return f"{_readable(file.name)} needs another name: {allowed}."
     try:
         if file.stat().st_size > SCRIPT_BYTES_MAX:
             return f"{file.name} has more than {SCRIPT_BYTES_MAX // 1000} kB."
