@@ -94,10 +94,13 @@ class Authority:
         return made
 
     def revoke(self, name: str) -> None:
-        """Take a certificate out of force."""
+        """Take a simulator's certificate out of force."""
         found = [one for one in self.issued() if one.name == name]
         if not found:
-            raise SetupError(f"There is no certificate {name}: mucat certificate list shows those in force.")
+            raise SetupError(
+                f"There is no certificate {name} of a simulator: mucat certificate list shows those in "
+                "force. That of a ROS 2 program is revoked under People, or with mucat access revoke."
+            )
         try:
             for one in found:
                 one.file.unlink()
@@ -105,7 +108,7 @@ class Authority:
             raise SetupError(f"The certificate {name} cannot be revoked: {problem}.") from problem
 
     def issued(self) -> list[IssuedCertificate]:
-        """The certificates in force, by name."""
+        """The simulators' certificates in force, by name."""
         files = sorted((self._folder / SIMULATORS).glob("*.pem"))
         return [
             IssuedCertificate(file.stem.partition(".")[0], datetime.fromtimestamp(file.stat().st_mtime), file)

@@ -19,7 +19,7 @@ RESTART = "The running robot takes note when mucat run is ended and started agai
 
 @click.group()
 def certificate() -> None:
-    """Issue and revoke the certificates of simulators on other computers, and of ROS 2 programs."""
+    """Issue certificates of simulators and ROS 2 programs, and revoke those of simulators."""
 
 
 @certificate.command()
@@ -90,7 +90,7 @@ def override(folder: str, listen: str) -> str:
 @click.argument("name")
 @with_settings
 def revoke(settings: Settings, name: str) -> None:
-    """Revoke a certificate from the next start of the robot on."""
+    """Revoke a simulator's certificate from the next start of the robot on."""
     Authority(settings).revoke(name)
     echo(f"The certificate {name} is revoked.")
     _say_restart(settings)
@@ -99,7 +99,7 @@ def revoke(settings: Settings, name: str) -> None:
 @certificate.command("list")
 @with_settings
 def list_certificates(settings: Settings) -> None:
-    """List the certificates in force."""
+    """List the simulators' certificates in force."""
     found = Authority(settings).issued()
     for one in found:
         echo(f"{one.issued:%Y-%m-%d %H:%M}  {one.name}")

@@ -36,7 +36,9 @@ def test_certificates_are_issued_listed_and_revoked(
         "The running robot takes note when mucat run is ended and started again.\n"
     )
     assert "There is none" in shell("list")
-    assert "There is no certificate lab" in shell("revoke", "lab", status=1)
+    refused = shell("revoke", "lab", status=1)
+    assert "There is no certificate lab" in refused
+    assert "ROS 2 program is revoked under People, or with mucat access revoke" in refused
 
 
 def test_a_simulator_without_its_files_is_refused_in_words(
