@@ -7,7 +7,7 @@ before the runtime's last start cannot be undone: a start restores the defaults.
 import asyncio
 import json
 import logging
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -48,7 +48,7 @@ class Changes:
     """Sends commands to the runtime, and stores the changes of parameters in the history.
 
     All commands except STOP pass here. Every method raises RefusedError, RuntimeSilentError, or StoreError if
-    the history cannot be read.
+    the history cannot be read. What cannot be stored in it is in the server's log alone.
     """
 
     def __init__(self, store: Store, bridge: Bridge) -> None:
@@ -56,6 +56,8 @@ class Changes:
         self._bridge = bridge
         self._undoing = asyncio.Lock()
         self._groups: list[_Group] = []
+        self._undone: dict[int, str] = {}
+        """Who has undone the changes for which that could not be stored."""
 
     async def command(self, who: str, command: RobotCommand, why: str = "") -> Restored:
         """Send a command; returns the parameters that it changed, and those that it left out."""
@@ -94,8 +96,9 @@ class Changes:
         query = select(ParameterChangeRow).order_by(desc(col(ParameterChangeRow.id))).limit(SHOWN)
         with self._store.read() as database:
             rows = database.exec(query).all()
-            newest = _newest(rows, self._bridge.run)
-            return [_show(row, newest is not None and row.id == newest.id) for row in rows]
+            open_ = (row.id for row in rows if row.run == self._bridge.run and not self._undone_by(row))
+            newest = next(open_, None)
+            return [_show(row, self._undone_by(row), row.id == newest) for row in rows]
 
     async def undo(self, who: str, change: int) -> Restored:
         """Undo a change, which must be the newest that is not undone."""
@@ -113,11 +116,7 @@ class Changes:
                     expected={one.name: one.after for one in values},
                 )
             )
-            await self._store.write(
-                lambda connection: connection.execute(
-                    update(ParameterChangeRow).where(col(ParameterChangeRow.id) == change).values(undone=who)
-                )
-            )
+            await self._note_undone(who, change)
         undone = [ChangedValue(name=one.name, before=one.after, after=one.before) for one in values]
         return Restored(changed=undone, left_out=[])
 
@@ -135,6 +134,21 @@ class Changes:
         if changed:
             await self._note(group.who, group.why, changed)
 
+    async def _note_undone(self, who: str, change: int) -> None:
+        try:
+            await self._store.write(
+                lambda connection: connection.execute(
+                    update(ParameterChangeRow).where(col(ParameterChangeRow.id) == change).values(undone=who)
+                )
+            )
+        except StoreError as problem:
+            # It is undone: were it the newest still, no change before it could be undone.
+            self._undone[change] = who
+            log.warning("the undoing of a change of parameters cannot be stored: %s", problem)
+
+    def _undone_by(self, row: ParameterChangeRow) -> str:
+        return row.undone or self._undone.get(row.id or 0, "")
+
     async def _note(self, who: str, why: str, changed: Mapping[str, tuple[Any, Any]]) -> None:
         row = ParameterChangeRow(
             time=time(),
@@ -151,17 +165,14 @@ class Changes:
 
     def _find_newest(self) -> ParameterChangeRow | None:
         mine = col(ParameterChangeRow.run) == self._bridge.run
-        query = select(ParameterChangeRow).where(mine, col(ParameterChangeRow.undone) == "")
+        stored = col(ParameterChangeRow.undone) == "", col(ParameterChangeRow.id).not_in(self._undone)
+        query = select(ParameterChangeRow).where(mine, *stored)
         with self._store.read() as database:
             return database.exec(query.order_by(desc(col(ParameterChangeRow.id))).limit(1)).first()
 
 
 def _changed_values(changed: Mapping[str, tuple[Any, Any]]) -> list[ChangedValue]:
     return [ChangedValue(name=name, before=before, after=after) for name, (before, after) in changed.items()]
-
-
-def _newest(rows: Sequence[ParameterChangeRow], run: str) -> ParameterChangeRow | None:
-    return next((row for row in rows if row.run == run and not row.undone), None)
 
 
 def _insert(connection: Connection, row: ParameterChangeRow) -> None:
@@ -173,13 +184,13 @@ def _values(row: ParameterChangeRow) -> list[ChangedValue]:
     return [ChangedValue.model_validate(one) for one in json.loads(row.changed)]
 
 
-def _show(row: ParameterChangeRow, undoable: bool) -> Change:
+def _show(row: ParameterChangeRow, undone: str, undoable: bool) -> Change:
     return Change(
         id=row.id or 0,
         time=datetime.fromtimestamp(row.time, UTC),
         who=row.who,
         why=row.why,
         values=_values(row),
-        undone=row.undone,
+        undone=undone,
         undoable=undoable,
     )

@@ -11,6 +11,7 @@ from robot_runtime.contract.commands import SteeringCommand
 from server.features.parameters.changes import Send
 from server.features.parameters.profiles import ProfileError, read_file
 from server.platform.settings import Settings
+from server.platform.store import StoreError
 from tests.server.blocks import state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
@@ -83,6 +84,27 @@ def test_changes_are_listed_with_who_made_them_and_undone_one_by_one(settings: S
         (await served.api.post("/parameters/undo", json={"change": first["id"]})).raise_for_status()
         over = await served.api.post("/parameters/undo", json={"change": first["id"]})
         assert "no change to undo" in over.json()["detail"]
+
+    play(settings, scenario)
+
+
+def test_an_undo_that_cannot_be_stored_is_done_and_the_one_before_it_can_follow(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def fail(_: object) -> None:
+        raise StoreError("The disk is full.")
+
+    async def scenario(served: Served) -> None:
+        await change(served, 2.0, 3.0)
+        await change(served, 3.0, 4.0)
+        newest, first = (await served.api.get("/parameters/changes")).json()
+        with monkeypatch.context() as full:
+            full.setattr(served.container.store, "write", fail)
+            answer = await served.api.post("/parameters/undo", json={"change": newest["id"]})
+        assert answer.raise_for_status().json()["changed"][0]["after"] == 3.0
+        listed = (await served.api.get("/parameters/changes")).json()
+        assert [(one["undone"] != "", one["undoable"]) for one in listed] == [(True, False), (False, True)]
+        (await served.api.post("/parameters/undo", json={"change": first["id"]})).raise_for_status()
 
     play(settings, scenario)
 
