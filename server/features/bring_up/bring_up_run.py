@@ -155,8 +155,10 @@ class BringUpRun:
         )
 
     async def _run(self, reserved: "asyncio.Future[None]") -> None:
+        begun = False
         try:
             async with self._reserve("The bring-up") as arguments:
+                begun = True
                 reserved.set_result(None)
                 await self._work(arguments[arguments.index("--port") + 1])
         except RefusedError as problem:
@@ -164,11 +166,14 @@ class BringUpRun:
                 self._problem = str(problem)
             else:
                 reserved.set_exception(problem)
+        except Exception as why:
+            log.exception("the bring-up failed")
+            self._problem = f"Internal error ({why!r}); the server's log has details."
         finally:
-            self._phase, self._words = (
-                "idle",
-                "" if self._problem else "The robot's firmware is on its board.",
-            )
+            if begun:
+                self._problem = " ".join(filter(None, (self._problem, self._board.problem)))
+            self._words = "The robot's firmware is on its board." if begun and not self._problem else ""
+            self._phase = "idle"
             if not reserved.done():
                 reserved.set_exception(RefusedError("The bring-up ended before it began."))
 
@@ -177,7 +182,7 @@ class BringUpRun:
             self._words = "The bring-up's sketch is uploaded to the board."
             sketch = bring_up_path(self._settings.build, self._settings.link.baud)
             if problem := await self._board.upload(sketch):
-                self._problem = f"The sketch is not on the board: {problem}"
+                self._problem = f"The sketch is not on the board: {problem}."
                 return
             self._words = "The board is expected to answer."
             async with self._at_hand():
@@ -232,7 +237,7 @@ class BringUpRun:
         try:
             write_whole(self._settings.data.bring_up, text.encode())
         except OSError as problem:
-            self._problem = f"The report could not be written: {problem.strerror}"
+            self._problem = f"The report could not be written: {problem.strerror}."
 
     def _describe(self, step: Step) -> BringUpStep:
         procedure = self._procedure

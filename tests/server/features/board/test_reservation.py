@@ -1,10 +1,7 @@
 """The robot's board passed between runtime and lab. For uploads to a board see test_reserved_board.py."""
 
-import asyncio
-import sys
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,44 +9,12 @@ import pytest
 
 import server.features.board.reservation as handover_module
 import server.stream.bridge as bridge_module
-from robot_runtime.config import LinkConfig
 from robot_runtime.errors import RefusedError
 from server.platform.settings import Settings
-from server.processes.managed_process import ProcessCommand
 from tests.server.blocks import state_block
-from tests.server.serving import Served, serve
+from tests.server.features.board.real_board import Robot, disarming
+from tests.server.serving import Served
 from tests.server.waiting import until
-
-
-class Robot:
-    """A real robot's settings, with an existing port and a stand-in for the upload."""
-
-    def __init__(self, settings: Settings, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.uploads, self.started = folder / "uploads", folder / "started"
-        port = folder / "port"
-        port.touch()
-        self.settings = replace(settings, mode="robot", link=LinkConfig(port=str(port), reset="dtr"))
-        code = f"import pathlib, time; p = pathlib.Path({str(self.started)!r})\n"
-        code += f"p.write_text(str(pathlib.Path({str(self.uploads)!r}).exists()))\ntime.sleep(600)"
-        self.runtime = ProcessCommand("runtime", "robot's runtime", (sys.executable, "-c", code))
-        self._script = folder / "upload"
-        self.upload_does("exit 0")
-        monkeypatch.setattr(sys, "executable", str(self._script))
-
-    def upload_does(self, program: str) -> None:
-        self._script.write_text(f'#!/bin/sh\necho "$*" >> {self.uploads}\n{program}\n', encoding="utf-8")
-        self._script.chmod(0o755)
-
-    @property
-    def marker(self) -> Path:
-        return self.settings.data.firmware_away
-
-    def play(self, scenario: Callable[[Served], Awaitable[None]]) -> None:
-        async def run() -> None:
-            async with serve(self.settings, [self.runtime]) as served:
-                await scenario(served)
-
-        asyncio.run(run())
 
 
 @pytest.fixture
@@ -71,17 +36,11 @@ async def health(served: Served) -> dict[str, tuple[str, str]]:
 @asynccontextmanager
 async def reserved_reason(served: Served, name: str = "tested") -> AsyncIterator[list[str]]:
     """Reserve the board, with a runtime that reports after STOP that the robot is disarmed."""
-    asked = len(served.runtime.asked)
-
-    async def disarm() -> None:
-        await until(lambda: len(served.runtime.asked) > asked, "STOP")
-        now = served.container.clock.now()
-        served.runtime.publish(state_block(1000 * (asked + 1), time=now, armed=False))
-
-    disarming = asyncio.create_task(disarm())
-    async with served.container.board_reservation.reserve(f"The communication test “{name}”") as arguments:
+    async with (
+        disarming(served),
+        served.container.board_reservation.reserve(f"The communication test “{name}”") as arguments,
+    ):
         yield arguments
-    await disarming
 
 
 def test_the_board_is_reserved_and_released(robot: Robot) -> None:

@@ -1,0 +1,60 @@
+"""The end of a bring-up on a board that refuses uploads, and one that cannot begin."""
+
+from pathlib import Path
+
+import pytest
+
+import server.features.bring_up.bring_up_run as bring_up_run
+from robot_runtime.errors import RefusedError
+from server.platform.settings import Settings
+from tests.server.features.board.real_board import Robot, disarming
+from tests.server.serving import Served
+from tests.server.waiting import until
+
+
+@pytest.fixture
+def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Robot:
+    return Robot(settings, tmp_path, monkeypatch)
+
+
+def test_it_says_at_its_end_that_the_firmware_is_not_on_the_board(robot: Robot) -> None:
+    async def scenario(served: Served) -> None:
+        robot.upload_does("echo avrdude: not in sync; exit 1")
+        bring_up = served.container.bring_up
+        async with disarming(served):
+            await bring_up.begin()
+        await until(lambda: bring_up.state().phase == "idle", "its end")
+        state = bring_up.state()
+        assert state.words == ""
+        assert "The sketch is not on the board: avrdude: not in sync" in state.problem
+        assert "The robot's firmware is not on its board: avrdude: not in sync" in state.problem
+
+    robot.play(scenario)
+
+
+def test_one_that_is_refused_says_nothing_about_the_board(robot: Robot) -> None:
+    async def scenario(served: Served) -> None:
+        assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
+        with pytest.raises(RefusedError, match="“dive” is being recorded"):
+            await served.container.bring_up.begin()
+        state = served.container.bring_up.state()
+        assert (state.phase, state.words, state.problem) == ("idle", "", "")
+
+    robot.play(scenario)
+
+
+def test_an_error_of_the_software_is_said(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise ValueError("no such thing")
+
+    monkeypatch.setattr(bring_up_run, "SerialBench", fail)
+
+    async def scenario(served: Served) -> None:
+        bring_up = served.container.bring_up
+        async with disarming(served):
+            await bring_up.begin()
+        await until(lambda: bring_up.state().phase == "idle", "its end")
+        state = bring_up.state()
+        assert (state.words, "Internal error (ValueError('no such thing'))" in state.problem) == ("", True)
+
+    robot.play(scenario)
