@@ -209,7 +209,10 @@ class BringUpRun:
         if not self._settings.emulated_board:
             yield
             return
-        await self._processes.pause("simulator", ON_THE_BENCH)
+        simulator = self._processes.get("simulator")
+        # One that was moved to another computer stays there.
+        if simulator is not None and simulator.state != "paused":
+            await self._processes.pause("simulator", ON_THE_BENCH)
         try:
             hands = await asyncio.to_thread(Hands(self._settings.data.board_socket).__enter__)
             try:
@@ -219,7 +222,8 @@ class BringUpRun:
                 self._hands = None
                 await asyncio.to_thread(hands.__exit__, None, None, None)
         finally:
-            self._processes.resume("simulator")
+            if simulator is not None and simulator.problem == ON_THE_BENCH:
+                self._processes.resume("simulator")
 
     async def _wait(self) -> None:
         while not self._over.is_set():

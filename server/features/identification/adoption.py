@@ -16,7 +16,7 @@ from server.features.parameters.changes import Changes
 from server.health.monitor import HealthMonitor
 from server.platform.disk_space import explain_write_error
 from server.platform.settings import Settings
-from server.processes.supervisor import ProcessSupervisor
+from server.processes.supervisor import SIMULATION_ELSEWHERE, ProcessSupervisor
 from server.stream.bridge import RuntimeSilentError
 
 SIMULATOR = "simulator"
@@ -115,6 +115,9 @@ class CraftAdoption:
         """Restart the simulator with the new craft, if it runs here."""
         simulator = self._processes.get(SIMULATOR)
         if simulator is None:
+            return []
+        if simulator.state == "paused" and simulator.problem != SIMULATION_ELSEWHERE:
+            # As during a bring-up: it starts with this craft afterwards.
             return []
         if simulator.state == "paused":
             return ["The simulator on another computer must be started again with this craft file (--craft)."]

@@ -28,6 +28,8 @@ class Robot:
         code = f"import pathlib, time; p = pathlib.Path({str(self.started)!r})\n"
         code += f"p.write_text(str(pathlib.Path({str(self.uploads)!r}).exists()))\ntime.sleep(600)"
         self.runtime = ProcessCommand("runtime", "robot's runtime", (sys.executable, "-c", code))
+        asleep = (sys.executable, "-c", "import time; time.sleep(600)")
+        self.simulator = ProcessCommand("simulator", "simulator", asleep)
         self._script = folder / "upload"
         self.upload_does("exit 0")
         monkeypatch.setattr(sys, "executable", str(self._script))
@@ -42,7 +44,8 @@ class Robot:
 
     def play(self, scenario: Callable[[Served], Awaitable[None]]) -> None:
         async def run() -> None:
-            async with serve(self.settings, [self.runtime]) as served:
+            commands = [self.runtime] if self.settings.mode == "robot" else [self.runtime, self.simulator]
+            async with serve(self.settings, commands) as served:
                 await scenario(served)
 
         asyncio.run(run())

@@ -1,12 +1,16 @@
 """The end of a bring-up on a board that refuses uploads, and one that cannot begin."""
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
 import server.features.bring_up.bring_up_run as bring_up_run
+from robot_runtime.config import HilConfig
 from robot_runtime.errors import RefusedError
 from server.platform.settings import Settings
+from server.processes.supervisor import SIMULATION_ELSEWHERE
 from tests.server.features.board.real_board import Robot, disarming
 from tests.server.serving import Served
 from tests.server.waiting import until
@@ -56,5 +60,28 @@ def test_an_error_of_the_software_is_said(robot: Robot, monkeypatch: pytest.Monk
         await until(lambda: bring_up.state().phase == "idle", "its end")
         state = bring_up.state()
         assert (state.words, "Internal error (ValueError('no such thing'))" in state.problem) == ("", True)
+
+    robot.play(scenario)
+
+
+@pytest.mark.parametrize("place", ["here", "elsewhere"])
+def test_in_the_loop_the_simulator_is_where_it_was_before(
+    robot: Robot, place: Literal["here", "elsewhere"]
+) -> None:
+    """The emulated board is gone, so that the bring-up ends once it has taken it out of the water."""
+    robot.settings = replace(robot.settings, mode="hil", hil=HilConfig(simulator=place))
+    robot.settings.data.board_tty.touch()
+
+    async def scenario(served: Served) -> None:
+        bring_up, simulator = served.container.bring_up, served.container.processes.get("simulator")
+        assert simulator is not None
+        at_first = "running" if place == "here" else "paused"
+        await until(lambda: simulator.state == at_first, "the simulator")
+        async with disarming(served):
+            await bring_up.begin()
+        await until(lambda: bring_up.state().phase == "idle", "its end")
+        assert "no emulated board" in bring_up.state().problem
+        await until(lambda: simulator.state == at_first, "the simulator again")
+        assert (simulator.problem == SIMULATION_ELSEWHERE) == (place == "elsewhere")
 
     robot.play(scenario)

@@ -1,6 +1,8 @@
-"""Adoptions: twice, and beside a configuration that cannot be read."""
+"""Adoptions: twice, beside a configuration that cannot be read, and beside a simulator that rests."""
 
 import asyncio
+import sys
+from dataclasses import replace
 from typing import Any, cast
 
 import pytest
@@ -8,6 +10,9 @@ import pytest
 from robot_runtime.contract.commands import ControllerCommand
 from server.features.identification.adoption import CraftAdoption
 from server.platform.settings import Settings
+from server.processes.managed_process import ProcessCommand
+from server.processes.supervisor import SIMULATION_ELSEWHERE
+from tests.server.serving import serve
 
 LIGHT = 'title = "Light"\n[craft]\nmass = 2.5\n'
 HEAVY = 'title = "Heavy"\n[craft]\nmass = 3.1\n'
@@ -63,3 +68,22 @@ def test_an_adoption_beside_a_configuration_that_cannot_be_read_says_so(
     assert "rate is 0" in last
     assert settings.data.craft.read_text() == HEAVY
     assert robot.gains == []
+
+
+@pytest.mark.parametrize(
+    ("why", "restart"), [(SIMULATION_ELSEWHERE, True), ("The emulated robot lies on a workbench.", False)]
+)
+def test_only_a_simulator_on_another_computer_must_be_started_again(
+    settings: Settings, why: str, restart: bool
+) -> None:
+    asleep = (sys.executable, "-c", "import time; time.sleep(600)")
+
+    async def scenario() -> None:
+        simulator = ProcessCommand("simulator", "simulator", asleep)
+        async with serve(replace(settings, mode="hil"), [simulator]) as served:
+            await served.container.processes.pause("simulator", why)
+            effects = " ".join(await served.container.craft_adoption.adopt(HEAVY, ""))
+            assert ("must be started again with this craft" in effects) == restart
+            assert "was started again" not in effects
+
+    asyncio.run(scenario())
