@@ -15,6 +15,7 @@ from server.features.installation.release import SIGNATURE, check_signature, rea
 from server.features.installation.report import hold
 from server.features.installation.updater import Updater
 from server.platform.command_line import FILE, CommandError
+from server.platform.last_configuration import read_usable_settings
 from server.platform.settings import SetupError
 from server.platform.terminal import echo
 
@@ -62,18 +63,16 @@ def update(release: Path | None, *, asked_by_page: bool) -> None:
     _require_root("update", dry=False)
     os.umask(OPEN_UMASK)
     places, effects = InstallPlaces(), Effects(echo)
-    if asked_by_page:
-        effects.remove(places.request)
-        release = places.requested
-    if release is None:
+    if release is None and not asked_by_page:
         raise click.UsageError("Name the release: a folder or a ZIP file.")
     try:
-        version = Updater(places, effects).update(release.absolute())
+        version = (
+            Updater(places, effects).update(release.absolute())
+            if release
+            else _update_for_page(places, effects)
+        )
     except SetupError as problem:
         raise CommandError(str(problem)) from problem
-    finally:
-        if asked_by_page:
-            effects.remove(places.requested)
     echo(f"µ-CAT {version} is in use. sudo mucat rollback goes back.")
 
 
@@ -117,9 +116,26 @@ def _require_root(command: str, *, dry: bool) -> None:
         raise CommandError(f"This changes the computer: sudo mucat {command}. With --dry-run it says how.")
 
 
+def _update_for_page(places: InstallPlaces, effects: Effects) -> str:
+    """Update to the release that the page has sent, once; returns its version. Raises SetupError."""
+    effects.remove(places.request)
+    try:
+        return Updater(places, effects).update(places.requested)
+    finally:
+        effects.remove(places.requested)
+
+
+def page_address(places: InstallPlaces) -> str:
+    """The page's address for other computers, by the installed configuration. Raises SetupError."""
+    settings = read_usable_settings(places.config, places.data, None, None, {})
+    return settings.base_url(f"{socket.gethostname().lower()}.local")
+
+
 def _greet(places: InstallPlaces, effects: Effects) -> None:
     """Print the doctor's findings, and the link by which the first browser signs in."""
-    echo(f"The page: https://{socket.gethostname()}.local:8000 (the name needs avahi-daemon)")
+    with suppress(SetupError):
+        # What is wrong with the configuration, the doctor says.
+        echo(f"The page: {page_address(places)} (a name that ends in .local needs avahi-daemon)")
     with suppress(CommandFailedError):
         # Its status is 1 where something is wrong.
         echo(effects.run(places.command, "doctor", quiet=True, accepted=(0, 1)))

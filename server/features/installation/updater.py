@@ -190,8 +190,10 @@ class Updater:
         found = list_wrong(self._effects, self._places, environment)
         try:
             known = list_wrong(self._effects, self._places, self._places.current)
-        except CommandFailedError:
-            known = {}
+        except CommandFailedError as problem:
+            # An update may be what mends it; the new version must be healthy all the same.
+            self._effects.say(f"The doctor in use cannot be asked: {problem}")
+            return
         if new := sorted(found.keys() - known.keys()):
             raise SetupError(f"The new version would not work here: {found[new[0]]} Nothing was changed.")
 

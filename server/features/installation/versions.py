@@ -12,6 +12,9 @@ from server.platform.settings import DataFolder, SetupError
 ORDER_SECONDS = 600.0
 """A copy of a large database on a slow card, or an upload of the firmware."""
 
+DOCTOR_SECONDS = 300.0
+"""More than the doctor's own limit for the libraries, so that it can name the one that takes too long."""
+
 
 def order(effects: Effects, places: InstallPlaces, environment: Path, *words: str | Path) -> str:
     """Carry out a command by a version's own `mucat`. Raises CommandFailedError."""
@@ -59,6 +62,7 @@ def list_wrong(effects: Effects, places: InstallPlaces, environment: Path) -> di
     answer = effects.run(
         *("runuser", "-u", USER, "--", environment / "bin/mucat", "doctor", "--json"),
         environment=_environment(places),
+        seconds=DOCTOR_SECONDS,
         quiet=True,
         accepted=(0, 1),
     )

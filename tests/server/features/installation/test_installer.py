@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import socket
 import subprocess
 from pathlib import Path
 
@@ -9,12 +10,13 @@ import pytest
 
 from robot_runtime.config import load
 from server.features.installation.boot_settings import describe_change, edit_config, edit_kernel_line
+from server.features.installation.command import page_address
 from server.features.installation.environments import WHEELS
 from server.features.installation.installer import adapt_config
 from server.features.installation.places import COMPLETE, InstallPlaces
 from server.features.installation.release import read_release
 from server.features.installation.units import write_command, write_units
-from server.platform.settings import SetupError
+from server.platform.settings import Settings, SetupError
 from tests.server.features.installation.computer import (
     CONFIG_TXT,
     KERNEL_LINE,
@@ -188,6 +190,18 @@ def test_another_computer_has_no_boot_settings_and_an_emulated_board(tmp_path: P
     assert load(computer.places.config).robot.mode == "emulated"
     assert not (tmp_path / "pc/boot").exists()
     assert not computer.places.journal_limit.exists()
+
+
+def test_the_page_s_address_is_that_of_the_configuration(settings: Settings, release: Path) -> None:
+    # The paths of its sockets must be short.
+    computer = Computer(settings.data.path.parent / "pi")
+    install(computer, release)
+    name = f"{socket.gethostname().lower()}.local"
+    assert page_address(computer.places) == f"https://{name}:8000"
+    config = computer.places.config
+    text = config.read_text()
+    config.write_text(text.replace("port = 8000", "port = 8123").replace("tls = true", "tls = false"))
+    assert page_address(computer.places) == f"http://{name}:8123"
 
 
 def test_it_is_removed_without_the_data(tmp_path: Path, release: Path) -> None:

@@ -239,6 +239,15 @@ def test_a_known_fault_of_the_computer_does_not_hinder_an_update(
     assert update(computer, release) == "2.0.0"
 
 
+def test_old_faults_do_not_hinder_the_update_of_a_doctor_that_cannot_be_asked(
+    tmp_path: Path, keys: Path, release: Path
+) -> None:
+    computer = installed(tmp_path / "pi", keys)
+    computer.wrong = {"1.0.0": "The disk is slow.", "2.0.0": "The disk is slow."}
+    computer.broken["current/bin/mucat doctor"] = "It takes more than 120 s."
+    assert update(computer, release) == "2.0.0"
+
+
 @pytest.mark.parametrize(
     ("content", "words"), [(b"PK\3\4 cut", "no whole ZIP file"), (b"", "no whole ZIP file")]
 )
