@@ -5,6 +5,7 @@
 
 #include "fins/drv8830.h"
 #include "fins/fin_law.h"
+#include "fins/position_loop.h"
 #include "sensors/as5040.h"
 
 namespace mucat {
@@ -14,8 +15,7 @@ constexpr float kSpeedPerStep = 0.315f;    // rad/s for a step of the bridge's v
 constexpr float kTimeConstant = 0.03f;     // s
 constexpr float kDecayPerTick = 0.71653f;  // exp(-kTickSeconds / kTimeConstant)
 constexpr int8_t kDriveMin = 6;            // as for the H-bridge
-constexpr float kCountsPerRadian = 1024 / (2 * kPi);
-constexpr int16_t kCountsPerTurn = 1024;
+constexpr float kCountsPerRadian = kCountsPerTurn / (2 * kPi);
 
 struct Shaft {
   float angle;

@@ -13,7 +13,6 @@ Board the_board;
 namespace {
 
 constexpr uint64_t kTickUs = 10000;
-constexpr uint32_t kLineBytes = 255;
 constexpr uint64_t kByteUs = 10 * 1000000ULL / kBaud;
 
 }  // namespace
@@ -77,7 +76,7 @@ bool read_line(uint8_t* byte) {
   return true;
 }
 
-uint8_t line_room() { return static_cast<uint8_t>(host::kLineBytes - the_board.waiting.size()); }
+uint8_t line_room() { return static_cast<uint8_t>(kLineRoom - the_board.waiting.size()); }
 
 void write_line(const uint8_t* bytes, uint8_t size) {
   if (size > line_room()) {

@@ -8,7 +8,7 @@ constexpr uint32_t kDefinitionsHash = 0xe47854faUL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
-// Of the record in EEPROM; another one's layout is another.
+// Version of the calibration's record in EEPROM; it changes with the record's layout.
 constexpr uint8_t kCalibrationVersion = 155;
 
 enum class DebugLevel : uint8_t {

@@ -74,12 +74,12 @@ void Robot::handle(const Message& message) {
       if (!arming_.definitions_differ()) parameters_.request(unpack<Parameter>(message), armed());
       break;
     default:
-      calibrate(message);
+      handle_calibration(message);
   }
 }
 
-// A heartbeat needs no handling; the other types are sent by the board alone.
-void Robot::calibrate(const Message& message) {
+// A heartbeat needs no handling; the other types are the board's, or for other sketches.
+void Robot::handle_calibration(const Message& message) {
   if (message.type == RequestCalibration::kType) calibration_.request();
   if (message.type == ZeroDepth::kType && !armed()) sensors_.zero_depth();
   // With other definitions its bytes may mean something else.
@@ -130,7 +130,8 @@ void Robot::tick(uint8_t ticks) {
     send_telemetry();
     slot_ = (slot_ + 1) % kSlots;
   }
-  // Before a host's HELLO nothing is sent: messages of the boot wait in the queue.
+  // Before a host's HELLO only telemetry is sent, in open frames, which show a host whose HELLO was lost that
+  // this board has restarted. Reliable messages, such as those of the boot, wait in the queue.
   if (!arming_.greeted()) return;
   answer_requests();
   link_.step(now);

@@ -21,7 +21,7 @@ class Robot {
 
  private:
   void handle(const Message& message);
-  void calibrate(const Message& message);
+  void handle_calibration(const Message& message);
   void greet(const Hello& hello);
   void arm(const Start& start);
   void answer_requests();

@@ -16,7 +16,6 @@
 
 namespace mucat {
 
-constexpr uint16_t kFrameOverhead = kFrameBytesMax - kMessagesBytesMax;
 constexpr uint16_t kBytesPerTenSlots = 10 * (1 + sizeof(Imu)) + 5 * (1 + sizeof(Motor)) +
                                        5 * (1 + sizeof(Depth)) + (1 + sizeof(Beacon)) + (1 + sizeof(Status)) +
                                        11 * kFrameOverhead;

@@ -26,7 +26,7 @@ constexpr uint32_t kDefinitionsHash = 0x%08xUL;
 constexpr uint8_t kFinCount = %d;
 constexpr uint8_t kFrameBytesMax = %d;
 constexpr uint8_t kNotReady = %d;
-// Of the record in EEPROM; another one's layout is another.
+// Version of the calibration's record in EEPROM; it changes with the record's layout.
 constexpr uint8_t kCalibrationVersion = %d;
 """
 

@@ -47,7 +47,7 @@ class Corruption {
   Counts read() const;
 
   const std::vector<uint8_t>& line() const { return line_; }
-  // The stretch's frames as they were sent, one after the other, closing zeros included.
+  // The batch's frames as they were sent, one after the other, closing zeros included.
   const std::vector<uint8_t>& sent() const { return sent_bytes_; }
   // For each sent frame, 1 if it was damaged.
   const std::vector<uint8_t>& damaged() const { return damaged_; }

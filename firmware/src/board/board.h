@@ -28,7 +28,7 @@ constexpr uint8_t kLineRoom = 255;
 bool read_line(uint8_t* byte);
 uint8_t line_room();
 void write_line(const uint8_t* bytes, uint8_t size);
-// Received bytes that were lost because the ring was full, since the start.
+// Received bytes that were lost since the start, because the ring was full or the interrupt came late.
 uint16_t bytes_lost();
 
 // Writes, then reads after a repeated start; either size may be 0. False if the device does not answer, in

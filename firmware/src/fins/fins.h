@@ -22,7 +22,8 @@ class Fins {
   explicit Fins(const Calibration& calibration) : calibration_(calibration) {}
   // Sets all drives to 0; they may still run from before the start.
   void start();
-  // The newest command counts. It is mixed at the next tick, because mixing takes 1.5 ms.
+  // The newest command counts. It is mixed at the next tick, because mixing takes 1.5 ms. One that comes
+  // before the motors have power is dropped.
   void command(const Navigation& command) {
     command_ = command;
     mixed_ = false;

@@ -3,10 +3,10 @@
 //   COBS( control | {type, payload}... | number, unreliable frames alone | CRC-32 ) 00
 //
 // The type of the first message decides if the frame is reliable; reliable and unreliable messages never
-// share a frame. control: the lower four bits are the number of the reliable frame that the sender expects
-// next. The upper four are a reliable frame's own number, or the upper four of an unreliable frame's
-// twelve-bit number. The CRC is little-endian, over everything before it, combined by exclusive or with the
-// session's key, or with 0 in an open frame.
+// share a frame, but ACKNOWLEDGE goes with either. control: the lower four bits are the number of the
+// reliable frame that the sender expects next. The upper four are a reliable frame's own number, or the upper
+// four of an unreliable frame's twelve-bit number. The CRC is little-endian, over everything before it,
+// combined by exclusive or with the session's key, or with 0 in an open frame.
 #pragma once
 #include <stddef.h>
 #include <stdint.h>
@@ -23,6 +23,8 @@ constexpr uint8_t kControlBytes = 1;
 constexpr uint8_t kBlockBytesMax = kFrameBytesMax - kCobsOverhead - 1;
 constexpr uint8_t kNumberBytes = 1;
 constexpr uint8_t kMessagesBytesMax = kBlockBytesMax - kControlBytes - kNumberBytes - kCrcBytes;
+// Of an unreliable frame, beside its messages.
+constexpr uint16_t kFrameOverhead = kFrameBytesMax - kMessagesBytesMax;
 // A reliable frame has no number byte.
 constexpr uint8_t kReliableMessagesBytesMax = kMessagesBytesMax + kNumberBytes;
 constexpr uint32_t kOpen = 0;

@@ -8,7 +8,6 @@ namespace {
 constexpr uint8_t kNumberMask = 15;
 constexpr uint16_t kUnreliableMask = 4095;
 constexpr uint16_t kAcknowledgeMs = 20;
-constexpr uint16_t kFrameOverhead = kFrameBytesMax - kMessagesBytesMax;
 // The line is idle if less waits than is sent within a tick, or less than a frame.
 constexpr uint16_t kBytesPerTick = kBaud / 1000;
 constexpr uint8_t kIdleRoom =
@@ -86,14 +85,14 @@ void Link::begin(uint32_t key) {
   reorder_buffer_.clear();
   acknowledge_ = false;
   refused_ = false;
-  announce_ready_ = false;
+  announce_readiness_ = false;
 }
 
 void Link::set_ready(bool ready) {
   ready_ = ready;
   if (ready && refused_) {
     refused_ = false;
-    announce_ready_ = true;
+    announce_readiness_ = true;
   }
 }
 
@@ -101,7 +100,7 @@ void Link::accept_reliable_frame() {
   if (!acknowledge_) received_ms_ = board::milliseconds();
   acknowledge_ = true;
   if (!ready_) {
-    refused_ = announce_ready_ = true;
+    refused_ = announce_readiness_ = true;
     return;
   }
   const uint8_t ahead = (decoder_.number() - expected_) & kNumberMask;
@@ -223,7 +222,7 @@ bool Link::line_due(uint16_t now_ms) {
 
 void Link::step(uint16_t now_ms) {
   if (!line_due(now_ms)) return;
-  if (!announce_ready_) {
+  if (!announce_readiness_) {
     const uint16_t bytes = bytes_in_flight();
     if (repeat(now_ms, round_trip_.timeout(bytes)) || start_flight(now_ms)) return;
     const bool stalled = queue_.more_than(messages_bytes_);
@@ -235,7 +234,7 @@ void Link::step(uint16_t now_ms) {
 }
 
 void Link::acknowledge() {
-  announce_ready_ = false;
+  announce_readiness_ = false;
   send(state());
   flush(key_);
 }

@@ -129,10 +129,10 @@ class Link {
   uint8_t limit_ = kReliableMessagesBytesMax;  // bytes of messages in a new frame
   uint8_t expected_ = 0;                       // number of the host's next reliable frame
   bool ready_ = true;
-  bool refused_ = false;         // a reliable frame since it was last ready
-  bool announce_ready_ = false;  // with the next step
-  bool in_order_ = false;        // the received frame's reliable messages are new
-  bool restored_ = false;        // it was stored: its acknowledgement is old
+  bool refused_ = false;             // a reliable frame since it was last ready
+  bool announce_readiness_ = false;  // with the next step
+  bool in_order_ = false;            // the received frame's reliable messages are new
+  bool restored_ = false;            // it was stored: its acknowledgement is old
   bool acknowledge_ = false;
   uint16_t received_ms_ = 0;
   uint16_t stepped_ms_ = 0;  // the last step()
