@@ -70,8 +70,8 @@ void Robot::handle(const Message& message) {
       accept_simulated_input(unpack<Sense>(message));
       break;
     case Parameter::kType:
-      // With other definitions its number may mean another parameter.
-      if (!arming_.definitions_differ()) parameters_.request(unpack<Parameter>(message), armed());
+      // With other definitions, or unknown ones, its number may mean another parameter.
+      if (arming_.agreed()) parameters_.request(unpack<Parameter>(message), armed());
       break;
     default:
       handle_calibration(message);
@@ -82,8 +82,8 @@ void Robot::handle(const Message& message) {
 void Robot::handle_calibration(const Message& message) {
   if (message.type == RequestCalibration::kType) calibration_.request();
   if (message.type == ZeroDepth::kType && !armed()) sensors_.zero_depth();
-  // With other definitions its bytes may mean something else.
-  if (message.type != Calibration::kType || arming_.definitions_differ()) return;
+  // With other definitions, or unknown ones, its bytes may mean something else.
+  if (message.type != Calibration::kType || !arming_.agreed()) return;
   if (armed()) {
     calibration_.request();
   } else {

@@ -156,6 +156,16 @@ def test_what_cannot_be_is_not_kept(robot: Robot, impossible: dict[str, object])
     assert start(robot)
 
 
+def test_before_a_greeting_nothing_is_stored(robot: Robot) -> None:
+    """The host's definitions are not known yet."""
+    robot.run(50)
+    robot.say(replace(KEPT, fin_zeros=(1, 2, 3, 4)), Parameter(number=0, value=CHIP_PARAMETERS[0].minimum))
+    robot.run(WRITTEN)
+    robot.greet()
+    assert kept(robot) == KEPT
+    assert not any(isinstance(packet, Parameter) for packet in robot.received)
+
+
 def is_turn(axes: tuple[int, int, int]) -> bool:
     try:
         CalibrationValues.from_packet(replace(KEPT, axes=axes))

@@ -47,6 +47,8 @@ class Arming {
   bool armed() const { return armed_; }
   bool host_alive() const { return alive_; }
   bool greeted() const { return greeted_; }
+  // True if the host has greeted, and was built from the same packet definitions.
+  bool agreed() const { return agreed_; }
   bool definitions_differ() const { return greeted_ && !agreed_; }
   // True if the last command is recent enough.
   bool commanded() const { return armed_ && commanded_; }
