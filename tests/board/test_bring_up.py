@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.contract.calibration import EMULATED
-from robot_runtime.contract.packets import Jog, Start
+from robot_runtime.contract.packets import DEFINITIONS_HASH, Hello, Jog, RequestScan, Start
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.bring_up.guide import STEPS
 from server.features.bring_up.report import write_report
 from tests.board.bring_up import HOLD, NAMED, Person
+from tests.board.host import TICK, Robot, start
 from tests.board.rig import ROOT, build
 
 Begin = Callable[..., Person]
@@ -131,6 +132,20 @@ def test_a_motor_is_never_driven_hard_and_the_sketch_never_arms(begin: Begin) ->
     person.bench.host.say(Start(epoch=hello.epoch))
     person.bench.host.run(1.0)
     assert person.rig.board.fins().speeds == pytest.approx((0, 0, 0, 0), abs=0.05)
+
+
+def test_a_host_of_other_definitions_gets_no_motor_power(tmp_path: Path) -> None:
+    with start("bring_up", tmp_path, "--uncalibrated") as rig:
+        robot = Robot(rig)
+        robot.listen(0.5)
+        robot.send(Hello(definitions=DEFINITIONS_HASH ^ 1, epoch=77, credit=4096))
+        robot.listen(0.1)
+        robot.send(RequestScan())
+        powered = []
+        for _ in range(50):
+            robot.listen(TICK)
+            powered.append(rig.board.fins().powered)
+        assert not any(powered)
 
 
 @pytest.mark.parametrize(

@@ -58,6 +58,8 @@ class Bench {
         if (agreed_) jog_.drive(mucat::unpack<mucat::Jog>(message));
         break;
       case mucat::RequestScan::kType:
+        // It switches the motors' power on.
+        if (!agreed_) break;
         address_ = kFirstAddress;
         wait_ = kPowerTicks;
         memset(&scan_, 0, sizeof scan_);
