@@ -7,8 +7,8 @@ import logging
 from robot_runtime.contract.documents import MISSION_MARK
 from robot_runtime.transport.blocks import Block
 from server.features.sessions.bookmarks import Bookmarks
+from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder
-from server.features.sessions.session import SessionStateError
 from server.platform.errors import NotFoundError
 from server.platform.store import StoreError
 
@@ -16,11 +16,15 @@ log = logging.getLogger(__name__)
 
 
 class MissionMarks:
-    """Makes bookmarks of the runtime's events of the kind `MISSION_MARK`."""
+    """Makes bookmarks of the runtime's events of the kind `MISSION_MARK`.
 
-    def __init__(self, recorder: Recorder, bookmarks: Bookmarks) -> None:
+    A server that has been restarted gets those of the last minutes again.
+    """
+
+    def __init__(self, recorder: Recorder, bookmarks: Bookmarks, catalogue: Catalogue) -> None:
         self._recorder = recorder
         self._bookmarks = bookmarks
+        self._catalogue = catalogue
         self._tasks: set[asyncio.Task[None]] = set()
 
     def see(self, block: Block) -> None:
@@ -30,12 +34,17 @@ class MissionMarks:
             return
         for event in json.loads(block.payload):
             if event.get("kind") == MISSION_MARK:
-                task = asyncio.create_task(self._add(session.id, str(event["text"])))
+                task = asyncio.create_task(self._add(session.id, event["time"], str(event["text"])))
                 self._tasks.add(task)
                 task.add_done_callback(self._tasks.discard)
 
-    async def _add(self, session: int, text: str) -> None:
+    async def close(self) -> None:
+        """Waits for the marks that are being stored."""
+        await asyncio.gather(*self._tasks)
+
+    async def _add(self, session: int, moment: float, text: str) -> None:
         try:
-            await self._bookmarks.add(session, None, text)
-        except (StoreError, SessionStateError, NotFoundError) as problem:
+            if await self._bookmarks.add_once(session, moment, text):
+                self._catalogue.notify(session)
+        except (StoreError, NotFoundError) as problem:
             log.warning("the mark %r of a mission is not stored: %s", text, problem)

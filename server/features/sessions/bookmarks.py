@@ -45,6 +45,25 @@ class Bookmarks:
 
         return await self._store.write(write)
 
+    async def add_once(self, session: int, steady: float, text: str) -> bool:
+        """Add a bookmark at a time of the steady clock (s).
+
+        Returns False where it is there already, or was before the session's start.
+        """
+
+        def write(connection: Connection) -> bool:
+            start, _ = _span(connection, session)
+            there = select(BookmarkRow.id).where(
+                BookmarkRow.session_id == session, BookmarkRow.time == steady, BookmarkRow.text == text
+            )
+            if steady < start or connection.execute(there).first() is not None:
+                return False
+            row = BookmarkRow(session_id=session, time=steady, text=text, made=time())
+            insert_row(connection, BookmarkRow, row.model_dump(exclude={"id"}))
+            return True
+
+        return await self._store.write(write)
+
     async def change(self, session: int, mark: int, moment: float | None, text: str | None) -> Bookmark:
         """Change time or text of a bookmark; None leaves it unchanged."""
         now = self._now(session)
