@@ -56,7 +56,7 @@ from server.features.updates.page_updates import PageUpdates
 from server.health.faults import FAULTS
 from server.health.monitor import HealthMonitor
 from server.health.watchdog import DOWN, Watchdog
-from server.http.audit import AuditLog
+from server.http.audit import ARMING, AuditLog
 from server.http.heavy_requests import HeavyRequests
 from server.http.page import Page
 from server.http.sign_in.access import Access
@@ -342,7 +342,7 @@ class Container:
         return await asyncio.to_thread(new_row, self.settings, self.clock, name, "", state, origin="arming")
 
     def _note_act(self, operation: str, text: str) -> None:
-        if operation == "commandArm" and self.settings.sessions.record_at_arming:
+        if operation in ARMING and self.settings.sessions.record_at_arming:
             self.arming.note_arming(text)
         else:
             self.notices.notify("control", "info", text)

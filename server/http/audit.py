@@ -22,7 +22,15 @@ from server.platform.audit_file import AuditEntry, Outcome, append_entries, clea
 log = logging.getLogger(__name__)
 
 UNCHANGING = frozenset(
-    {"checkTestDocument", "checkScenario", "compareSessions", "compareLines", "pickColour", "readVision"}
+    {
+        "checkTestDocument",
+        "checkScenario",
+        "checkMission",
+        "compareSessions",
+        "compareLines",
+        "pickColour",
+        "readVision",
+    }
 )
 """Operations that are sent as POST, and change nothing."""
 DOWNLOADS = frozenset({"downloadBackup", "downloadExport", "exportAudit"})
@@ -30,8 +38,9 @@ DOWNLOADS = frozenset({"downloadBackup", "downloadExport", "exportAudit"})
 REFUSED = frozenset({401, 403, 409, 413, 422, 423, 429})
 ALWAYS_RECORDED = frozenset({401, 403, 429})
 """Refusals that are in the log also where they concern something that changes nothing."""
-NOTICED = {"commandArm": "armed the robot", "stopRobot": "pressed STOP"}
-"""Acts that are also a notice, and so an event of what is being recorded."""
+ARMING = {"commandArm": "armed the robot", "startMission": "started a mission"}
+NOTICED = {**ARMING, "stopRobot": "pressed STOP"}
+"""Acts that are also a notice, and so an event of what is being recorded; those of `ARMING` may begin it."""
 UNROUTED = "Request"
 """The action of what was refused before it was known which operation it is."""
 BODY_BYTES = 2048

@@ -18,6 +18,7 @@ from server.features.sessions.session import find_row
 from server.openapi import main as print_openapi
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
+from tests.runtime.missions.water import DIVE, mission
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
 from tests.server.serving import Served, play, serve
 from tests.server.waiting import SECONDS, until
@@ -221,11 +222,16 @@ def test_only_a_scenario_may_let_the_robot_go_on_without_the_server(settings: Se
     play(settings, scenario)
 
 
-def test_with_a_full_disk_nothing_is_armed(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("path", "body"), [("/robot/commands/arm", None), ("/missions/start", {"text": mission(DIVE)})]
+)
+def test_with_a_full_disk_nothing_is_armed(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch, path: str, body: dict[str, str] | None
+) -> None:
     async def scenario(served: Served) -> None:
         usage = shutil.disk_usage(settings.data.path)
         monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=19_999_999))
-        answer = await served.api.post("/robot/commands/arm")
+        answer = await served.api.post(path, json=body)
         assert answer.status_code == 409
         assert "The disk is full: 20 MB are free" in answer.json()["detail"]
         assert served.runtime.asked == []

@@ -29,6 +29,7 @@ from server.http.heavy_requests import TooManyHeavyError, Turn
 from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
+from server.platform.disk_space import check_room
 from server.platform.settings import Settings
 
 REFUSED = {409: "Refused now", 422: "The mission cannot be used"}
@@ -98,6 +99,7 @@ async def start_mission(
     # Access may have been revoked, and control changed hands, in the meantime.
     await admit(request)
     require_control(request)
+    check_room(settings.data)
     await changes.command(caller.name, MissionCommand(text=body.text, library=called))
     return summarize_mission(mission)
 

@@ -5,14 +5,16 @@ import json
 from pathlib import Path
 
 import pytest
+from fastapi.routing import iter_route_contexts
 
 from robot_runtime.clock import SimulatedClock
 from server import cli
 from server.app import create_app
 from server.http import audit
 from server.http.audit import DOWNLOADS, LIMIT, NOTICED, UNCHANGING, WINDOW, AuditLog
+from server.http.security import SAFE_METHODS
 from server.http.sign_in.identity import SHELL, Identity
-from server.http.sign_in.policy import list_needs
+from server.http.sign_in.policy import Need, list_needs, need_of
 from server.platform import audit_file
 from server.platform.audit_file import AuditEntry, append_entries, read_entries
 from server.platform.settings import Settings
@@ -32,6 +34,15 @@ def make_log(folder: Path, clock: SimulatedClock) -> AuditLog:
 def test_tables_name_operations_that_exist(settings: Settings) -> None:
     known = list_needs(create_app(settings).routes).keys()
     assert known >= UNCHANGING | DOWNLOADS | NOTICED.keys()
+
+
+def test_what_only_looks_is_in_no_log(settings: Settings) -> None:
+    asked = {
+        one.operation_id
+        for one in iter_route_contexts([*create_app(settings).routes])
+        if need_of(one) is Need.VIEWER and not (one.methods or set()) <= SAFE_METHODS
+    }
+    assert asked - UNCHANGING == {"signOut", "startExport", "stopRobot"}
 
 
 def test_sign_in_refusals_roles_arm_and_stop_are_written_with_who_and_where(settings: Settings) -> None:
@@ -99,10 +110,15 @@ def written(settings: Settings) -> list[AuditEntry]:
 def test_arm_and_stop_are_notices_that_name_who(tmp_path: Path) -> None:
     said: list[tuple[str, str]] = []
     log = AuditLog(tmp_path, SimulatedClock(), lambda operation, text: said.append((operation, text)))
-    for operation, outcome in (("commandArm", "refused"), ("commandArm", "done"), ("stopRobot", "done")):
+    acts = ("commandArm", "refused"), ("commandArm", "done"), ("startMission", "done"), ("stopRobot", "done")
+    for operation, outcome in acts:
         log.record(ANNA, "", "Arm", "", "refused" if outcome == "refused" else "done", operation)
     log.close()
-    assert said == [("commandArm", "“Anna” armed the robot."), ("stopRobot", "“Anna” pressed STOP.")]
+    assert said == [
+        ("commandArm", "“Anna” armed the robot."),
+        ("startMission", "“Anna” started a mission."),
+        ("stopRobot", "“Anna” pressed STOP."),
+    ]
 
 
 def test_a_flood_of_a_stranger_is_counted_and_leaves_others_acts_in_the_log(tmp_path: Path) -> None:

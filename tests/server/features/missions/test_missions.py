@@ -17,7 +17,9 @@ from server.features.missions.nodes import list_node_kinds
 from server.features.missions.trials import MissionTrials
 from server.platform.settings import Settings
 from tests.runtime.missions.water import DIVE, HOLD, mission
-from tests.server.serving import serve
+from tests.server.blocks import state_block
+from tests.server.serving import Served, play, serve
+from tests.server.waiting import until
 
 OWN = mission(DIVE, HOLD)
 
@@ -129,3 +131,21 @@ def test_a_trial_tells_the_outcome_of_each_seed(settings: Settings) -> None:
         json.loads(trials.state().model_dump_json())
 
     asyncio.run(run())
+
+
+def test_the_session_that_a_mission_starts_names_who_started_it(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        started = await served.api.post("/missions/start", json={"text": OWN})
+        assert (started.status_code, served.runtime.asked[-1][0]) == (201, "mission")
+        served.runtime.publish(state_block(0, armed=True))
+        recorder = served.container.recorder
+        await until(lambda: recorder.session is not None, "the session to begin")
+        await served.container.arming.close()
+        assert recorder.session is not None
+        session = recorder.session.id
+        await recorder.stop(session)
+        timeline = (await served.api.get(f"/sessions/{session}/timeline")).json()
+        said = "“the shell of this computer” started a mission."
+        assert said in [one["text"] for one in timeline["events"]]
+
+    play(settings, scenario)
