@@ -65,6 +65,7 @@ def append_entries(folder: Path, entries: Iterable[AuditEntry]) -> None:
         torn = size > 0 and os.pread(handle, 1, size - 1) != b"\n"
         data = ("\n" * torn + lines).encode(errors="replace")
         if os.write(handle, data) != len(data):
+            os.ftruncate(handle, size)
             raise OSError("the disk is full")
         os.fsync(handle)
     finally:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import IO, Any
 
 import click
+from click.exceptions import Exit
 
 from robot_runtime.errors import RefusedError
 from server.platform.errors import ApiError
@@ -68,8 +69,12 @@ def with_settings(command: Callable[..., int | None]) -> Callable[..., int | Non
             settings = read(config, data, host, port, os.environ)
             if settings.configuration_problem:
                 click.echo(plain(f"mucat: {settings.configuration_problem}"), err=True)
-            return command(settings, **options)
+            status = command(settings, **options)
         except (SetupError, ApiError, RefusedError) as problem:
             raise CommandError(str(problem)) from problem
+        if status:
+            # As an end of its own, so that the audit log does not say "done".
+            raise Exit(status)
+        return status
 
     return run

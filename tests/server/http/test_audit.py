@@ -2,8 +2,10 @@
 
 import asyncio
 import json
+import resource
 from pathlib import Path
 
+import click
 import pytest
 from fastapi.routing import iter_route_contexts
 
@@ -17,6 +19,8 @@ from server.http.sign_in.identity import SHELL, Identity
 from server.http.sign_in.policy import Need, list_needs, need_of
 from server.platform import audit_file
 from server.platform.audit_file import AuditEntry, append_entries, read_entries
+from server.platform.command_line import with_settings
+from server.platform.folder_lock import record_command
 from server.platform.settings import Settings
 from tests.server.test_matrix import FAR, House, Somebody, open_house, signed_in
 
@@ -191,6 +195,34 @@ def test_a_command_in_the_shell_is_written_with_its_end(settings: Settings) -> N
         ("mucat backup", "begun"),
         ("mucat backup", "done"),
     ]
+
+
+def test_a_command_in_the_shell_that_ends_with_a_status_has_failed(settings: Settings) -> None:
+    @click.command("check")
+    @with_settings
+    def check(settings: Settings) -> int:
+        record_command(settings.data)
+        return 3
+
+    options = ["--data", str(settings.data.path), "--config", str(settings.config)]
+    assert check.main(options, "mucat", standalone_mode=False) == 3
+    assert [one.outcome for one in read_entries(settings.data.audit)] == ["failed", "begun"]
+
+
+def test_entries_that_the_disk_takes_in_part_are_written_once(settings: Settings) -> None:
+    folder, entries = settings.data.audit, [entry(1), entry(2), entry(3)]
+    append_entries(folder, entries[:1])
+    (file,) = folder.iterdir()
+    size = file.stat().st_size
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (int(2.5 * size), hard))
+    try:
+        with pytest.raises(OSError, match="full"):
+            append_entries(folder, entries[1:])
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    append_entries(folder, entries[1:])
+    assert list(read_entries(folder)) == entries[::-1]
 
 
 def test_the_list_is_filtered_and_exported_without_formulas(settings: Settings) -> None:
