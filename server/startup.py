@@ -106,10 +106,10 @@ def _serve(settings: Settings) -> int:
             if not _prepare_database(settings.data):
                 return 1
             announce(settings)
+            app, server = loaded or _load(settings, certificate)
             # The server ends in order at these, and then sends them to itself once more; once is enough.
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, lambda *_: None)
-            app, server = loaded or _load(settings, certificate)
             app.state.ended = ended
             server.run(sockets=[listener])
             return 0

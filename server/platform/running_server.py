@@ -1,6 +1,7 @@
 """Requests from a shell to the running server: only the server may write its database."""
 
 import json
+import logging
 import urllib.error
 import urllib.request
 from collections.abc import Mapping
@@ -12,14 +13,22 @@ from server.platform.certificate import trust_only
 from server.platform.folder_lock import claim
 from server.platform.settings import DataFolder, Settings, SetupError
 
+log = logging.getLogger(__name__)
+
 ASK_SECONDS = 10.0
 
 
 def announce(settings: Settings) -> None:
-    """Write the server's address into its data folder."""
+    """Write the server's address into its data folder.
+
+    Where that fails, as on a full disk, the server runs all the same: the address of the one before is there.
+    """
     host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
     host = f"[{host}]" if ":" in host else host
-    write_whole(settings.data.address, f"{settings.scheme}://{host}:{settings.port}\n".encode("ascii"))
+    try:
+        write_whole(settings.data.address, f"{settings.scheme}://{host}:{settings.port}\n".encode("ascii"))
+    except OSError as problem:
+        log.warning("commands in a shell may not find this server: its address is not written: %s", problem)
 
 
 def server_runs(folder: DataFolder) -> bool:

@@ -45,7 +45,10 @@ class ServerRunner:
         # Keeps the loaded modules' memory shared with the children: a garbage collection would write to it.
         gc.freeze()
         _set_name("mucat-runner")
-        self._file.write(os.getpid(), "")
+        try:
+            self._file.write(os.getpid(), "")
+        except OSError as problem:
+            _say(f"Others cannot see which process this is: {problem}.")
         before = signal.pthread_sigmask(signal.SIG_BLOCK, _ALL)
         try:
             return self._run_servers()

@@ -1,10 +1,15 @@
-"""The runner of the server: the libraries that it holds in its memory."""
+"""The start of the server: the libraries of its runner, signals, and a disk that takes nothing."""
 
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from robot_runtime.durable_files import PART
+from server.platform.running_server import announce
+from server.platform.settings import Settings
+from tests.server.waiting import SECONDS
 
 LIBRARIES = ("fastapi", "sqlalchemy", "pydantic", "uvicorn", "asyncio")
 
@@ -34,3 +39,37 @@ def test_the_runner_of_a_small_computer_holds_no_copy_of_the_server_s_libraries(
         check=True,
     )
     assert ran.stdout.split() == held
+
+
+STOPPED = """
+import os
+import signal
+import sys
+from pathlib import Path
+import server.startup as startup
+from server.platform.settings import DataFolder, Settings
+
+def load(*_):
+    os.kill(os.getppid(), signal.SIGTERM)
+    signal.pause()
+    print("loaded")
+
+startup._load = load
+data = DataFolder(Path(sys.argv[1]))
+data.run.mkdir()
+sys.exit(startup._serve(Settings(data, Path("robot.toml"), mode="robot", profile="lean", port=0)))
+"""
+
+
+def test_a_server_that_is_stopped_while_its_libraries_load_ends(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", STOPPED, str(tmp_path)]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True, timeout=SECONDS)
+    assert ran.stdout == ""
+
+
+def test_a_server_whose_address_cannot_be_written_keeps_that_of_the_one_before(settings: Settings) -> None:
+    announce(settings)
+    before = settings.data.address.read_text()
+    settings.data.address.with_name(settings.data.address.name + PART).mkdir()
+    announce(settings)
+    assert settings.data.address.read_text() == before

@@ -1,5 +1,6 @@
 """Access to the server: pairing, signing in by cookie or token, roles, revocation."""
 
+import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from hmac import compare_digest
@@ -17,6 +18,8 @@ from server.http.sign_in.pairing_codes import PairingCodes, WrongCodeError
 from server.http.sign_in.tokens import digest
 from server.platform.settings import Settings
 from server.platform.store import Store
+
+log = logging.getLogger(__name__)
 
 Notify = Callable[[str, documents.Severity, str], None]
 CloseSockets = Callable[[int, str], None]
@@ -60,9 +63,12 @@ class Access:
         self._limit_reported = False
 
     def open(self) -> None:
-        """Load the devices, and write the token of this computer's shell. Raises StoreError, OSError."""
+        """Load the devices, and write the token of this computer's shell. Raises StoreError."""
         self.devices.load()
-        write_whole(self._token_file, f"{self._token}\n".encode(), 0o600)
+        try:
+            self._write_token()
+        except OSError as problem:
+            log.warning("this server refuses commands in a shell: its token is not written: %s", problem)
 
     def identify(
         self, connection: HTTPConnection, cookie_suffices: Callable[[], bool] = lambda: False
@@ -184,6 +190,15 @@ class Access:
             raise RefusedError("The shell of this computer is not signed in, and needs not sign out.")
         await self._remove(self.devices.get(identity.device), "Signed out.")
         self._notify("access", "info", f"“{identity.name}” signed out.")
+
+    def _write_token(self) -> None:
+        text = f"{self._token}\n".encode()
+        try:
+            write_whole(self._token_file, text, 0o600)
+        except OSError:
+            # A full disk takes no second file, but as many bytes in the place of those that are there.
+            with self._token_file.open("r+b") as file:
+                file.write(text)
 
     @contextmanager
     def _reporting_wrong_codes(self, address: str) -> Iterator[None]:

@@ -115,6 +115,15 @@ def test_it_ends_in_order_on_sigterm(tmp_path: Path, number: signal.Signals, eve
         assert runner_of(DataFolder(tmp_path)) is None
 
 
+def test_it_runs_servers_also_where_it_cannot_enter_itself(tmp_path: Path) -> None:
+    file = DataFolder(tmp_path).runner
+    file.with_name(file.name + ".new").mkdir()
+    with running(tmp_path) as family:
+        assert runner_of(DataFolder(tmp_path)) is None
+        os.kill(family.started.pid, signal.SIGTERM)
+        assert family.started.wait(SECONDS) == 0
+
+
 def test_a_server_that_ends_in_order_by_itself_ends_the_runner(tmp_path: Path) -> None:
     with running(tmp_path) as family:
         os.kill(family.servers[0][0], signal.SIGTERM)

@@ -5,6 +5,7 @@ import asyncio
 import pytest
 
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.durable_files import PART
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import SHELL
@@ -12,8 +13,8 @@ from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
 
 
-def begin(settings: Settings, store: Store) -> Access:
-    access = Access(settings, store, SimulatedClock(), lambda *_: None, lambda *_: None, "token")
+def begin(settings: Settings, store: Store, token: str = "token") -> Access:
+    access = Access(settings, store, SimulatedClock(), lambda *_: None, lambda *_: None, token)
     access.open()
     return access
 
@@ -36,6 +37,25 @@ def test_a_demotion_that_could_not_be_stored_can_be_repeated(
         assert begin(settings, store).devices.get(tablet.id).role == "viewer"
 
     asyncio.run(scenario())
+
+
+def test_a_server_that_starts_on_a_full_disk_can_be_used_from_the_shell(
+    settings: Settings, store: Store
+) -> None:
+    begin(settings, store, "the token of the server before")
+    file = settings.data.token
+    # Nothing more can be written beside it.
+    file.with_name(file.name + PART).mkdir()
+    access = begin(settings, store, "the token of the server now...")
+    assert file.read_text() == "the token of the server now...\n"
+    assert file.stat().st_mode & 0o777 == 0o600
+    assert access.identify_token(file.read_text().strip()) == SHELL
+
+
+def test_a_server_without_a_token_file_starts_all_the_same(settings: Settings, store: Store) -> None:
+    settings.data.token.with_name(settings.data.token.name + PART).mkdir()
+    begin(settings, store)
+    assert not settings.data.token.exists()
 
 
 def test_two_operators_cannot_revoke_each_other(settings: Settings, store: Store) -> None:
