@@ -12,7 +12,13 @@ FAULTS: dict[str, FaultText] = {
         remedy="The board stops the fins by itself after 1 s. After 10 s the runtime is ended and "
         "started again, disarmed; nothing is to be done.",
     ),
-    "runtime_down": FaultText(severity="alarm", what="", cause=_PART, remedy=_LOGS),
+    "runtime_down": FaultText(
+        severity="alarm",
+        what="",
+        cause=_PART,
+        remedy="It is started again by itself, except a service that was stopped by hand. Where it does not "
+        "come back, the System page and its log say more.",
+    ),
     "board_down": FaultText(severity="alarm", what="", cause=_PART, remedy=_LOGS),
     "simulator_down": FaultText(severity="caution", what="", cause=_PART, remedy=_LOGS),
     "scene_down": FaultText(severity="caution", what="", cause=_PART, remedy=_LOGS),

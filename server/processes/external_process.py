@@ -12,7 +12,6 @@ from pathlib import Path
 from robot_runtime.clock import Clock
 from robot_runtime.durable_files import write_whole
 from server.platform.pidfile import Running
-from server.processes.exit_status import describe_status
 from server.processes.logs import ProcessLog
 from server.processes.managed_process import (
     NEED_POLL_SECONDS,
@@ -81,14 +80,14 @@ class ExternalProcess(ManagedProcess):
             process.close()
 
     async def _find(self) -> None:
-        """Wait until the process runs."""
+        """Wait until the process runs; one that does not come is reported once."""
         first, since = self.state == "waiting", self._clock.now()
         while self._process is None:
             if (found := self._pid_file.read()) is not None:
                 with suppress(OSError):
                     self._process = AdoptedProcess(found.pid, found.started)
                     break
-            if self.state == "waiting" and self._clock.now() - since > ABSENT_SECONDS:
+            if self.problem != ABSENT and self._clock.now() - since > ABSENT_SECONDS:
                 self._report(ABSENT)
             await asyncio.sleep(NEED_POLL_SECONDS)
         if first and self.state == "waiting":
@@ -100,9 +99,10 @@ class ExternalProcess(ManagedProcess):
     async def _watch(self) -> None:
         """Watch it until it ends."""
         assert self._process is not None
-        status = await self._process.wait()
+        await self._process.wait()
         self._process = None
-        words, self._hung = self._hung or describe_status(status), ""
+        # Its exit status is known to systemd alone.
+        words, self._hung = self._hung or "has ended; journalctl -u mucat-runtime says why", ""
         self._report(f"{words}. systemd starts it again")
 
     def _report(self, problem: str) -> None:

@@ -11,7 +11,7 @@ from robot_runtime.service_manager import ServiceManager
 from robot_runtime.transport.lifetime import is_served
 from server.platform.command_line import with_settings
 from server.platform.pidfile import hold_still, pid_file, running_parts
-from server.platform.settings import Settings, SetupError
+from server.platform.settings import DataFolder, Settings, SetupError
 
 WAIT_SECONDS = 0.2
 START_SECONDS = 60.0
@@ -31,12 +31,10 @@ def run_runtime(settings: Settings) -> None:
     folder = settings.data
     try:
         make_folder(folder.run)
-        _wait_for_turn(folder.runtime_paused, folder.lock, command.needs)
-        with hold_still(folder.run):
-            if "runtime" in running_parts(folder.run):
-                raise SetupError(f"A runtime works on {folder.path} already. End it first.")
-            folder.runtime_socket.unlink(missing_ok=True)
-            pid_file(folder.run, "runtime").write(os.getpid(), command.fingerprint())
+        entered = False
+        while not entered:
+            _wait_for_turn(folder, command.needs)
+            entered = _enter(folder, command.fingerprint())
     except OSError as problem:
         raise SetupError(
             f"The data folder {folder.path} cannot be used: {problem.strerror}. Look at it with mucat doctor."
@@ -45,9 +43,31 @@ def run_runtime(settings: Settings) -> None:
     os.execv(command.arguments[0], command.arguments)
 
 
-def _wait_for_turn(paused: Path, lock: Path, needs: tuple[Path, ...]) -> None:
+def _enter(folder: DataFolder, fingerprint: str) -> bool:
+    """Write this process as the runtime; False where somebody has paused it meanwhile.
+
+    Raises SetupError where another one runs, OSError.
+    """
+    file = pid_file(folder.run, "runtime")
+    with hold_still(folder.run):
+        if "runtime" in running_parts(folder.run):
+            raise SetupError(f"A runtime works on {folder.path} already. End it first.")
+        folder.runtime_socket.unlink(missing_ok=True)
+        file.write(os.getpid(), fingerprint)
+    # Whoever pauses it writes the mark before looking for a process to end: one of both sees the other.
+    if _is_paused(folder):
+        file.remove()
+        return False
+    return True
+
+
+def _is_paused(folder: DataFolder) -> bool:
+    return folder.runtime_paused.exists() and is_served(folder.lock)
+
+
+def _wait_for_turn(folder: DataFolder, needs: tuple[Path, ...]) -> None:
     """Wait until the files exist that the runtime needs, and nobody else uses its board."""
     service = ServiceManager()
-    while (paused.exists() and is_served(lock)) or not all(path.exists() for path in needs):
+    while _is_paused(folder) or not all(path.exists() for path in needs):
         service.wait(START_SECONDS)
         time.sleep(WAIT_SECONDS)

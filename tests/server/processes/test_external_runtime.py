@@ -13,9 +13,12 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.service_manager import ServiceManager
+from server import cli
 from server.platform.folder_lock import claim
 from server.platform.pidfile import end_parts, pid_file, running_parts
-from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.settings import DataFolder, Settings, SetupError, make_folders
+from server.processes import external_process, runtime_service
+from server.processes.external_process import ABSENT
 from server.processes.managed_process import ProcessCommand
 from tests.server.processes.test_parts import Crew, run
 from tests.server.waiting import SECONDS, alive, until
@@ -104,9 +107,64 @@ def test_its_death_is_reported_and_the_next_one_watched(tmp_path: Path) -> None:
             await until(lambda: crew.part("engine").state == "running", "running")
             assert crew.part("engine").pid == second.pid
         assert [name for name, _ in crew.told][:1] == ["engine"]
-        assert "systemd starts it again" in crew.told[0][1]
+        assert crew.told[0][1] == (
+            "The part engine has ended; journalctl -u mucat-runtime says why. systemd starts it again."
+        )
 
     run(crew, scenario)
+
+
+def test_one_that_does_not_come_back_is_reported_with_how_to_start_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(external_process, "ABSENT_SECONDS", 0.0)
+    crew = Crew(tmp_path, external())
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").state == "running", "running")
+        first.kill()
+        first.wait()
+        await until(lambda: crew.part("engine").problem == ABSENT, "it to be missed")
+        with engine(tmp_path):
+            await until(lambda: crew.part("engine").state == "running", "running")
+            assert [text for _, text in crew.told][1:] == [f"The part engine {ABSENT}."]
+
+    with engine(tmp_path) as first:
+        run(crew, scenario)
+
+
+@pytest.mark.parametrize("moment", ["before", "after"])
+def test_a_pause_while_it_enters_itself_is_obeyed(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch, moment: str
+) -> None:
+    """The program that pauses it finds no process yet, or one that must end."""
+    folder, turns = settings.data, []
+    found: list[bool] = []
+
+    def wait(*_: object) -> None:
+        turns.append(runtime_of(folder))
+        if len(turns) > 1:
+            raise SetupError("it waits again")
+
+    @contextmanager
+    def hold(_: Path) -> Iterator[None]:
+        if moment == "before":
+            folder.runtime_paused.touch()
+            found.append("runtime" in running_parts(folder.run))
+        yield
+        if moment == "after":
+            folder.runtime_paused.touch()
+            found.append("runtime" in running_parts(folder.run))
+
+    monkeypatch.setattr(runtime_service, "_wait_for_turn", wait)
+    monkeypatch.setattr(runtime_service, "hold_still", hold)
+    monkeypatch.setattr(os, "execv", lambda *_: None)
+    settings.config.write_text(CONFIG)
+    options = ["--config", str(settings.config), "--data", str(folder.path)]
+    with claim(folder):
+        assert cli.main(["runtime", *options]) == 1
+    assert found == [moment == "after"]
+    assert turns == [None, None]
 
 
 def test_a_pause_ends_it_and_marks_the_folder_until_it_is_resumed(tmp_path: Path) -> None:
