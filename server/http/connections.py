@@ -120,7 +120,7 @@ class HttpProtocol(H11Protocol):
     def __init__(self, connections: Connections, **options: Any) -> None:
         super().__init__(**options)
         self._limits = connections
-        self._head_began: float | None = connections.now()
+        self._head_began: float | None = None
         self.progress = connections.now()
         self._body_until = 0.0
         self._made = False
@@ -149,6 +149,8 @@ class HttpProtocol(H11Protocol):
     def connection_made(self, transport: Any) -> None:
         """Take a new connection, or refuse it."""
         self._made = True
+        # With TLS, the handshake had a time of its own.
+        self._head_began = self.progress = self._limits.now()
         super().connection_made(transport)
         if not self._limits.add(self, address_of_peer(transport)):
             transport.abort()

@@ -24,6 +24,7 @@ from server.http.connections import (
     BODY_SECONDS,
     HEAD_SECONDS,
     Connections,
+    HttpProtocol,
     raise_file_limit,
 )
 from server.http.listener import BACKLOG, open_socket
@@ -31,7 +32,7 @@ from server.http.serving import REPORT_SECONDS, OutOfFiles, WebServer, make_serv
 from server.platform.certificate import Certificate, prepare_certificate, trust_only
 from server.platform.settings import Settings
 from tests.server.serving import Served, next_text, play
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 from tests.shell import shell_headers
 
 Connection = tuple[asyncio.StreamReader, asyncio.StreamWriter]
@@ -193,6 +194,24 @@ def test_connections_are_counted_from_accept_on_also_with_tls(settings: Settings
                 assert len(one.limits) == 1
                 assert await has_ended(silent[1])
                 assert (await client.post(address, content=b"x")).text == '"done"'
+
+    asyncio.run(scenario())
+
+
+def test_a_head_has_ten_seconds_from_the_end_of_the_tls_handshake(settings: Settings) -> None:
+    certificate = prepare_certificate(replace(settings, tls=True))
+
+    async def scenario() -> None:
+        async with site(certificate=certificate) as one:
+            reader, writer = await one.connect()
+            one.pass_time(0.9 * HEAD_SECONDS)
+            await writer.start_tls(trust_only(settings.data), server_hostname="127.0.0.1")
+            await until(lambda: any(isinstance(found, HttpProtocol) for found in one.limits), "the handshake")
+            one.pass_time(0.9 * HEAD_SECONDS)
+            writer.write(HALF_BODY.encode() + b"}" * 8)
+            async with asyncio.timeout(SECONDS):
+                assert b" 200 " in await reader.readline()
+            writer.close()
 
     asyncio.run(scenario())
 
