@@ -371,11 +371,17 @@ def _as_of(block: Block, now: float) -> Block:
 
 
 def _drop_oldest(batch: _Batch, now: float) -> None:
-    size = batch.bytes
+    # Spans are not encoded where not even a transaction could begin; they are newer than the chunks.
+    size = batch.bytes + sum(span.size for span in batch.spans)
     while size > BACKLOG_BYTES:
-        chunk = batch.chunks.pop(0)
-        size -= len(chunk["data"])
-        batch.note(chunk["topic"], "not stored", chunk["count"], now)
+        if batch.chunks:
+            chunk = batch.chunks.pop(0)
+            topic, count, freed = chunk["topic"], chunk["count"], len(chunk["data"])
+        else:
+            span = batch.spans.pop(0)
+            topic, count, freed = span.topic.name, span.count, span.size
+        size -= freed
+        batch.note(topic, "not stored", count, now)
 
 
 async def _finish(step: Coroutine[Any, Any, T]) -> T:

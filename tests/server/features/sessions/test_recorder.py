@@ -4,6 +4,7 @@ import sqlite3
 import threading
 import zlib
 from collections.abc import Awaitable, Callable
+from contextlib import closing
 from typing import Any
 
 import pytest
@@ -248,6 +249,26 @@ def test_waiting_samples_beyond_the_memory_limit_are_counted_as_lost(
         assert kept == list(range(kept[0], 250))
         assert 0 < len(kept) < 250
         assert rig.gaps() == [("depth", "not stored", 250 - len(kept))]
+
+    play(scenario)
+
+
+def test_the_memory_limit_holds_also_while_another_program_has_the_database(
+    rig: RecorderRig, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recorder_module, "BACKLOG_BYTES", 1000)
+
+    async def scenario() -> None:
+        session = await rig.start()
+        with closing(sqlite3.connect(settings.data.database, isolation_level=None)) as other:
+            other.execute("BEGIN IMMEDIATE")
+            rig.recorder.add(depth_block(0, 500))
+            rig.recorder.add(debug_block(0, "stays"))
+            with pytest.raises(StoreError):
+                await rig.recorder.flush()
+        await rig.recorder.stop(session)
+        assert (rig.numbers("depth"), rig.numbers("debug")) == ([], [0])
+        assert rig.gaps() == [("depth", "not stored", 500)]
 
     play(scenario)
 
