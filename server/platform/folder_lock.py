@@ -18,9 +18,15 @@ LOCK_TRIES = 20
 LOCK_SECONDS = 0.02
 
 
+class FolderInUseError(SetupError):
+    """Another server works on the data folder"""
+
+
 @contextmanager
 def claim(folder: DataFolder) -> Iterator[None]:
-    """Hold the data folder alone. Raises SetupError where another server has it.
+    """Hold the data folder alone.
+
+    Raises FolderInUseError where another server has it, SetupError where it cannot be used.
 
     The other processes of a killed server test the lock now and then, and so hold it for a moment.
     """
@@ -33,7 +39,7 @@ def claim(folder: DataFolder) -> Iterator[None]:
         if not _lock(handle):
             runner = runner_of(folder)
             process = f" (process {runner})" if runner is not None else ""
-            raise SetupError(
+            raise FolderInUseError(
                 f"Another server works on {folder.path}{process}. End it, or choose another folder with "
                 "--data."
             )

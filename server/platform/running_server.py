@@ -10,7 +10,7 @@ from typing import IO, Any
 
 from robot_runtime.durable_files import write_whole
 from server.platform.certificate import trust_only
-from server.platform.folder_lock import claim
+from server.platform.folder_lock import FolderInUseError, claim
 from server.platform.settings import DataFolder, Settings, SetupError
 
 log = logging.getLogger(__name__)
@@ -32,13 +32,13 @@ def announce(settings: Settings) -> None:
 
 
 def server_runs(folder: DataFolder) -> bool:
-    """True while a server uses this folder."""
+    """True while a server uses this folder. Raises SetupError where the folder cannot be used."""
     if not folder.path.is_dir():
         return False
     try:
         with claim(folder):
             return False
-    except SetupError:
+    except FolderInUseError:
         return True
 
 

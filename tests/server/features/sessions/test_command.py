@@ -22,6 +22,14 @@ def run(settings: Settings, *arguments: str) -> int:
     return main([*arguments, *common])
 
 
+def test_a_data_folder_that_cannot_be_used_is_no_running_server(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings.data.lock.mkdir()
+    assert run(settings, "sessions", "delete", "1") == 1
+    assert "cannot be used: Is a directory" in capsys.readouterr().err
+
+
 def test_sessions_without_a_server(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
     prepare(settings.data)
     store = Store(settings.data.database)
