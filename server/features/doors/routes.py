@@ -89,8 +89,8 @@ class _Visit:
                 raise EvictedError(f"Offer a subprotocol: {' or '.join(SUBPROTOCOLS)}.", POLICY_VIOLATION)
             caller = self._socket.scope.get(IDENTITY) or await self._sign_in()
             # Access may have been revoked while the socket opened; from here on the door dismisses it.
-            if self._access.refresh(caller) != caller:
-                raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
+            if (changed := self._access.explain_change(caller)) is not None:
+                raise EvictedError(changed, POLICY_VIOLATION)
             self._audit.record(caller, self._address, "Open a door", f"/{self._door.name}", "done")
             with self._arbiter.page(caller) as owner:
                 pilot = DoorPilot(owner, self._address)

@@ -179,8 +179,8 @@ async def live(
     send = _sender(socket)
     try:
         # Access may have been revoked while the socket opened; from here on the hub dismisses it.
-        if access.refresh(caller) != caller:
-            raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
+        if (changed := access.explain_change(caller)) is not None:
+            raise EvictedError(changed, POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
             listen = _LiveConnection(socket, owner, hub, arbiter, bridge, audit, clock).listen
             serving = hub.serve(send, greeting(owner), listen, caller)

@@ -31,6 +31,7 @@ PAGE_HEADER = "x-mucat"
 PAGE_PROTOCOL = "mucat"
 """The subprotocol of the page's live socket, offered with the secret as a second one: a page can give its
 socket no header."""
+REVOKED = "Access was revoked by an operator."
 NO_PAGE_SECRET = (
     "This page has lost its part of the sign-in, as when a browser's stored data are cleared, or after an "
     "update from a version without it. Sign this browser in again."
@@ -114,6 +115,13 @@ class Access:
         device = self.devices.find_valid(identity.device)
         return None if device is None else device.identity
 
+    def explain_change(self, identity: Identity) -> str | None:
+        """Reason why this is not the caller's identity any more; None while it is."""
+        present = self.refresh(identity)
+        if present is None:
+            return REVOKED
+        return None if present == identity else "The role or the name has changed."
+
     async def pair(
         self, code: str, name: str, known: Identity | None, address: str
     ) -> tuple[Identity, BrowserSecrets | None]:
@@ -178,7 +186,7 @@ class Access:
         """
         device = self.devices.get(number)
         self._keep_an_operator(device, by)
-        await self._remove(device, "Access was revoked by an operator.")
+        await self._remove(device, REVOKED)
         self._notify("access", "caution", f"“{by.name}” revoked the access of “{device.name}”.")
 
     async def sign_out(self, identity: Identity) -> None:

@@ -2,6 +2,7 @@ import asyncio
 import json
 import socket as sockets
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import chain
 from math import inf
 from typing import Any
@@ -17,7 +18,7 @@ from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.transport.blocks import Block, read_blocks
 from server.features.live.routes import INVALID_MAX
 from server.http.serving import MESSAGE_BYTES_MAX
-from server.http.sign_in.identity import SHELL
+from server.http.sign_in.identity import SHELL, Identity
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.serving import Served, next_text, play
@@ -312,16 +313,20 @@ async def stall(served: Served) -> sockets.socket:
     return page
 
 
-def test_a_socket_that_opens_while_its_access_is_revoked_is_closed(
-    settings: Settings, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("present", "reason"),
+    [(None, "revoked"), (replace(SHELL, role="viewer"), "has changed")],
+)
+def test_a_socket_that_opens_while_its_access_changes_is_closed(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch, present: Identity | None, reason: str
 ) -> None:
     async def scenario(served: Served) -> None:
         access = served.container.access
         # The first answer is at the admission, the second once the socket is open.
-        answers = iter([SHELL, None])
+        answers = iter([SHELL, present])
         monkeypatch.setattr(access, "refresh", lambda _: next(answers))
         async with served.connect() as page:
-            with pytest.raises(ConnectionClosed, match="revoked"):
+            with pytest.raises(ConnectionClosed, match=reason):
                 await next_text(page, "hello")
 
     play(settings, scenario)
