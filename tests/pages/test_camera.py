@@ -1,0 +1,111 @@
+"""The camera's picture and the choices beside it."""
+
+import json
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, WebSocketRoute, expect
+
+from robot_runtime.contract.topics import BY_ID, BY_NAME
+from robot_runtime.transport.blocks import HEADER, Block, row
+from tests.browser.people import somebody
+from tests.pages.dive_site import DiveSite
+
+TAKEN = 1.0
+"""Time of the picture, s."""
+MARKER = {"number": 7, "corners": [0.2, 0.2, 0.4, 0.2, 0.4, 0.4, 0.2, 0.4]}
+
+
+def picture() -> bytes:
+    _, jpeg = cv2.imencode(".jpg", np.zeros((60, 80, 3), np.uint8))
+    return Block.of(BY_NAME["picture"], 1, 0, row(TAKEN, jpeg.tobytes())).data
+
+
+def with_markers(message: bytes) -> bytes:
+    """The blocks of a message; every detection in them is of the picture, and found two markers in it."""
+    changed = b""
+    while message:
+        topic, _, count, first, size = HEADER.unpack_from(message)
+        payload, message = message[HEADER.size : HEADER.size + size], message[HEADER.size + size :]
+        if topic == BY_NAME["detection"].id:
+            found = {"taken": TAKEN, "markers": [MARKER, MARKER]}
+            payload = json.dumps([one | found for one in json.loads(payload)]).encode()
+        changed += Block.of(BY_ID[topic], count, first, payload).data
+    return changed
+
+
+def test_two_markers_of_one_number_are_drawn(page: Page) -> None:
+    sockets: list[WebSocketRoute] = []
+
+    def hand_on(socket: WebSocketRoute) -> None:
+        def change(message: str | bytes) -> None:
+            socket.send(with_markers(message) if isinstance(message, bytes) else message)
+
+        sockets.append(socket)
+        socket.connect_to_server().on_message(change)
+
+    page.route_web_socket("**/api/live", hand_on)
+    page.reload()
+    page.get_by_role("link", name="Operate").click()
+    camera = page.get_by_role("region", name="Camera")
+    expect(camera.get_by_text("No picture yet")).to_be_visible()
+    sockets[-1].send(picture())
+    expect(camera.locator("svg text", has_text="marker 7")).to_have_count(2)
+
+
+@pytest.fixture
+def refusing(site: DiveSite) -> Iterator[str]:
+    """The reason for which the robot refuses every command."""
+    reason = "An experiment is running."
+    site.refuse(reason)
+    yield reason
+    site.refuse(None)
+
+
+def test_a_refused_choice_does_not_stay_in_its_field(page: Page, refusing: str) -> None:
+    page.get_by_role("link", name="Operate").click()
+    camera = page.get_by_role("region", name="Camera")
+    for label, refused, present in (("Target colour", "red", "yellow"), ("Vision rate", "8", "4")):
+        field = camera.get_by_label(label)
+        field.select_option(refused)
+        expect(camera.get_by_role("alert")).to_contain_text(refusing)
+        expect(field).to_have_value(present)
+
+
+def with_a_scene(message: str) -> str:
+    """A text message; in that of the parts there is a scene, which a bystander sees."""
+    said = json.loads(message)
+    if said["op"] == "health":
+        scene = {"name": "scene", "state": "works", "text": ""}
+        said["parts"] = [one for one in said["parts"] if one["name"] != "scene"] + [scene]
+    return json.dumps(said)
+
+
+def test_a_viewer_only_looks_at_the_scene(browser: Browser, site: DiveSite) -> None:
+    def hand_on(socket: WebSocketRoute) -> None:
+        def change(message: str | bytes) -> None:
+            socket.send(with_a_scene(message) if isinstance(message, str) else message)
+
+        socket.connect_to_server().on_message(change)
+
+    with somebody(browser, site, "viewer") as page:
+        views: list[str] = []
+        page.on("request", lambda one: views.append(one.url) if one.url.endswith("/scene/view") else None)
+        page.route_web_socket("**/api/live", hand_on)
+        page.reload()
+        page.get_by_role("link", name="Operate").click()
+        camera = page.get_by_role("region", name="Camera")
+        camera.get_by_text("bystander", exact=True).click()
+        stage = camera.get_by_role("application")
+        expect(stage).to_have_accessible_name("The robot in the simulated water")
+        stage.hover()
+        page.mouse.wheel(0, 100)
+        page.mouse.down()
+        page.mouse.move(0, 0)
+        page.mouse.up()
+        stage.press("ArrowLeft")
+        # Answered after whatever was asked before.
+        page.evaluate("() => fetch('/api/scene')")
+        assert views == []

@@ -1,0 +1,38 @@
+"""Replays whose recording needs no robot that dives."""
+
+import re
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.site import Site
+from tests.proofs.watching import wait
+
+DRAG = """async (slider) => {
+    let written = 0;
+    const replace = history.replaceState.bind(history);
+    history.replaceState = (...all) => {
+        written += 1;
+        replace(...all);
+    };
+    for (let move = 1; move <= 100; move += 1) {
+        slider.value = String(move / 100);
+        slider.dispatchEvent(new Event('input', { bubbles: true }));
+        // The page's effects run between two moves.
+        await Promise.resolve();
+        await Promise.resolve();
+    }
+    return written;
+}"""
+"""Drags the slider by 1 s; returns how often the page wrote its address meanwhile."""
+
+
+def test_a_drag_of_the_slider_writes_the_address_at_its_end(page: Page, site: Site) -> None:
+    session = site.api.post("/sessions", json={"name": "short"}).raise_for_status().json()["id"]
+    address = f"/sessions/{session}"
+    wait(lambda: site.api.get(address).json()["duration"] > 2, "two seconds of the recording")
+    site.api.post(f"{address}/stop").raise_for_status()
+    page.goto(f"{site.url}/#/replay/{session}")
+    slider = page.get_by_label("Time since the start of the session")
+    expect(slider).to_be_visible()
+    assert slider.evaluate(DRAG) <= 1
+    expect(page).to_have_url(re.compile(rf"#/replay/{session}/1\.0$"))
