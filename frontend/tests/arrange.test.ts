@@ -139,6 +139,7 @@ describe('readLayout', () => {
     [{ ...good, panels: [panel('a', 0, 0, 5, 5), panel('b', 4, 4, 5, 5)] }, 'damaged'],
     [{ ...good, panels: [{ ...panel('chart', 0, 0, 5, 5), chart: { signals: [7], seconds: 60 } }] }, 'damaged'],
     [{ ...good, panels: [{ ...panel('chart', 0, 0, 5, 5), chart: { signals: [], seconds: NaN } }] }, 'damaged'],
+    [{ ...good, panels: [{ ...panel('chart', 0, 0, 5, 5), chart: { signals: ['a', 'a'], seconds: 60 } }] }, 'damaged'],
   ])('refuses %j', (given, word) => {
     expect(readLayout(given)).toHaveProperty('problem', expect.stringContaining(word));
   });

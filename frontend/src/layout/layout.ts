@@ -97,5 +97,6 @@ function isChart(value: unknown): value is ShownChart {
   if (!isObject(value)) return false;
   const { signals, seconds } = value;
   const spans = typeof seconds === 'number' && seconds >= 1 && seconds <= 3600;
-  return spans && Array.isArray(signals) && signals.length <= SIGNALS_MOST && signals.every(isWord);
+  if (!spans || !Array.isArray(signals) || signals.length > SIGNALS_MOST || !signals.every(isWord)) return false;
+  return new Set(signals).size === signals.length;
 }

@@ -3,7 +3,7 @@
 from itertools import combinations
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from server.http.request_body import RequestBody
@@ -18,10 +18,16 @@ PanelName = Annotated[str, Field(pattern=r"^(own/)?[A-Za-z0-9][A-Za-z0-9 _-]{0,5
 Word = Annotated[str, Field(min_length=1, max_length=60)]
 
 
+def _check_distinct(signals: list[str]) -> list[str]:
+    if len(set(signals)) < len(signals):
+        raise _wrong("A chart names a signal twice.")
+    return signals
+
+
 class ShownChart(RequestBody):
     """A chart's signals, by the names in recordings (`motor.angle_2`), and its length in s."""
 
-    signals: Annotated[list[Word], Field(max_length=SIGNALS_MOST)]
+    signals: Annotated[list[Word], Field(max_length=SIGNALS_MOST), AfterValidator(_check_distinct)]
     seconds: Annotated[float, Field(ge=1, le=3600, allow_inf_nan=False)]
 
 

@@ -97,6 +97,7 @@ def test_the_number_of_layouts_is_limited(store: Store) -> None:
         (layout(CAMERA | {"colour": "red"}), "not permitted"),
         (layout(CHART | {"chart": {"signals": [], "seconds": float("nan")}}), "finite number"),
         (layout(CHART | {"chart": {"signals": ["a"] * 13, "seconds": 60}}), "at most 12"),
+        (layout(CHART | {"chart": {"signals": ["a", "b", "a"], "seconds": 60}}), "names a signal twice"),
         (layout(*({**CAMERA, "id": str(one)} for one in range(41))), "at most 40"),
         ([], "valid dictionary"),
     ],
