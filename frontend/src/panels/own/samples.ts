@@ -37,6 +37,8 @@ export class Handing {
   }
 
   #since(topic: Topic, now: number): readonly Rows[Topic][] {
+    // Before the robot's clock is known, nothing is handed out: the first hand-over is to have the last minute.
+    if (Number.isNaN(now)) return [];
     const ring = this.live.rings[topic];
     const newest = ring.newest;
     const until = this.#until.get(topic) ?? now - PAST;
