@@ -53,6 +53,17 @@ def test_a_code_can_be_typed(browser: Browser, site: Site) -> None:
         expect(page.get_by_role("alert").filter(has_text="You have signed out.")).to_be_visible()
 
 
+def test_a_viewer_s_link_that_does_not_work_says_why(browser: Browser, site: Site) -> None:
+    with somebody(browser, site, "viewer") as page:
+        page.goto("about:blank")
+        page.goto(f"{site.url}/#pair=nonsense")
+        notice = page.get_by_role("alert").locator("div", has_text="code")
+        expect(notice).to_be_visible()
+        notice.get_by_role("button", name="Close").click()
+        expect(notice).to_have_count(0)
+        expect(page.get_by_role("button", name="STOP")).to_be_visible()
+
+
 def test_an_operator_pairs_promotes_and_revokes(fresh: Page, browser: Browser, site: Site) -> None:
     page = fresh
     page.goto(f"{site.url}/#/people")
