@@ -148,6 +148,9 @@ describe('Live', () => {
     second();
     expect(live.observer).toBeNull();
     expect(asked().at(-1)).toEqual(['picture']);
+    // One is still on its way: whoever looks next is to wait for a new one.
+    server().give(picture(105));
+    expect(live.observer).toBeNull();
   });
 
   it('gives up a connection that has fallen silent', () => {
@@ -326,5 +329,21 @@ describe('STOP', () => {
     await vi.advanceTimersByTimeAsync(3000);
     expect(live.stop.state).toBe('idle');
     expect(calls).toBe(3);
+  });
+
+  it('is not sent any more once this page has ended', async () => {
+    let calls = 0;
+    vi.stubGlobal('fetch', () => {
+      calls += 1;
+      return Promise.resolve(new Response('{"detail":"This browser is not signed in."}', { status: 401 }));
+    });
+    server().greet();
+    live.stop.press();
+    await vi.advanceTimersByTimeAsync(300);
+    end();
+    const before = calls;
+    await vi.advanceTimersByTimeAsync(3000);
+    expect(before).toBeGreaterThan(0);
+    expect(calls).toBe(before);
   });
 });

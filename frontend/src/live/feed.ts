@@ -77,6 +77,7 @@ export class LiveFeed {
       window.removeEventListener('online', wake);
       document.removeEventListener('visibilitychange', consider);
       this.#socket.end();
+      this.live.stop.end();
       nameClient(null);
     };
   }

@@ -250,7 +250,8 @@ export class Live {
     for (const name of WATCHED) {
       if (block.topic !== OTHER_TOPICS[name]) continue;
       const picture = readPicture(block);
-      this[name] = picture;
+      // One that was on its way when the last viewer left would be an old one for the next.
+      if (this.#watching[name] > 0) this[name] = picture;
       return picture.time;
     }
     const documents = (readDocuments(block) as { time: number }[]).filter((document) => document.time > after);

@@ -8,7 +8,8 @@ export type StopState = 'idle' | 'sending' | 'confirmed';
 /**
  * STOP, sent by every way there is and again until the server says that it was taken.
  *
- * The socket is the quicker way and HTTP the one that answers, so both are used.
+ * The socket is the quicker way and HTTP the one that answers, so both are used. `end` ends it all: a STOP that waits
+ * for a server must not stop the robot by surprise when this browser has access again.
  */
 export class Stop {
   state = $state<StopState>('idle');
@@ -17,6 +18,7 @@ export class Stop {
   attempts = $state(0);
   problem = $state('');
   #rest: ReturnType<typeof setTimeout> | undefined;
+  #ended = false;
 
   constructor(private readonly bySocket: () => boolean) {}
 
@@ -30,6 +32,10 @@ export class Stop {
     void this.#insist();
   };
 
+  readonly end = (): void => {
+    this.#ended = true;
+  };
+
   async #insist(): Promise<void> {
     for (;;) {
       this.attempts += 1;
@@ -37,6 +43,7 @@ export class Stop {
       if (refusal === null) break;
       this.problem = refusal;
       await new Promise((resolve) => setTimeout(resolve, RETRY_EVERY));
+      if (this.#ended) return;
       this.bySocket();
     }
     this.problem = '';
