@@ -19,7 +19,7 @@ LOCK_SECONDS = 0.02
 
 
 class FolderInUseError(SetupError):
-    """Another server works on the data folder"""
+    """Another server works on the data folder."""
 
 
 @contextmanager
