@@ -11,6 +11,8 @@ from pathlib import Path
 
 from robot_runtime.clock import Clock
 from robot_runtime.durable_files import write_whole
+from robot_runtime.errors import RefusedError
+from server.platform.disk_space import explain_write_error
 from server.platform.pidfile import Running
 from server.processes.logs import ProcessLog
 from server.processes.managed_process import (
@@ -44,8 +46,10 @@ class ExternalProcess(ManagedProcess):
 
     async def run(self) -> None:
         """Watch the process whenever it runs; on cancellation leave it alone."""
-        self._paused.unlink(missing_ok=True)
-        if self.state == "paused":
+        # A card that has become read-only refuses this even where the file does not exist.
+        with suppress(OSError):
+            self._paused.unlink(missing_ok=True)
+        if self.state != "waiting":
             self._set("waiting")
         try:
             while True:
@@ -62,8 +66,16 @@ class ExternalProcess(ManagedProcess):
             self._process = None
 
     async def pause(self, why: str) -> None:
-        """End the process, which waits at its next start until `run` is called again."""
-        await asyncio.to_thread(write_whole, self._paused, b"")
+        """End the process, which waits at its next start until `run` is called again.
+
+        Raises RefusedError where the file that says so cannot be written; the process runs on.
+        """
+        try:
+            await asyncio.to_thread(write_whole, self._paused, b"")
+        except OSError as problem:
+            raise RefusedError(
+                f"The robot's runtime cannot be paused. {explain_write_error(problem, self._paused)}"
+            ) from problem
         found = self._pid_file.read()
         if found is not None:
             await self._terminate(found)

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robot_runtime.clock import Clock
+from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.boards.firmware import firmware_path
 from server.platform.pidfile import end_parts
 from server.platform.settings import DataFolder, Settings
@@ -56,13 +57,23 @@ class ProcessSupervisor:
         await asyncio.gather(*(part.end() for part in self._processes.values()))
 
     async def pause(self, name: str, why: str) -> None:
-        """End a process until it is resumed; `why` is a sentence for a person."""
+        """End a process until it is resumed; `why` is a sentence for a person.
+
+        Raises RefusedError where a process that systemd starts cannot be paused: it is watched as before.
+        """
         task = self._tasks.pop(name, None)
         if task is not None:
             task.cancel()
             await asyncio.gather(task, return_exceptions=True)
-        if name in self._processes:
-            await self._processes[name].pause(why)
+        part = self._processes.get(name)
+        if part is None:
+            return
+        try:
+            await part.pause(why)
+        except RefusedError:
+            if task is not None:
+                self._tasks[name] = asyncio.create_task(part.run())
+            raise
 
     def resume(self, name: str) -> None:
         """Start a paused process again."""

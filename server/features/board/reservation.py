@@ -171,15 +171,21 @@ class BoardReservation:
                 yield arguments
 
     async def start_processes(self) -> None:
-        """Start every process; firmware that an earlier server left away is restored first."""
+        """Start every process; firmware that an earlier server left away is restored first, if it can be."""
         if not self._board.away:
             self._processes.start()
             return
         why = "Work on the robot's board was cut off; its firmware is being uploaded to the board again."
-        with self._nobody_commands(why):
-            async with self._without_runtime(why):
-                self._processes.start()
-                await self._board.restore()
+        try:
+            with self._nobody_commands(why):
+                async with self._without_runtime(why):
+                    self._processes.start()
+                    await self._board.restore()
+        except RefusedError as problem:
+            self._monitor.firmware_away = (
+                f"The robot's firmware cannot be brought back to its board. {problem}"
+            )
+            self._processes.start()
 
     @contextmanager
     def _nobody_commands(self, why: str) -> Iterator[None]:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from robot_runtime.errors import RefusedError
 from robot_runtime.service_manager import ServiceManager
 from server import cli
 from server.platform.folder_lock import claim
@@ -183,6 +184,25 @@ def test_a_pause_ends_it_and_marks_the_folder_until_it_is_resumed(tmp_path: Path
     with engine(tmp_path) as one:
         run(crew, scenario)
         assert one.wait(SECONDS) == -signal.SIGTERM
+
+
+def test_where_it_cannot_be_paused_it_is_still_watched(tmp_path: Path) -> None:
+    """As on a card that has become read-only; here a folder lies where the file belongs."""
+    crew = Crew(tmp_path, external())
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").state == "running", "running")
+        DataFolder(tmp_path).runtime_paused.mkdir()
+        with pytest.raises(RefusedError, match="cannot be written"):
+            await crew.parts.pause("engine", "The board is used.")
+        await until(lambda: crew.part("engine").state == "running", "running again")
+        one.kill()
+        one.wait()
+        await until(lambda: crew.part("engine").state == "failed", "failed")
+
+    with engine(tmp_path) as one:
+        run(crew, scenario)
+    assert [name for name, _ in crew.told] == ["engine"]
 
 
 def test_it_enters_itself_and_its_number_stays(settings: Settings) -> None:

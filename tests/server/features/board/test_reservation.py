@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -128,6 +129,38 @@ def test_no_reservation_without_its_note_on_the_disk(robot: Robot) -> None:
                 pass
         assert not robot.uploads.exists()
         await until(lambda: runtime_state(served) == "running", "the runtime again")
+
+    robot.play(scenario)
+
+
+def test_no_reservation_where_an_external_runtime_cannot_be_paused(robot: Robot) -> None:
+    robot.runtime = replace(robot.runtime, external=True)
+
+    async def scenario(served: Served) -> None:
+        runtime = served.container.processes.get("runtime")
+        assert runtime is not None
+        served.settings.data.runtime_paused.mkdir()
+        with pytest.raises(RefusedError, match="cannot be written"):
+            async with reserved_reason(served):
+                pass
+        assert not robot.marker.exists()
+        await until(lambda: runtime.state == "waiting", "the runtime to be watched again")
+
+    robot.play(scenario)
+
+
+def test_firmware_stays_away_where_an_external_runtime_cannot_be_paused(robot: Robot) -> None:
+    robot.runtime = replace(robot.runtime, external=True)
+    robot.marker.touch()
+    robot.settings.data.runtime_paused.mkdir()
+
+    async def scenario(served: Served) -> None:
+        monitor, runtime = served.container.monitor, served.container.processes.get("runtime")
+        await until(lambda: monitor.firmware_away is not None, "the reason")
+        assert "cannot be written" in (monitor.firmware_away or "")
+        assert (robot.marker.exists(), robot.uploads.exists()) == (True, False)
+        assert runtime is not None
+        await until(lambda: runtime.state == "waiting", "the runtime to be watched")
 
     robot.play(scenario)
 
