@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.contract.calibration import EMULATED
-from robot_runtime.contract.packets import DEFINITIONS_HASH, Hello, Jog, RequestScan, Start
+from robot_runtime.contract.packets import DEFINITIONS_HASH, FIN_COUNT, Hello, Jog, RequestScan, Start
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.bring_up.guide import STEPS
+from robot_runtime.simulation.boards.workbench import ALONG
 from server.features.bring_up.report import write_report
 from tests.board.bring_up import HOLD, NAMED, Person
 from tests.board.host import TICK, Robot, start
@@ -189,3 +190,23 @@ def test_a_held_motor_stays_stopped_after_stop_until_its_button_is_pressed_anew(
     person.press("motor_1", "turn", on=1)
     person.bench.host.run(0.2)
     assert abs(person.rig.board.fins().speeds[1]) > 1
+
+
+def test_what_is_wrong_when_it_is_repeated_is_no_longer_done(begin: Begin) -> None:
+    person = begin()
+    for fin in range(FIN_COUNT):
+        person.do(f"fin_{fin}")
+    person.do("beacons")
+    assert {"fins", "beacons"} <= set(person.work.calibration().done)
+    # Nobody has turned it.
+    person.rig.board.turn(1, ALONG)
+    person.press("fin_1", "down")
+    # Nobody holds a lamp.
+    person.press("beacons", "left")
+    assert (person.work.state("fin_1"), person.work.state("beacons")) == ("wrong", "wrong")
+    assert not {"fins", "beacons"} & set(person.work.calibration().done)
+    person.do("fin_1")
+    person.change(lamp="left")
+    person.press("beacons", "left")
+    assert (person.work.state("fin_1"), person.work.state("beacons")) == ("done", "done")
+    assert {"fins", "beacons"} <= set(person.work.calibration().done)

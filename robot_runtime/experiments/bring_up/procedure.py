@@ -245,6 +245,7 @@ class BringUp:
             raise RefusedError("First turn the fin along its mount, and press that button.")
         result, falls = checks.check_turn(fin, along, self._readings()[-1])
         self._note(f"fin_{fin}", result)
+        self._encoders.pop(fin, None)
         if falls is not None:
             self._zeros[fin] = counts(along.encoders[fin])
             self._encoders[fin] = falls
@@ -286,6 +287,9 @@ class BringUp:
             raise RefusedError("First cover both detectors.")
         result, low = checks.check_lamp(side, self._dark, self._readings()[-1])
         self._note("beacons", result)
+        self._inverted.pop(side, None)
+        self._beacons = None
+        self._results["beacons"].pop("polarity", None)
         if low is not None:
             self._inverted[side] = low
         if len(self._inverted) == 2:
