@@ -77,8 +77,9 @@ class SerialBench:
 
     def newest(self) -> Raw | None:
         """See Bench."""
-        fresh = time.monotonic() - self._newest_at < 1.0
-        return self._raws[-1] if fresh and self._raws else None
+        with self._heard:
+            fresh = time.monotonic() - self._newest_at < 1.0
+            return self._raws[-1] if fresh and self._raws else None
 
     def readings(self, seconds: float) -> list[Raw]:
         """See Bench."""
