@@ -17,9 +17,12 @@ class CraftReport:
         self._last: SwimmingCraft | None = None
 
     def due(self, now: float) -> SwimmingCraft | None:
-        """Returns the document at its first call, after a change and every `PERIOD`; `now` is its time, s."""
+        """Returns the document at its first call, after a change and every `PERIOD`; `now` is its time, s.
+
+        Also where the time has run back, as after a reboot of the robot whose clock it is.
+        """
         file, craft, last = self._file, self._simulator.craft(), self._last
-        if last is not None and craft == last.craft and now < last.time + PERIOD:
+        if last is not None and craft == last.craft and last.time <= now < last.time + PERIOD:
             return None
         title = file.title if craft == file.craft else f"{file.title}, changed"
         made = SwimmingCraft(time=now, title=title, origin=file.origin, craft=craft)

@@ -104,7 +104,9 @@ class HilSimulator:
         before, self._time = self._time, time
         angles_before, self._angles = self._angles, motor.angle
         if before is None or time <= before:
-            # The first of a run, or the board's clock was corrected by some milliseconds.
+            # The first of a run, or the board's clock was corrected by some milliseconds. After a reboot of
+            # the robot it begins near 0 again.
+            self._truth_due = time
             return None
         period = time - before
         speeds: Four = (0.0, 0.0, 0.0, 0.0)

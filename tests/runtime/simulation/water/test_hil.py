@@ -1,9 +1,11 @@
 """The water of a board in the loop, with the real Zenoh and fins that the test moves."""
 
+import json
 import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import pairwise
 from math import sin
 
@@ -15,7 +17,7 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.hil import GAP_MAX, HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
-from robot_runtime.transport.blocks import Block, row
+from robot_runtime.transport.blocks import Block, read_blocks, read_rows, row
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 DEADLINE = 30.0
@@ -27,10 +29,16 @@ class Robot:
     """The runtime's end: sends fins, receives readings."""
 
     def __init__(self, messages: ZenohTransport) -> None:
+        self.water: ZenohTransport
         self.words: list[Sense] = []
         self._messages = messages
         self._number = 0
         messages.subscribe("sense", lambda _, data: self.words.append(Sense.from_bytes(data)))
+
+    def subscribe(self, topic: str, hear: Callable[[str, bytes], None]) -> None:
+        """Has everything heard that the water sends of a topic; returns once the water knows it."""
+        self._messages.subscribe(topic, hear)
+        wait_for(lambda: self.water.watched(topic), "the water's knowledge of it")
 
     def move(self, *motions: tuple[float, Motor]) -> None:
         payload = b"".join(row(time, motor.to_bytes()) for time, motor in motions)
@@ -68,6 +76,7 @@ def robot(simulator: Simulator) -> Iterator[Robot]:
     ):
         robot = Robot(here)
         with join("turtle", [f"unixsock-stream/{folder}/z"]) as there:
+            robot.water = there
             loop = HilSimulator(simulator, there)
             thread = threading.Thread(target=loop.run)
             thread.start()
@@ -113,6 +122,24 @@ def test_a_clock_that_stands_or_runs_back_advances_nothing(robot: Robot, simulat
     robot.hear(2)
     moved = max(abs(a - b) for a, b in zip(simulator.truth().position, before.position, strict=True))
     assert moved < 0.001
+
+
+def test_truth_and_craft_go_on_after_a_reboot_of_the_robot(robot: Robot) -> None:
+    """Its clock then begins near 0 again, and the water goes on."""
+    times: dict[str, list[float]] = {"truth": [], "craft": []}
+
+    def see_truth(_: str, data: bytes) -> None:
+        times["truth"] += [time for block in read_blocks(data) for time, _ in read_rows(block)]
+
+    def see_craft(_: str, data: bytes) -> None:
+        times["craft"] += [json.loads(block.payload)[0]["time"] for block in read_blocks(data)]
+
+    robot.subscribe("truth", see_truth)
+    robot.subscribe("craft", see_craft)
+    for boot in (5000.0, 30.0):
+        robot.move((boot, motor(0.0)), (boot + PERIOD, motor(0.0)))
+        for topic, heard in times.items():
+            wait_for(partial(heard.__contains__, boot + PERIOD), f"the {topic}")
 
 
 def test_requests_are_answered_except_bus_errors(simulator: Simulator) -> None:
