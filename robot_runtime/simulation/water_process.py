@@ -11,6 +11,7 @@ from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.simulation.boards.board_protocol import BoardLineError, LineBuffer, read_fins, write_sense
 from robot_runtime.simulation.boards.stepped_board import PERIOD
 from robot_runtime.simulation.water.craft_report import CraftReport
+from robot_runtime.simulation.water.faults import DEVICES
 from robot_runtime.simulation.water.requests import TRUTH_PERIOD, changes, serve_requests
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -63,7 +64,7 @@ class WaterProcess:
 
     def _serve_board(self, line: socket.socket) -> None:
         line.sendall(f"attach {PERIOD}\n".encode())
-        broken: frozenset[str] = frozenset()
+        broken: frozenset[str] | None = None
         for text in self._lines(line):
             if text.startswith("error"):
                 log.warning("the board reports: %s", text)
@@ -105,8 +106,12 @@ class WaterProcess:
         self._outbox.flush()
 
 
-def _faults(known: frozenset[str], failing: frozenset[str]) -> str:
-    """Returns the commands that make devices fail or answer again; `known` are those that fail already."""
-    absent = [f"fault {device} absent\n" for device in sorted(failing - known)]
-    repaired = [f"fault {device} none\n" for device in sorted(known - failing)]
+def _faults(known: frozenset[str] | None, failing: frozenset[str]) -> str:
+    """Returns the commands that make devices fail or answer again; `known` are those that fail already.
+
+    None where that is unknown: the board keeps the faults of a simulator that has ended.
+    """
+    absent = [f"fault {device} absent\n" for device in sorted(failing - (known or frozenset()))]
+    before = frozenset(DEVICES.values()) if known is None else known
+    repaired = [f"fault {device} none\n" for device in sorted(before - failing)]
     return "".join(absent + repaired)
