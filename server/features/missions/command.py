@@ -110,29 +110,41 @@ def run(settings: Settings, file: str) -> int:
     text, read = _read(file, settings)
     folder = settings.data
     with in_control(folder):
-        before = (ask(folder, "GET", "/missions/state") or {}).get("number")
+        last = ask(folder, "GET", "/missions/state")
+        before = float("-inf") if last is None else last["time"]
         ask(folder, "POST", "/missions/start", {"text": text}, seconds=30.0)
         echo(f"{read.title} begins.")
+        seen = ask(folder, "GET", "/robot")["time"]
         said: set[tuple[str, str, int]] = set()
         try:
             while True:
                 renew_control(folder)
                 state = ask(folder, "GET", "/missions/state")
-                if state is not None and state["number"] != before:
+                # Not by its number: a runtime that was restarted counts from 1 again.
+                if state is not None and _began(state) > before:
+                    seen = state["time"]
                     _print_changes(state, said)
                     if state["phase"] not in ("running", "paused"):
                         echo(f"{state['phase']}: {state['text']}")
                         return 0 if state["phase"] == "succeeded" else 1
-                    _require_swimming(state, ask(folder, "GET", "/robot"))
+                _require_swimming(seen, ask(folder, "GET", "/robot"))
                 sleep(POLL_SECONDS)
         except KeyboardInterrupt:
             ask(folder, "POST", "/robot/commands/mission_end")
             raise SetupError("The mission was ended.") from None
 
 
-def _require_swimming(state: dict[str, Any], robot: dict[str, Any]) -> None:
-    """Raises SetupError where the robot was disarmed, and the mission told no end: its runtime was killed."""
-    if not robot["armed"] and robot["time"] > state["time"] + SILENT_SECONDS:
+def _began(state: dict[str, Any]) -> float:
+    """Returns the time at which a mission began, s of the steady clock."""
+    return float(state["time"] - state["elapsed"] - state["paused"])
+
+
+def _require_swimming(seen: float, robot: dict[str, Any]) -> None:
+    """Raises SetupError where the robot was disarmed, and the mission told no end: its runtime was killed.
+
+    `seen`: the time of its newest state, s of the steady clock.
+    """
+    if not robot["armed"] and robot["time"] > seen + SILENT_SECONDS:
         raise SetupError("The mission broke off: the runtime was restarted. The robot is disarmed.")
 
 

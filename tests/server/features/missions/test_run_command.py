@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -25,15 +26,40 @@ def start(stack: Stack, folder: Path, text: str) -> "subprocess.Popen[str]":
     )
 
 
+def swim(stack: Stack, folder: Path) -> str:
+    """Runs the command on a short mission to its end; returns what it printed."""
+    with start(stack, folder, SHORT) as command:
+        try:
+            said, _ = command.communicate(timeout=60)
+        finally:
+            command.kill()
+    assert command.returncode == 0, said
+    assert said.splitlines()[-1] == "succeeded: It is done."
+    wait(lambda: not stack.api.get("/robot").json()["armed"], "the robot to be disarmed")
+    return said
+
+
+def _is_ready_after(stack: Stack, run: str) -> bool:
+    """True where another runtime than this one can arm."""
+    answer = stack.api.get("/robot")
+    return answer.is_success and answer.json()["run"] != run and not answer.json()["refusals"]
+
+
 @pytest.mark.stack
 def test_a_mission_is_followed_to_its_end(shared_stack: Stack, tmp_path: Path) -> None:
-    with start(shared_stack, tmp_path, SHORT) as command:
-        said, _ = command.communicate(timeout=60)
-    assert command.returncode == 0, said
+    said = swim(shared_stack, tmp_path)
     assert "test begins." in said
     assert "1 Hold the depth for 1 s: done" in said
-    assert said.splitlines()[-1] == "succeeded: It is done."
-    wait(lambda: not shared_stack.api.get("/robot").json()["armed"], "the robot to be disarmed")
+
+
+@pytest.mark.stack
+def test_the_first_mission_of_a_restarted_runtime_is_followed(shared_stack: Stack, tmp_path: Path) -> None:
+    for _ in range(2):
+        run = shared_stack.api.get("/robot").json()["run"]
+        shared_stack.part("runtime").kill()
+        wait(partial(_is_ready_after, shared_stack, run), "the next runtime")
+        swim(shared_stack, tmp_path)
+        assert shared_stack.api.get("/missions/state").json()["number"] == 1
 
 
 @pytest.mark.stack
