@@ -114,11 +114,13 @@ class Control:
 
         `phase` is "succeeded", "failed" or "ended". Raises RobotError with every reason against a start.
         """
-        before = self._mission()
+        last = self._mission()
+        before = float("-inf") if last is None else last["time"]
         self._address.ask("POST", "/missions/start", {"text": text}, self._key)
         while True:
             mission = self._mission()
-            begun = mission is not None and (before is None or mission["number"] != before["number"])
+            # Not by its number: a runtime that was restarted counts from 1 again.
+            begun = mission is not None and _began(mission) > before
             if mission is not None and begun and mission["phase"] not in ("running", "paused"):
                 return mission
             time.sleep(POLL_SECONDS)
@@ -157,6 +159,11 @@ class Control:
             except ConnectionClosed as problem:
                 raise RobotError("The connection is lost, and control with it.") from problem
             time.sleep(min(DRIVE_SECONDS, max(0.0, end - time.monotonic())))
+
+
+def _began(mission: dict[str, Any]) -> float:
+    """Returns the time at which a mission began, s of the steady clock."""
+    return float(mission["time"] - mission["elapsed"] - mission["paused"])
 
 
 def _read_all(socket: ClientConnection) -> None:
