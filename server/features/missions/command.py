@@ -88,8 +88,8 @@ def try_out(settings: Settings, file: str, seeds: int) -> int:
     if trial.problem:
         raise SetupError(trial.problem)
     good = [one for one in trial.results if one.phase == "succeeded"]
-    echo(f"{len(good)} of {len(trial.results)} succeeded.{_describe_span(good)}")
-    return 0 if len(good) == len(trial.results) else 1
+    echo(f"{len(good)} of {seeds} succeeded.{_describe_span(good)}")
+    return 0 if len(good) == seeds else 1
 
 
 def _describe_span(good: "list[MissionTrialResult]") -> str:

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import threading
 from pathlib import Path
 from shutil import rmtree
 
@@ -23,6 +24,8 @@ log = logging.getLogger(__name__)
 MISSIONS_MAX = 200
 VERSIONS_MAX = 50
 """Of one mission; the oldest go."""
+_STORING = threading.Lock()
+"""Held while a version is numbered and written: each request has a library of its own, and a thread."""
 
 
 class UnknownMissionError(NotFoundError):
@@ -60,7 +63,8 @@ class MissionLibrary:
 
     def describe(self) -> list[MissionText]:
         """The shipped missions, then one's own by name."""
-        return [self._describe(name, text) for name, text in self.texts().items()]
+        texts = self.texts()
+        return [self._describe(name, texts) for name in texts]
 
     def versions(self, name: str) -> list[MissionVersion]:
         """The versions of one's own mission, the newest first. Raises UnknownMissionError."""
@@ -81,14 +85,19 @@ class MissionLibrary:
         mission = self.read(text)
         if mission.name in SHIPPED:
             raise RefusedError(f"{mission.name} ships with the program. Choose another name.")
-        folder = self._own / mission.name
+        with _STORING:
+            self._store(mission.name, text)
+        return mission
+
+    def _store(self, name: str, text: str) -> None:
+        folder = self._own / name
         versions = _versions(folder)
         if not versions and len(self.texts()) >= MISSIONS_MAX:
             raise RefusedError(
                 f"The library has {MISSIONS_MAX} missions already. Remove one from {self._own}."
             )
         if versions and _read(versions[-1]) == text:
-            return mission
+            return
         path = folder / f"{int(versions[-1].stem) + 1 if versions else 1}.toml"
         try:
             make_folder(self._own)
@@ -98,7 +107,6 @@ class MissionLibrary:
                 old.unlink(missing_ok=True)
         except OSError as problem:
             raise RefusedError(explain_write_error(problem, path)) from problem
-        return mission
 
     def delete(self, name: str) -> None:
         """Deletes one's own mission with its versions. Raises UnknownMissionError, RefusedError."""
@@ -110,17 +118,17 @@ class MissionLibrary:
         except OSError as problem:
             raise RefusedError(f"{self._own / name} cannot be deleted: {problem.strerror}.") from problem
 
-    def _describe(self, name: str, text: str) -> MissionText:
+    def _describe(self, name: str, texts: dict[str, str]) -> MissionText:
         """A mission; the title of an invalid one is its name."""
         try:
-            summary = summarize_mission(self.read(text))
+            summary = summarize_mission(read_mission(texts[name], texts, self._limits))
         except ConfigError:
             summary = None
         versions = 0 if name in SHIPPED else len(_versions(self._own / name))
         title = summary.title if summary else name
         shipped = name in SHIPPED
         return MissionText(
-            name=name, title=title, text=text, shipped=shipped, versions=versions, summary=summary
+            name=name, title=title, text=texts[name], shipped=shipped, versions=versions, summary=summary
         )
 
 

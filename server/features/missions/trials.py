@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 import os
 import sys
 from asyncio.subprocess import PIPE, Process
@@ -12,6 +13,8 @@ from robot_runtime.errors import RefusedError
 from server.features.missions.schemas import MissionTrial, MissionTrialResult
 from server.platform.settings import Settings
 from server.processes.exit_status import describe_status
+
+log = logging.getLogger(__name__)
 
 LINE_BYTES_MAX = 4_000_000
 SECONDS_MAX = 1800.0
@@ -31,19 +34,22 @@ class MissionTrials:
         """The running trial, or the last one, with its results so far."""
         return self._trial
 
-    def start(self, name: str, text: str, library: dict[str, str], seeds: int) -> int:
-        """Starts a trial, and returns its number. Raises RefusedError while another runs."""
+    def start(self, name: str, text: str, library: dict[str, str], seeds: int) -> None:
+        """Starts a trial. Raises RefusedError while another runs."""
         if self._trial.running:
             raise RefusedError("A trial is running. Wait for its end, or cancel it.")
-        number = self._trial.number + 1
-        self._trial = MissionTrial(
-            number=number, name=name, text=text, running=True, seeds=seeds, problem="", results=[]
+        trial = self._trial = MissionTrial(
+            number=self._trial.number + 1,
+            name=name,
+            text=text,
+            running=True,
+            seeds=seeds,
+            problem="",
+            results=[],
         )
-        trial = self._trial
         self._task = asyncio.create_task(self._perform(trial, library))
         # Also of a task that is cancelled before it begins.
         self._task.add_done_callback(lambda _: setattr(trial, "running", False))
-        return number
 
     def cancel(self) -> None:
         """Ends the running trial; its results stay. Raises RefusedError if none runs."""
@@ -71,6 +77,9 @@ class MissionTrials:
             trial.problem = f"It was given up after {SECONDS_MAX / 60:.0f} min. Choose fewer seeds."
         except OSError as problem:
             trial.problem = f"No process can be started for it ({problem.strerror})."
+        except Exception:
+            log.exception("a trial of a mission failed")
+            trial.problem = "An error in the software ended it; see the server's log."
 
     async def _try(self, trial: MissionTrial, library: dict[str, str]) -> str:
         command = ["nice", "-n", NICENESS, sys.executable, "-m", "robot_runtime.experiments.mission_trial"]

@@ -2,7 +2,9 @@
 
 import asyncio
 import json
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
 from typing import Any
 
 import pytest
@@ -12,6 +14,8 @@ from robot_runtime.contract.missions import MissionLimits
 from robot_runtime.errors import RefusedError
 from robot_runtime.missions.leaf import NODES
 from robot_runtime.missions.library import SHIPPED
+from server.features.missions import library as library_module
+from server.features.missions import trials as trials_module
 from server.features.missions.library import VERSIONS_MAX, MissionLibrary, UnknownMissionError
 from server.features.missions.nodes import list_node_kinds
 from server.features.missions.trials import MissionTrials
@@ -39,6 +43,38 @@ def test_a_mission_is_kept_with_its_versions(tmp_path: Path) -> None:
         library.keep(OWN + f"# {number}\n")
     assert [one.version for one in library.versions("test")][-1] == 3
     assert len(library.versions("test")) == VERSIONS_MAX
+
+
+def test_two_who_store_a_mission_at_once_make_two_versions(tmp_path: Path) -> None:
+    texts = [OWN + f"# {number}\n" for number in range(8)]
+    ready = Barrier(len(texts))
+
+    def keep(text: str) -> None:
+        library = MissionLibrary(tmp_path / "missions", MissionLimits())
+        ready.wait()
+        library.keep(text)
+
+    with ThreadPoolExecutor(len(texts)) as people:
+        list(people.map(keep, texts))
+    versions = MissionLibrary(tmp_path / "missions", MissionLimits()).versions("test")
+    assert [one.version for one in versions] == [8, 7, 6, 5, 4, 3, 2, 1]
+    assert {one.text for one in versions} == {*texts}
+
+
+def test_a_listing_reads_each_mission_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    library = MissionLibrary(tmp_path / "missions", MissionLimits())
+    for number in range(3):
+        library.keep(OWN.replace('"test"', f'"test{number}"'))
+    read: list[Path] = []
+    whole = library_module._read
+
+    def count(path: Path) -> str | None:
+        read.append(path)
+        return whole(path)
+
+    monkeypatch.setattr(library_module, "_read", count)
+    assert len(library.describe()) == len(SHIPPED) + 3
+    assert len(read) == 3
 
 
 def test_a_mission_of_ones_own_is_deleted_with_its_versions(tmp_path: Path) -> None:
@@ -129,6 +165,20 @@ def test_a_trial_tells_the_outcome_of_each_seed(settings: Settings) -> None:
         with pytest.raises(RefusedError, match="No trial is running"):
             trials.cancel()
         json.loads(trials.state().model_dump_json())
+
+    asyncio.run(run())
+
+
+def test_a_trial_that_fails_says_so(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    # A line that is longer cannot be read.
+    monkeypatch.setattr(trials_module, "LINE_BYTES_MAX", 20)
+
+    async def run() -> None:
+        trials = MissionTrials(settings)
+        trials.start("test", OWN, {}, 1)
+        await trials.wait()
+        assert trials.state().problem == "An error in the software ended it; see the server's log."
+        assert not trials.state().running
 
     asyncio.run(run())
 
