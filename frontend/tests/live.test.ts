@@ -226,19 +226,29 @@ describe('Live', () => {
     expect(live.now).toBeCloseTo(20, 3);
   });
 
-  it('has no hole in its rows where this computer slept', () => {
+  it.each([100, 300])('has no hole in its rows where this computer slept for %s s', (slept) => {
     server().greet();
     server().give(depthBlock(99, [0.1], 0));
     const now = performance.now.bind(performance);
-    vi.spyOn(performance, 'now').mockImplementation(() => now() + 300_000);
+    vi.spyOn(performance, 'now').mockImplementation(() => now() + slept * 1000);
     // What had come before it slept is delivered as it wakes.
     server().give(depthBlock(100, [0.2], 1));
     server().close();
     vi.advanceTimersByTime(300);
-    server().greet({ steady: 400 });
-    server().give(depthBlock(399, [0.7], 9000));
-    expect(live.rings.depth.oldest).toBe(399);
-    expect(live.rings.depth.length).toBe(1);
+    server().greet({ steady: 100 + slept });
+    server().give(depthBlock(100 + slept - 65, [0.7], 9000));
+    server().give(depthBlock(100 + slept, [0.8], 9001));
+    expect(depths().map((depth) => depth?.toFixed(1))).toEqual(['0.7', '0.8']);
+  });
+
+  it('keeps its rows where a server that was just started has fewer of them', () => {
+    server().greet();
+    server().give(depthBlock(99, [0.1], 0));
+    server().close();
+    vi.advanceTimersByTime(20_000);
+    server().greet({ steady: 120 });
+    server().give(depthBlock(119, [0.7], 0));
+    expect(depths()).toHaveLength(2);
   });
 
   it('keeps why the server ended the connection', () => {

@@ -18,7 +18,7 @@ import { Progress } from './store';
 const CLOCK_JUMP = 5;
 /** s by which the robot's calendar may drift before the page follows it */
 const DATE_JUMP = 0.5;
-/** s without rows; below FIRST_SECONDS (65 s, server/stream/hub.py), within which the server sends what was missed */
+/** s that a page may miss; below FIRST_SECONDS (65 s, server/stream/hub.py), within which the server sends what was missed */
 const AWAY = 50;
 
 /** The robot as it is now: fills a `Live` from the live socket. */
@@ -177,12 +177,14 @@ export class LiveFeed {
   }
 
   /**
-   * Clears a topic's rows where the first of a new connection come long after them, for one where this page slept:
-   * the past as a whole has no hole.
+   * Clears a topic's rows where those of a new connection do not join on to them, for one where this page slept: the
+   * past as a whole has no hole.
    */
   #clearBeforeHole(block: Block, known: number): void {
     const ring = Object.values(this.live.rings).find(({ topic }) => topic.id === block.topic);
-    if (ring?.newest !== known || block.payload.getFloat64(0, true) - known <= AWAY) return;
+    if (ring?.newest !== known || block.payload.getFloat64(0, true) <= known) return;
+    // A server that has just been started may have less than this page.
+    if (this.#steady.now() - known <= AWAY) return;
     ring.clear();
     this.#past.forget();
   }
