@@ -57,19 +57,35 @@ class Topic:
 
 
 CHART_SECONDS = 300.0
-"""s; the longest time that a chart of the page shows."""
+"""s of depth and control that a seek of a replay brings; more would make it slow."""
+STRIP_SECONDS = 60.0
+"""s that the small charts of the page show."""
 _ROWS, _DOCUMENTS, _PICTURE = Kind.ROWS, Kind.DOCUMENTS, Kind.PICTURE
 TOPICS: tuple[Topic, ...] = (
     Topic(1, "imu", _ROWS, packets.Imu, "attitude, turn rate and specific force"),
     Topic(2, "depth", _ROWS, packets.Depth, "depth and pressure", charted=CHART_SECONDS),
-    Topic(3, "beacon", _ROWS, packets.Beacon, "light-beacon detectors"),
+    Topic(3, "beacon", _ROWS, packets.Beacon, "light-beacon detectors", charted=STRIP_SECONDS),
     Topic(4, "motor", _ROWS, packets.Motor, "fins: set points, angles, drives"),
-    Topic(5, "status", _ROWS, packets.Status, "the board's state and health"),
-    Topic(6, "navigation", _ROWS, packets.Navigation, "navigation commands sent to the board", charted=60.0),
+    Topic(5, "status", _ROWS, packets.Status, "the board's state and health", charted=STRIP_SECONDS),
+    Topic(
+        6,
+        "navigation",
+        _ROWS,
+        packets.Navigation,
+        "navigation commands sent to the board",
+        charted=STRIP_SECONDS,
+    ),
     Topic(7, "control", _ROWS, documents.Control, "ticks of the control node", charted=CHART_SECONDS),
-    Topic(8, "link", _ROWS, LinkStatistics, "the serial link"),
+    Topic(8, "link", _ROWS, LinkStatistics, "the serial link", charted=STRIP_SECONDS),
     Topic(9, "truth", _ROWS, documents.Truth, "the simulated body", sender="simulator"),
-    Topic(10, "turning", _ROWS, documents.Turning, "the same ticks, for heading, pitch and roll"),
+    Topic(
+        10,
+        "turning",
+        _ROWS,
+        documents.Turning,
+        "the same ticks, for heading, pitch and roll",
+        charted=STRIP_SECONDS,
+    ),
     Topic(16, "state", _DOCUMENTS, documents.State, "the robot as a whole", newest_only=True),
     Topic(
         17,

@@ -88,4 +88,4 @@ def test_a_panel_is_added(tree: Path) -> None:
     follow("develop/add-a-panel.md", tree)
     built = [file.read_text() for file in (tree / "server/page/assets").glob("*.js")]
     assert any("Water temperature" in script for script in built)
-    assert len(changed_modules("develop/add-a-panel.md")) == 2
+    assert len(changed_modules("develop/add-a-panel.md")) == 3

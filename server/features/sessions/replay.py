@@ -35,7 +35,7 @@ from server.platform.models import Chunk
 RANGE_MAX = 120.0
 """s of one answer."""
 HISTORY_MAX = CHART_SECONDS
-"""s before the start that the page's charts can show."""
+"""s before the start of which an answer holds samples for charts."""
 BYTES_MAX = 16_000_000
 """Largest size of one answer; two minutes at the robot's full rate are 2 MB."""
 LISTED_CHUNKS = 300

@@ -16,7 +16,7 @@ from sqlmodel import col
 
 from robot_runtime.contract import documents
 from robot_runtime.contract.packets import Depth
-from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.contract.topics import BY_NAME, TIME
 from robot_runtime.transport.blocks import Block, pack_documents, read_blocks, read_rows, row
 from server.features.sessions.chunks import CHUNK_BYTES_MAX, encode_rows
 from server.features.sessions.recording import Recording, RecordingError
@@ -136,6 +136,18 @@ def test_a_seek_returns_the_documents_in_force(store: Store, settings: Settings)
     assert {one.topic.name for one in read_blocks(read_blocks_between(recording, 115.0, 116.0).data)} == {
         "depth"
     }
+
+
+@pytest.mark.parametrize("name", ["beacon", "status", "navigation", "link", "turning"])
+def test_a_seek_returns_a_minute_of_what_small_charts_show(
+    store: Store, settings: Settings, name: str
+) -> None:
+    topic = BY_NAME[name]
+    record_bytes = bytes(topic.row_bytes - TIME.size)
+    rows = b"".join(row(100.0 + second, record_bytes) for second in range(100))
+    recording = read(store, record(store, settings, [Block.of(topic, 100, 0, rows)]))
+    found = read_blocks(read_blocks_between(recording, 180.0, 181.0, history=300.0).data)
+    assert [time for block in found for time, _ in read_rows(block)] == [120.0 + n for n in range(61)]
 
 
 def test_a_seek_into_a_gap_returns_the_newest_sample_before_it(store: Store, settings: Settings) -> None:
