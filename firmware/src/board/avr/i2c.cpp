@@ -69,7 +69,9 @@ bool transfer(uint8_t address, const uint8_t* out, uint8_t out_size, uint8_t* in
   if (in_size) {
     if (!send_address(address << 1 | TW_READ)) return false;
     for (uint8_t i = 0; i < in_size; ++i) {
-      if (!wait_for(i + 1 < in_size ? _BV(TWEA) : 0)) return false;
+      const bool more = i + 1 < in_size;
+      if (!wait_for(more ? _BV(TWEA) : 0)) return false;
+      if (TW_STATUS != (more ? TW_MR_DATA_ACK : TW_MR_DATA_NACK)) return false;
       in[i] = TWDR;
     }
   }
