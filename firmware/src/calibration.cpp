@@ -54,6 +54,7 @@ uint32_t CalibrationStore::checksum() const {
 }
 
 void CalibrationStore::start() {
+  static_assert(sizeof(Record) <= board::kSurfaceAt, "it would overwrite the surface");
   board::read_kept(0, &record_, sizeof record_);
   const bool valid = record_.version == kCalibrationVersion && record_.checksum == checksum();
   if (valid && possible(value()) && !in_the_loop()) return;

@@ -213,8 +213,10 @@ void Link::queue_line(DebugLine& line) {
 bool Link::line_idle() { return board::line_room() >= kIdleRoom; }
 
 bool Link::line_due(uint16_t now_ms) {
-  const uint16_t interval_ms = now_ms - stepped_ms_;
+  uint16_t interval_ms = now_ms - stepped_ms_;
   stepped_ms_ = now_ms;
+  // The longest frame takes 0.6 s at 1200 baud, and more than some seconds would overflow below.
+  if (interval_ms > 1000) interval_ms = 1000;
   // Half a millisecond more, because the clock counts whole ones.
   const uint32_t bytes = (2UL * interval_ms + 1) * kBaud / 20000;
   return board::line_room() >= board::kLineRoom - (bytes < kFrameBytesMax ? bytes : kFrameBytesMax);

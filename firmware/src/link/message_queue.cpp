@@ -25,7 +25,9 @@ bool MessageQueue::push(uint8_t type, const void* payload, uint8_t payload_size)
 
 uint8_t MessageQueue::peek(uint8_t offset, uint8_t (&message)[kReliableBytesMax]) const {
   if (offset >= used_) return 0;
-  const uint8_t size = message_bytes(at(offset), at(offset + kTextSizeAt));
+  const uint8_t type = at(offset);
+  // Other messages may be shorter, and nothing may follow.
+  const uint8_t size = message_bytes(type, type == Debug::kType ? at(offset + kTextSizeAt) : 0);
   for (uint8_t i = 0; i < size; ++i) message[i] = at(offset + i);
   return size;
 }

@@ -15,8 +15,6 @@ constexpr int32_t kDepthMax = 32;
 // Pa: 5 and 10 cm of water. A cell of EEPROM lasts for 100,000 writes, so that waves must not cause them.
 constexpr int32_t kAtSurface = 500;
 constexpr int32_t kSubmerged = 1000;
-// Behind the calibration.
-constexpr uint8_t kRecordAt = 32;
 
 bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <= kSurfaceMax; }
 
@@ -26,7 +24,7 @@ void Surface::start() {
   const board::RetainedMemory& retained = board::retained_memory();
   if (retained.complement == ~retained.value) restore(retained.value);
   Record record;
-  board::read_kept(kRecordAt, &record, sizeof record);
+  board::read_kept(board::kSurfaceAt, &record, sizeof record);
   kept_ = record.complement == static_cast<uint16_t>(~record.value);
   if (known() || !kept_) return;
   restore(2 * static_cast<int32_t>(record.value));
@@ -67,7 +65,7 @@ void Surface::step(int32_t pressure, bool armed) {
   if (next_byte_ == sizeof(Record)) return;
   const uint16_t value = pressure_ / 2;
   const Record record = {value, kept_ ? static_cast<uint16_t>(~value) : value};
-  board::write_kept(kRecordAt + next_byte_, reinterpret_cast<const uint8_t*>(&record)[next_byte_]);
+  board::write_kept(board::kSurfaceAt + next_byte_, reinterpret_cast<const uint8_t*>(&record)[next_byte_]);
   ++next_byte_;
 }
 
