@@ -28,9 +28,11 @@
 namespace mucat {
 namespace {
 
-constexpr uint8_t kTypes[] = {Stop::kType,  Start::kType,  Navigation::kType, Imu::kType,
-                              Depth::kType, Beacon::kType, Motor::kType,      Debug::kType,
-                              Hello::kType, Status::kType, Heartbeat::kType,  Acknowledge::kType};
+constexpr uint8_t kTypes[] = {
+    Stop::kType,      Start::kType,       Navigation::kType, Imu::kType,         Depth::kType,
+    Beacon::kType,    Motor::kType,       Debug::kType,      Hello::kType,       Status::kType,
+    Heartbeat::kType, Acknowledge::kType, Parameter::kType,  Calibration::kType, RequestCalibration::kType,
+    ZeroDepth::kType, Sense::kType};
 constexpr uint32_t kLongestMs = 3000;
 constexpr uint32_t kStepUs = 1000;
 constexpr uint16_t kBatteryFull = 818;
