@@ -92,14 +92,14 @@ static uint32_t crc32(const uint8_t *bytes, unsigned size) {
 }
 
 // A record ends with the CRC-32 of all before, so that the CRC-32 of every whole one is the same.
-static bool calibrated(const uint8_t *kept) {
-  return kept[0] == calibration_record[0] &&
-         crc32(kept, CALIBRATION_BYTES) == crc32(calibration_record, CALIBRATION_BYTES);
+static bool calibrated(const uint8_t *record) {
+  return record[0] == calibration_record[0] &&
+         crc32(record, CALIBRATION_BYTES) == crc32(calibration_record, CALIBRATION_BYTES);
 }
 
 void eeprom_calibrate(struct eeprom *eeprom) {
-  uint8_t *kept = eeprom->module->eeprom + CALIBRATION_ADDRESS;
-  if (!calibrated(kept)) {
-    memcpy(kept, calibration_record, CALIBRATION_BYTES);
+  uint8_t *record = eeprom->module->eeprom + CALIBRATION_ADDRESS;
+  if (!calibrated(record)) {
+    memcpy(record, calibration_record, CALIBRATION_BYTES);
   }
 }

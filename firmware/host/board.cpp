@@ -18,8 +18,8 @@ constexpr uint64_t kByteUs = 10 * 1000000ULL / kBaud;
 }  // namespace
 
 Board::Board() {
-  memset(kept, 0xFF, sizeof kept);
-  memcpy(kept, calibration_record, sizeof calibration_record);
+  memset(eeprom, 0xFF, sizeof eeprom);
+  memcpy(eeprom, calibration_record, sizeof calibration_record);
 }
 
 void advance(uint32_t us) {
@@ -111,9 +111,9 @@ void set_motor_power(bool on) { the_board.motor_power = on; }
 
 uint16_t next_epoch() { return ++the_board.epoch; }
 
-void read_kept(uint8_t index, void* bytes, uint8_t size) { memcpy(bytes, the_board.kept + index, size); }
+void read_eeprom(uint8_t index, void* bytes, uint8_t size) { memcpy(bytes, the_board.eeprom + index, size); }
 
-void write_kept(uint8_t index, uint8_t byte) { the_board.kept[index] = byte; }
+void write_eeprom(uint8_t index, uint8_t byte) { the_board.eeprom[index] = byte; }
 
 RetainedMemory& retained_memory() { return the_board.retained; }
 

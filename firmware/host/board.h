@@ -14,7 +14,7 @@ namespace host {
 using I2cBus = uint8_t (*)(uint8_t address, const uint8_t* out, uint8_t out_size, uint8_t* in,
                            uint8_t in_size);
 
-constexpr uint8_t kKeptBytes = 100;
+constexpr uint8_t kEepromBytes = 100;
 
 // It begins calibrated as the emulated board.
 struct Board {
@@ -24,7 +24,7 @@ struct Board {
   uint64_t ticks_taken = 0;
   ResetCause cause = ResetCause::kPowerOn;
   uint16_t epoch = 0;
-  uint8_t kept[kKeptBytes];
+  uint8_t eeprom[kEepromBytes];
   board::RetainedMemory retained = {};
 
   std::deque<uint8_t> to_board;

@@ -187,8 +187,8 @@ void board_set_beacons(bool right, bool left) {
   host::the_board.left = left;
 }
 // The EEPROM as the factory delivers it.
-void board_erase_kept() { memset(host::the_board.kept, 0xFF, sizeof host::the_board.kept); }
-void board_flip_kept(uint8_t index) { host::the_board.kept[index] ^= 0x10; }
+void board_erase_eeprom() { memset(host::the_board.eeprom, 0xFF, sizeof host::the_board.eeprom); }
+void board_flip_eeprom(uint8_t index) { host::the_board.eeprom[index] ^= 0x10; }
 uint16_t board_epoch() { return host::the_board.epoch; }
 bool board_led() { return host::the_board.led; }
 bool board_motor_power() { return host::the_board.motor_power; }

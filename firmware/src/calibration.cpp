@@ -55,7 +55,7 @@ uint32_t CalibrationStore::checksum() const {
 
 void CalibrationStore::start() {
   static_assert(sizeof(Record) <= board::kSurfaceAt, "it would overwrite the surface");
-  board::read_kept(0, &record_, sizeof record_);
+  board::read_eeprom(0, &record_, sizeof record_);
   const bool valid = record_.version == kCalibrationVersion && record_.checksum == checksum();
   if (valid && possible(value()) && !in_the_loop()) return;
   Calibration& none = record_.calibration;
@@ -83,7 +83,7 @@ void CalibrationStore::step() {
     start();
     return;
   }
-  board::write_kept(next_byte_, reinterpret_cast<const uint8_t*>(&record_)[next_byte_]);
+  board::write_eeprom(next_byte_, reinterpret_cast<const uint8_t*>(&record_)[next_byte_]);
   ++next_byte_;
 }
 

@@ -1,4 +1,4 @@
-// What differs from robot to robot, kept in EEPROM.
+// What differs from robot to robot, in EEPROM.
 #pragma once
 #include <stdint.h>
 
@@ -12,7 +12,7 @@ FlashText describe_step(uint8_t steps);
 
 class CalibrationStore {
  public:
-  // Reads what is kept. Without a valid record no step is done. In the loop there is nothing to calibrate.
+  // Reads the record. Without a valid record no step is done. In the loop there is nothing to calibrate.
   void start();
   const Calibration& value() const { return record_.calibration; }
   // The bits of CalibrationStep that are not done; all while a calibration is being written.
@@ -21,7 +21,8 @@ class CalibrationStore {
   // Puts it into force and begins to write it, unless it is impossible. Either way an answer is due.
   void store(const Calibration& calibration);
   void request() { answer_due_ = true; }
-  // One tick: writes a byte. After the last one it reads all of them again: the answer says what is kept.
+  // One tick: writes a byte. After the last one it reads all of them again: the answer says what EEPROM
+  // holds.
   void step();
   bool answer_due() const { return answer_due_ && !writing(); }
   void answered() { answer_due_ = false; }

@@ -60,7 +60,7 @@ def start(robot: Robot) -> bool:
 
 def fresh(robot: Robot) -> Robot:
     """The same robot with an erased EEPROM."""
-    robot.firmware.board_erase_kept()
+    robot.firmware.board_erase_eeprom()
     robot.reset(ResetCause.POWER_ON)
     robot.run(50)
     robot.greet()
@@ -130,7 +130,7 @@ def test_a_power_cut_while_it_is_written_leaves_none(robot: Robot) -> None:
 
 @pytest.mark.parametrize("index", range(30))
 def test_a_record_with_a_wrong_byte_is_none(robot: Robot, index: int) -> None:
-    robot.firmware.board_flip_kept(index)
+    robot.firmware.board_flip_eeprom(index)
     robot.reset(ResetCause.POWER_ON)
     robot.run(50)
     robot.greet()

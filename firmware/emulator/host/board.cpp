@@ -23,7 +23,7 @@ double seconds(const void* owner) { return static_cast<const Board*>(owner)->now
 
 Board::Board() {
   devices_create(&parts, {seconds, this});
-  memcpy(kept, calibration_record, sizeof calibration_record);
+  memcpy(eeprom, calibration_record, sizeof calibration_record);
 }
 
 void Board::reset(ResetCause why) {
@@ -155,9 +155,9 @@ uint16_t next_epoch() {
   return current->epoch;
 }
 
-void read_kept(uint8_t index, void* bytes, uint8_t size) { memcpy(bytes, current->kept + index, size); }
+void read_eeprom(uint8_t index, void* bytes, uint8_t size) { memcpy(bytes, current->eeprom + index, size); }
 
-void write_kept(uint8_t index, uint8_t byte) { current->kept[index] = byte; }
+void write_eeprom(uint8_t index, uint8_t byte) { current->eeprom[index] = byte; }
 
 RetainedMemory& retained_memory() { return current->retained; }
 

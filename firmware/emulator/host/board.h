@@ -31,7 +31,7 @@ struct Board {
   uint64_t ticks_taken = 0;
   ResetCause cause = ResetCause::kPowerOn;
   uint16_t epoch = 0;
-  uint8_t kept[100] = {};  // EEPROM behind the boot counter
+  uint8_t eeprom[100] = {};  // EEPROM behind the boot counter
   board::RetainedMemory retained = {};
   devices parts;
   Wire to_board, from_board;

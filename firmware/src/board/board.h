@@ -51,9 +51,9 @@ void set_motor_power(bool on);
 uint16_t next_epoch();
 // More memory that survives a power cycle, at most 100 bytes: the calibration at 0, then the surface.
 constexpr uint8_t kSurfaceAt = 32;
-void read_kept(uint8_t index, void* bytes, uint8_t size);
+void read_eeprom(uint8_t index, void* bytes, uint8_t size);
 // Begins to write a byte, which takes 4 ms; waits while the one before it is written.
-void write_kept(uint8_t index, uint8_t byte);
+void write_eeprom(uint8_t index, uint8_t byte);
 // Memory that survives a reset but not a power cycle; its content at power-on is random.
 struct RetainedMemory {
   uint32_t value;

@@ -24,9 +24,9 @@ void Surface::start() {
   const board::RetainedMemory& retained = board::retained_memory();
   if (retained.complement == ~retained.value) restore(retained.value);
   Record record;
-  board::read_kept(board::kSurfaceAt, &record, sizeof record);
-  kept_ = record.complement == static_cast<uint16_t>(~record.value);
-  if (known() || !kept_) return;
+  board::read_eeprom(board::kSurfaceAt, &record, sizeof record);
+  recorded_ = record.complement == static_cast<uint16_t>(~record.value);
+  if (known() || !recorded_) return;
   restore(2 * static_cast<int32_t>(record.value));
   uncertain_ = known();
 }
@@ -44,7 +44,7 @@ void Surface::add(int32_t pressure) {
   pressure_ /= kReadings;
   retain();
   // EEPROM may hold the one before it.
-  keep(false);
+  set_recorded(false);
 }
 
 void Surface::retain() {
@@ -60,17 +60,17 @@ void Surface::step(int32_t pressure, bool armed) {
   const bool at_surface = below > -kAtSurface && below < kAtSurface;
   // What EEPROM restored outlives the next reset, too.
   if (at_surface && uncertain_) retain();
-  const bool kept = armed || below >= kSubmerged || (kept_ && !at_surface);
-  if (kept != kept_) keep(kept);
+  const bool recorded = armed || below >= kSubmerged || (recorded_ && !at_surface);
+  if (recorded != recorded_) set_recorded(recorded);
   if (next_byte_ == sizeof(Record)) return;
   const uint16_t value = pressure_ / 2;
-  const Record record = {value, kept_ ? static_cast<uint16_t>(~value) : value};
-  board::write_kept(board::kSurfaceAt + next_byte_, reinterpret_cast<const uint8_t*>(&record)[next_byte_]);
+  const Record record = {value, recorded_ ? static_cast<uint16_t>(~value) : value};
+  board::write_eeprom(board::kSurfaceAt + next_byte_, reinterpret_cast<const uint8_t*>(&record)[next_byte_]);
   ++next_byte_;
 }
 
-void Surface::keep(bool kept) {
-  kept_ = kept;
+void Surface::set_recorded(bool recorded) {
+  recorded_ = recorded;
   next_byte_ = 0;
 }
 

@@ -32,7 +32,7 @@ class Surface {
     uint16_t complement;
   };
 
-  void keep(bool kept);
+  void set_recorded(bool recorded);
   // Stores a certain surface in memory that survives a reset.
   void retain();
   void restore(int32_t pressure);
@@ -40,7 +40,7 @@ class Surface {
   int32_t pressure_ = 0;  // the sum of the readings until known
   uint8_t readings_ = 0;
   uint8_t next_byte_ = sizeof(Record);  // of the record, to be written
-  bool kept_ = false;                   // in EEPROM, once all bytes are written
+  bool recorded_ = false;               // in EEPROM, once all bytes are written
   bool uncertain_ = false;
 };
 

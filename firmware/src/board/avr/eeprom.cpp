@@ -10,7 +10,7 @@ namespace board {
 namespace {
 
 uint16_t* const kEpochAddress = nullptr;
-uint8_t* const kKeptAddress = reinterpret_cast<uint8_t*>(16);
+uint8_t* const kRecordsAddress = reinterpret_cast<uint8_t*>(16);
 
 }  // namespace
 
@@ -21,11 +21,11 @@ uint16_t next_epoch() {
   return epoch;
 }
 
-void read_kept(uint8_t index, void* bytes, uint8_t size) {
-  eeprom_read_block(bytes, kKeptAddress + index, size);
+void read_eeprom(uint8_t index, void* bytes, uint8_t size) {
+  eeprom_read_block(bytes, kRecordsAddress + index, size);
 }
 
-void write_kept(uint8_t index, uint8_t byte) { eeprom_update_byte(kKeptAddress + index, byte); }
+void write_eeprom(uint8_t index, uint8_t byte) { eeprom_update_byte(kRecordsAddress + index, byte); }
 
 }  // namespace board
 }  // namespace mucat
