@@ -4,7 +4,6 @@ Each effect is whole or not at all, so that after a power cut between any two of
 done again. `before` is called with the words of each effect: tests cut the power there.
 """
 
-import lzma
 import os
 import shutil
 import subprocess
@@ -20,7 +19,7 @@ from server.platform.disk_space import explain_write_error
 from server.platform.settings import SetupError
 
 WORDS_SHOWN = 300
-DAMAGED = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError)
+DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError)
 """What zipfile raises for an archive that is not whole."""
 Run = Callable[[Sequence[str], Mapping[str, str], float], "subprocess.CompletedProcess[str]"]
 """Runs a command with these additions to its environment, for so many s at most."""

@@ -16,8 +16,6 @@ BUILD_SECONDS = 3600.0
 """A Raspberry Pi Zero unpacks some 300 MB on a slow card."""
 WHEELS = "wheels"
 """Folder of an environment with the wheels that it was made of: a later release may lack those it shares."""
-VERSIONS = "constraints.txt"
-"""File of an environment with the versions of the release that it was made of."""
 
 
 def build_environment(effects: Effects, places: InstallPlaces, release: Release) -> Path:
@@ -37,7 +35,7 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
     if BITS == 32:
         _check_system_packages(places)
     effects.remove(environment)
-    shared = [places.current / WHEELS] if (places.current / WHEELS).is_dir() else []
+    shared = _find_shared(places, release)
     system = ["--system-site-packages"] if _needs_system_packages(places) else []
     effects.run("/usr/bin/python3", "-m", "venv", *system, environment, seconds=BUILD_SECONDS)
     python = environment / "bin/python"
@@ -45,9 +43,8 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
     machine = ["linux32"] if BITS == 32 else []
     pip: list[str | Path] = [*machine, python, "-m", "pip", "--disable-pip-version-check", "--no-input"]
     sources: list[str | Path] = [
-        word for folder in (release.folder, *shared) for word in ("--find-links", folder)
+        word for source in (release.folder, *shared) for word in ("--find-links", source)
     ]
-    effects.write(environment / VERSIONS, _list_versions(release))
     try:
         effects.run(
             *pip,
@@ -55,8 +52,6 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
             "--quiet",
             "--no-index",
             *sources,
-            "--constraint",
-            environment / VERSIONS,
             "--no-cache-dir",
             *_packages(release),
             environment={"PIP_CONFIG_FILE": "/dev/null", "PYTHONPATH": ""},
@@ -118,33 +113,28 @@ def _read_sums(folder: Path) -> str:
     return path.read_text(encoding="ascii", errors="replace") if path.exists() else ""
 
 
-def _list_versions(release: Release) -> str:
-    """The versions of the release's wheels, as constraints: those of the version in use may be newer."""
-    versions: dict[str, set[str]] = {}
-    for wheel in release.folder.glob("*.whl"):
-        name, version = wheel.name.split("-")[:2]
-        versions.setdefault(name, set()).add(version)
-    return "".join(f"{name}=={found.pop()}\n" for name, found in sorted(versions.items()) if len(found) == 1)
+def _find_shared(places: InstallPlaces, release: Release) -> list[Path]:
+    """The wheels of the version in use that the release lacks; not other versions of those that it has."""
+    own = {_split(wheel)[0] for wheel in release.folder.glob("*.whl")}
+    return [wheel for wheel in sorted((places.current / WHEELS).glob("*.whl")) if _split(wheel)[0] not in own]
 
 
 def _store_wheels(
     effects: Effects, places: InstallPlaces, environment: Path, release: Release, shared: list[Path]
 ) -> None:
     """Store the release's wheels, and of the shared ones those that the environment was made of."""
-    present = {_normalise(one.stem) for one in environment.glob("lib/python*/site-packages/*.dist-info")}
-    own = sorted(release.folder.glob("*.whl"))
-    others = [
-        file
-        for folder in shared
-        for file in sorted(folder.glob("*.whl"))
-        if file.name not in {one.name for one in own}
-        and _normalise("-".join(file.name.split("-")[:2])) in present
-    ]
-    if others:
-        effects.gather(others, environment / WHEELS)
+    present = [_normalise(one.stem) for one in environment.glob("lib/python*/site-packages/*.dist-info")]
+    if used := [wheel for wheel in shared if "-".join(_split(wheel)) in present]:
+        effects.gather(used, environment / WHEELS)
     # Only root can change what lies in `incoming`.
     put = effects.gather if release.folder == places.incoming else effects.copy
-    put(own, environment / WHEELS)
+    put(sorted(release.folder.glob("*.whl")), environment / WHEELS)
+
+
+def _split(wheel: Path) -> tuple[str, str]:
+    """Name and version of a wheel, both as `_normalise` spells them."""
+    name, _, rest = wheel.name.partition("-")
+    return _normalise(name), _normalise(rest.partition("-")[0])
 
 
 def _normalise(name: str) -> str:

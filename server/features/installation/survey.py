@@ -18,6 +18,9 @@ from server.platform.running_server import ask
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
 
+ROBOT_SECONDS = 30.0
+"""A small computer on which an update has just been built; without an answer there is no update."""
+
 
 @dataclass(frozen=True, slots=True)
 class Survey:
@@ -44,7 +47,7 @@ def survey(settings: Settings) -> Survey:
     running, problem, armed, recording = "", "", None, False
     try:
         # Alone: a damaged database does not hide an armed robot.
-        armed = ask(settings.data, "GET", "/robot")["armed"] is True
+        armed = ask(settings.data, "GET", "/robot", seconds=ROBOT_SECONDS)["armed"] is True
     except SetupError as failure:
         problem = str(failure)
     try:

@@ -261,11 +261,10 @@ def test_a_cut_zip_file_is_refused(tmp_path: Path, keys: Path, content: bytes, w
     assert computer.tree() == before
 
 
-@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA])
-def test_a_damaged_zip_file_is_refused(tmp_path: Path, keys: Path, release: Path, method: int) -> None:
+def test_a_damaged_zip_file_is_refused(tmp_path: Path, keys: Path, release: Path) -> None:
     computer = installed(tmp_path / "pi", keys)
     path, name = tmp_path / "release.zip", "mucat-2.0.0-py3-none-any.whl"
-    with zipfile.ZipFile(path, "w", method) as archive:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.write(release / name, name)
     damaged = bytearray(path.read_bytes())
     with zipfile.ZipFile(path) as archive:
