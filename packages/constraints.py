@@ -1,13 +1,12 @@
 """Constraint files for pip, with the versions that were tested, and without what only tests need."""
 
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 from packaging.requirements import Requirement
 
-from packages.architectures import PackagingError
+from packages.commands import run
 from robot_runtime.places import PACKAGES
 
 EXTRAS = ("pi", "scene", "parquet", "identify", "ros2")
@@ -57,7 +56,4 @@ def _name(line: str) -> str:
 def _resolve(options: list[str]) -> str:
     command = [str(Path(sys.executable).with_name("uv")), "pip", "compile", "--quiet", "--no-header"]
     command += ["--no-annotate", "--universal", str(PACKAGES / "pyproject.toml"), *options]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise PackagingError(f"The versions do not fit together: {done.stderr.strip()}")
-    return done.stdout
+    return run(command, "make setup", "The versions do not fit together")

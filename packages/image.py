@@ -8,13 +8,13 @@ import argparse
 import os
 import platform
 import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from packages.architectures import ARCHITECTURES, PackagingError
+from packages.commands import run
 from packages.mirror import find_mirror
 from packages.release import build_release
 from packages.sysroot import SUITE
@@ -26,6 +26,7 @@ PYTHON = "3.11"
 """That of the suite."""
 DEBIAN = ("python3", "python3-venv", "ca-certificates", "openssl", "avrdude")
 """avrdude uploads the communication test to the emulated board."""
+TOOLS = "make image installs it"
 ENVIRONMENT, DATA = "/opt/mucat", "/data"
 NUMBER = 999
 """Of the user and group `mucat`."""
@@ -59,17 +60,13 @@ def main() -> int:
     except PackagingError as problem:
         print(problem, file=sys.stderr)
         return 1
-    except subprocess.CalledProcessError as problem:
-        words = (problem.stderr or b"").decode(errors="replace").strip()
-        print(f"{problem.cmd[0]} failed: {words}", file=sys.stderr)
-        return 1
     return 0
 
 
 def build_image(secret: Path, dist: Path) -> Path:
     """Builds the image for this computer's architecture. Returns its path.
 
-    Raises PackagingError, CalledProcessError.
+    Raises PackagingError.
     """
     machine = platform.machine()
     if os.geteuid() != 0:
@@ -101,15 +98,12 @@ def _folder() -> Iterator[Path]:
 def _make_root(root: Path, debian: str) -> None:
     command = ["mmdebstrap", "--quiet", "--variant=minbase", f"--architectures={debian}"]
     command += [f"--include={','.join(DEBIAN)}", SUITE, str(root), f"deb {find_mirror()} {SUITE} main"]
-    try:
-        subprocess.run(command, check=True, capture_output=True)
-    except FileNotFoundError as problem:
-        raise PackagingError("There is no mmdebstrap; `make image` installs it.") from problem
+    run(command, TOOLS)
 
 
 def _install(root: Path, release: Path) -> None:
     shutil.copytree(release, root / "release")
-    subprocess.run(["chroot", str(root), "sh", "-c", INSTALL], check=True, capture_output=True)
+    run(["chroot", root, "sh", "-c", INSTALL], TOOLS, "The release could not be installed")
     for waste in ("release", "var/cache/apt", "var/lib/apt/lists", "usr/share/doc", "usr/share/man"):
         shutil.rmtree(root / waste, ignore_errors=True)
 
@@ -117,7 +111,7 @@ def _install(root: Path, release: Path) -> None:
 def _pack(root: Path, archive: Path) -> None:
     # An archive, which keeps the owners.
     layer = root.with_suffix(".tar")
-    subprocess.run(["tar", "-C", str(root), "-cf", str(layer), "."], check=True, capture_output=True)
+    run(["tar", "-C", root, "-cf", layer, "."], TOOLS)
     container = _buildah("from", "scratch")
     try:
         _buildah("add", "--quiet", container, str(layer), "/")
@@ -134,7 +128,7 @@ def _pack(root: Path, archive: Path) -> None:
 
 
 def _buildah(*words: str) -> str:
-    return subprocess.run(["buildah", *words], check=True, capture_output=True).stdout.decode().strip()
+    return run(["buildah", *words], TOOLS).strip()
 
 
 if __name__ == "__main__":

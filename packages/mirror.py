@@ -1,19 +1,13 @@
 """The mirror of Debian that this computer's own apt uses."""
 
-import subprocess
-
 from packages.architectures import PackagingError
+from packages.commands import run
 
 
 def find_mirror() -> str:
     """Returns the address of Debian's main archive in this computer's sources. Raises PackagingError."""
-    listed = subprocess.run(
-        ["apt-get", "indextargets", "--format", "$(ORIGIN)|$(LABEL)|$(COMPONENT)|$(REPO_URI)"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    for line in listed.stdout.splitlines():
+    targets = ("indextargets", "--format", "$(ORIGIN)|$(LABEL)|$(COMPONENT)|$(REPO_URI)")
+    for line in run(["apt-get", *targets], "this needs a Debian").splitlines():
         origin, label, component, address = line.split("|", 3)
         if (origin, label, component) == ("Debian", "Debian", "main"):
             return address

@@ -8,12 +8,12 @@ A robot needs no network to install it. One with 32 bits has NumPy, OpenCV and p
 import argparse
 import platform
 import shutil
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
 
 from packages.architectures import ARCHITECTURES, PackagingError
+from packages.commands import run
 from packages.constraints import SMALL, small_requirements
 from packages.signing import PUBLIC_KEY, make_key, sign_folder, write_public_key
 from packages.wheels import DIST, build_emulator, build_mucat
@@ -44,16 +44,13 @@ def main() -> int:
     except PackagingError as problem:
         print(problem, file=sys.stderr)
         return 1
-    except subprocess.CalledProcessError as problem:
-        print(f"{problem.cmd[0]} failed: {(problem.stderr or b'').decode(errors='replace')}", file=sys.stderr)
-        return 1
     return 0
 
 
 def build_release(secret: Path, machine: str, python: str, dist: Path) -> Path:
     """Builds the folder of a release; an older one of this name is replaced. Returns its path.
 
-    Raises PackagingError, CalledProcessError.
+    Raises PackagingError.
     """
     if machine in SMALL_MACHINES and python != SMALL["python_version"]:
         raise PackagingError(
@@ -91,11 +88,11 @@ def _gather(folder: Path, wheel: Path, machine: str, python: str) -> None:
     for package in pure:
         command = [*pip, "wheel", "--no-deps", "--no-cache-dir", "--no-binary", package, *pins]
         command += ["--wheel-dir", str(folder), package]
-        subprocess.run(["env", "CC=/bin/false", *command], check=True, capture_output=True)
+        run(["env", "CC=/bin/false", *command], "make setup", f"{package} could not be built")
     tags = [word for tag in PLATFORMS for word in ("--platform", f"{tag}_{machine}")]
     command = [*pip, "download", "--only-binary", ":all:", *tags, "--python-version", python]
     command += ["--find-links", str(folder), "--dest", str(folder), *wanted]
-    subprocess.run(command, check=True, capture_output=True)
+    run(command, "make setup", "The wheels could not be gathered")
 
 
 if __name__ == "__main__":

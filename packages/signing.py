@@ -1,26 +1,33 @@
 """Keys and signatures of releases: Ed25519, by the program openssl."""
 
 import hashlib
-import subprocess
 from pathlib import Path
+
+from packages.architectures import PackagingError
+from packages.commands import run
 
 SUMS, SIGNATURE, PUBLIC_KEY = "SHA256SUMS", "SHA256SUMS.sig", "release.pem"
 
 
 def make_key(secret: Path) -> None:
-    """Makes a secret key, which its owner alone may read. Raises CalledProcessError."""
+    """Makes a secret key, which its owner alone may read. Raises PackagingError."""
     secret.parent.mkdir(parents=True, exist_ok=True)
-    secret.touch(0o600)
-    _openssl("genpkey", "-algorithm", "ed25519", "-out", secret)
+    secret.touch(0o600, exist_ok=False)
+    try:
+        _openssl("genpkey", "-algorithm", "ed25519", "-out", secret)
+    except PackagingError:
+        # The next release would take the empty file for a key.
+        secret.unlink(missing_ok=True)
+        raise
 
 
 def write_public_key(secret: Path, path: Path) -> None:
-    """Writes the public key that belongs to a secret one. Raises CalledProcessError."""
+    """Writes the public key that belongs to a secret one. Raises PackagingError."""
     _openssl("pkey", "-in", secret, "-pubout", "-out", path)
 
 
 def sign_folder(folder: Path, secret: Path) -> None:
-    """Writes the checksums of the folder's wheels, and their signature. Raises CalledProcessError."""
+    """Writes the checksums of the folder's wheels, and their signature. Raises PackagingError."""
     lines = [
         f"{hashlib.sha256(wheel.read_bytes()).hexdigest()}  {wheel.name}\n"
         for wheel in sorted(folder.glob("*.whl"))
@@ -30,4 +37,4 @@ def sign_folder(folder: Path, secret: Path) -> None:
 
 
 def _openssl(*arguments: str | Path) -> None:
-    subprocess.run(["openssl", *map(str, arguments)], check=True, capture_output=True)
+    run(["openssl", *arguments], "sudo apt install openssl")

@@ -1,15 +1,15 @@
 """Headers and libraries of another architecture, for its cross compiler, from Debian's packages."""
 
 import shutil
-import subprocess
 from pathlib import Path
 
-from packages.architectures import Architecture, PackagingError
+from packages.architectures import Architecture
+from packages.commands import run
 from packages.mirror import find_mirror
 from robot_runtime.places import BUILD
 
 LIBRARIES = ("libsimavr-dev", "libelf-dev", "zlib1g-dev", "libc6-dev", "libstdc++-12-dev", "linux-libc-dev")
-WORDS_MAX = 500
+TOOLS = "make all-wheels installs it"
 SUITE = "bookworm"
 """The oldest Debian that is supported: what is built with its libraries runs on the later ones too."""
 
@@ -28,12 +28,6 @@ def make_sysroot(architecture: Architecture) -> Path:
     command = ["mmdebstrap", "--quiet", "--variant=extract", f"--architectures={architecture.debian}"]
     command += [f"--include={','.join(LIBRARIES)}", SUITE, str(unfinished)]
     command += [f"deb {find_mirror()} {SUITE} main"]
-    try:
-        made = subprocess.run(command, capture_output=True, text=True, check=False)
-    except FileNotFoundError as problem:
-        raise PackagingError("There is no mmdebstrap; `make all-wheels` installs it.") from problem
-    if made.returncode:
-        words = made.stderr[-WORDS_MAX:].strip()
-        raise PackagingError(f"The libraries for {architecture.debian} could not be fetched: {words}")
+    run(command, TOOLS, f"The libraries for {architecture.debian} could not be fetched")
     unfinished.rename(root)
     return root

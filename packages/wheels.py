@@ -6,21 +6,20 @@ Both put their files into the folder `mucat_build`, where the software finds the
 
 import argparse
 import fcntl
-import os
 import platform
 import re
 import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from packages.architectures import ARCHITECTURES, Architecture, PackagingError
+from packages.commands import run
 from packages.constraints import write_constraints
-from packages.sysroot import make_sysroot
+from packages.sysroot import TOOLS, make_sysroot
 from robot_runtime.places import BUILD, PACKAGES
-from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
+from robot_runtime.simulation.boards.firmware import FirmwareBuildError, build_firmware, firmware_path
 from server import VERSION
 
 BAUDS = (250_000, 115_200)
@@ -84,12 +83,15 @@ def _fill_mucat(stage: Path) -> None:
 
 
 def _copy_firmware(parts: Path, baud: int, *, hil: bool) -> None:
-    build_firmware(BUILD, baud, hil=hil)
+    try:
+        build_firmware(BUILD, baud, hil=hil)
+    except FirmwareBuildError as problem:
+        raise PackagingError(str(problem)) from problem
     goal = firmware_path(parts, baud, ".elf", hil=hil)
     goal.parent.mkdir(parents=True, exist_ok=True)
     program = firmware_path(BUILD, baud, ".elf", hil=hil)
     # Most of an ELF file is for a debugger.
-    _run(["avr-objcopy", "--strip-debug", str(program), str(goal)])
+    run(["avr-objcopy", "--strip-debug", program, goal], TOOLS)
     shutil.copy(program.with_suffix(".hex"), goal.parent)
     if not hil:
         shutil.copy(program.with_name("bring_up.hex"), goal.parent)
@@ -116,11 +118,11 @@ def _fill_emulator(stage: Path, architecture: Architecture) -> None:
     if not architecture.is_own:
         root = make_sysroot(architecture)
         make += [f"CC={architecture.tool('gcc')}", f"CXX={architecture.tool('g++')}", f"SYSROOT={root}"]
-    _run(make)
+    run(make, TOOLS)
     parts = stage / "mucat_build"
     parts.mkdir()
     for name in ("board", "libhost_board.so"):
-        _run([architecture.tool("objcopy"), "--strip-unneeded", str(compiled / name), str(parts / name)])
+        run([architecture.tool("objcopy"), "--strip-unneeded", compiled / name, parts / name], TOOLS)
     # The board itself is linked statically.
     major, minor = _glibc(architecture, parts / "libhost_board.so")
     tag = f"manylinux_{major}_{minor}_{architecture.machine}"
@@ -129,7 +131,7 @@ def _fill_emulator(stage: Path, architecture: Architecture) -> None:
 
 def _glibc(architecture: Architecture, library: Path) -> tuple[int, int]:
     """The version of glibc that a shared library needs."""
-    symbols = _run([architecture.tool("objdump"), "--dynamic-syms", str(library)])
+    symbols = run([architecture.tool("objdump"), "--dynamic-syms", library], TOOLS)
     return max([GLIBC_MIN, *((int(one[1]), int(one[2])) for one in GLIBC_SYMBOL.finditer(symbols))])
 
 
@@ -137,7 +139,7 @@ def _build(stage: Path, dist: Path) -> Path:
     out = stage / "dist"
     uv = [str(Path(sys.executable).with_name("uv")), "build", "--wheel", "--quiet"]
     uv += ["--build-constraints", str(PACKAGES / "constraints.txt"), "--out-dir", str(out), str(stage)]
-    _run(uv)
+    run(uv, "make setup")
     (made,) = out.glob("*.whl")
     dist.mkdir(exist_ok=True)
     return Path(shutil.move(made, dist / made.name))
@@ -153,18 +155,6 @@ def _stage(name: str) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
         yield folder
-
-
-def _run(command: list[str]) -> str:
-    # Another make's flags are not for one that this starts.
-    alone = os.environ | {"MAKEFLAGS": ""}
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False, env=alone)
-    except FileNotFoundError as problem:
-        raise PackagingError(f"There is no {command[0]}; `make all-wheels` installs it.") from problem
-    if done.returncode:
-        raise PackagingError(f"{command[0]} failed: {(done.stderr or done.stdout).strip()}")
-    return done.stdout
 
 
 if __name__ == "__main__":
