@@ -61,6 +61,7 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
         for line in range(0, count, WINDOW_LINES):
             here = range(line, min(count, line + WINDOW_LINES))
             file.write(_window(source, chosen, limits, [first + one * period for one in here]).encode())
+            source.report(here.stop / count)
     packing.close()
 
 
@@ -76,13 +77,13 @@ def _choose(source: ExportSelection) -> dict[str, dict[str, str]]:
             raise ExportRequestError("No topic has numbers in this range; there is no table to make.")
         return there
     chosen: dict[str, dict[str, str]] = {}
-    for options in source.options.columns:
-        topic, _, column = options.partition(".")
+    for name in source.options.columns:
+        topic, _, column = name.partition(".")
         if topic in source.topics and topic not in there:
-            raise ExportRequestError(f"{topic} has no numbers in this range; leave {options} out.")
+            raise ExportRequestError(f"{topic} has no numbers in this range; leave {name} out.")
         if column not in there.get(topic, {}):
             known = ", ".join(f"{topic}.{one}" for one in there.get(topic, {})) or ", ".join(there)
-            raise ExportRequestError(f"There is no column {options}; there are {known}.")
+            raise ExportRequestError(f"There is no column {name}; there are {known}.")
         chosen.setdefault(topic, {})[column] = there[topic][column]
     return chosen
 

@@ -7,6 +7,7 @@ the rest.
 
 import asyncio
 import logging
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from secrets import token_hex
@@ -135,27 +136,31 @@ class Jobs:
             except TimeoutError:
                 continue
 
-    async def _make(self, job: str) -> None:
-        options = self._jobs[job]
-        part = self._folder / (job + PART)
-        place = str(self._database), str(options.session)
-        arguments = ["write", *place, options.wanted.model_dump_json(), str(part)]
-        child = ExportProcess(arguments, lambda share: self._change(job, progress=share))
-        self._running = job, child
-        self._change(job, state="running")
+    async def _make(self, number: str) -> None:
+        job = self._jobs[number]
+        part = self._folder / (number + PART)
+        place = str(self._database), str(job.session)
+        arguments = ["write", *place, job.wanted.model_dump_json(), str(part)]
+        child = ExportProcess(arguments, lambda share: self._change(number, progress=share))
+        self._running = number, child
+        self._change(number, state="running")
         try:
             written = await child.run()
-            done = options.model_copy(update={"state": "done", "progress": 1.0, **written})
+            done = job.model_copy(update={"state": "done", "progress": 1.0, **written})
             await asyncio.to_thread(self._keep, done, part)
-            if job in self._jobs:
-                self._jobs[job] = done
+            if number in self._jobs:
+                self._jobs[number] = done
             else:
                 self._unlink(done)
         except (ExportProcessError, FileWriteError) as problem:
-            self._change(job, state="failed", problem=str(problem))
+            self._change(number, state="failed", problem=str(problem))
+        except OSError as problem:
+            self._change(number, state="failed", problem=explain_write_error(problem, self.path(job)))
         finally:
             self._running = None
-            await asyncio.to_thread(part.unlink, missing_ok=True)
+            # What cannot be deleted now is deleted at the next start; the jobs that wait go on.
+            with suppress(OSError):
+                await asyncio.to_thread(part.unlink, missing_ok=True)
 
     def _keep(self, done: Job, part: Path) -> None:
         described = self._description(done)

@@ -1,4 +1,4 @@
-"""A session's chosen topics within a range, read in batches with progress, for all formats."""
+"""A session's chosen topics within a range, read in batches with progress."""
 
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
@@ -50,7 +50,7 @@ class ExportSelection(Recording):
         # Reading a column of a row costs more than the sums below, which are made for every sample.
         self._steady, self._started = row.started_steady, row.started
         self._started_ns = round(row.started * 1e9)
-        self._report = report
+        self.report = report
         self._total = sum(there[name] for name in self.names)
         self._seen = 0
 
@@ -64,7 +64,7 @@ class ExportSelection(Recording):
         for chunk in super().chunks(topic, start, end):
             yield chunk
             self._seen += chunk.count
-            self._report(min(1.0, self._seen / max(1, self._total)))
+            self.report(min(1.0, self._seen / max(1, self._total)))
 
     def batches(self, topic: str) -> Iterator[bytes]:
         """The topic's rows in the range, some hundreds at once."""

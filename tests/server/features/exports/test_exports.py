@@ -24,6 +24,7 @@ from robot_runtime.contract.packets import Imu
 from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents, row
+from server.features.exports import grid
 from server.features.exports.archive_reader import examine
 from server.features.exports.formats import KINDS, check
 from server.features.exports.mcap_schemas import WELL_KNOWN
@@ -279,6 +280,15 @@ def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings)
     readme = archive.read("README.txt").decode()
     assert "depth: 0.04 s" in readme
     assert "control: 0.5 s" in readme
+
+
+def test_the_grid_reports_its_progress(store: Store, session: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(grid, "WINDOW_LINES", 5)
+    shares: list[float] = []
+    options = ExportOptions(format="csv-grid", period=0.1, start=0.0, end=1.9)
+    selection = ExportSelection(store, find_row(store, session), options, shares.append)
+    check(options).write(store, selection, io.BytesIO())
+    assert shares == [0.25, 0.5, 0.75, 1.0]
 
 
 def test_an_export_is_limited_to_its_range_and_topics(store: Store, session: int) -> None:

@@ -11,9 +11,11 @@ import pytest
 from httpx import AsyncClient
 
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.durable_files import PART
 from server.features.exports import export_process as child_module
 from server.features.exports.jobs import JOBS_MAX, RETENTION_DAYS, Jobs
-from server.features.exports.schemas import ExportOptions, Job
+from server.features.exports.schemas import ExportOptions, Job, NewExport
+from server.features.sessions.session import find_row
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -149,6 +151,21 @@ def test_a_jump_of_the_clock_deletes_no_export(settings: Settings, store: Store)
     clock.forward(DAY)
     jobs.delete_old(later + timedelta(days=1))
     assert jobs.list() == []
+
+
+def test_a_job_whose_files_cannot_be_written_or_deleted_fails_and_the_next_is_done(
+    settings: Settings, session: int
+) -> None:
+    async def scenario(served: Served) -> None:
+        jobs, row = served.container.jobs, find_row(served.container.store, session)
+        # In the same turn of the event loop, in which the job cannot begin yet.
+        broken = jobs.add(row, NewExport(session=session, format="csv"))
+        (settings.data.exports / f"{broken.id}{PART}").mkdir()
+        following = jobs.add(row, NewExport(session=session, format="csv"))
+        await until(lambda: jobs.find(following.id).state == "done", "the next export")
+        assert jobs.find(broken.id).state == "failed"
+
+    play(settings, scenario)
 
 
 SLOW = """
