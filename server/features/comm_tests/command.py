@@ -14,7 +14,7 @@ from server.platform.terminal import echo
 
 if TYPE_CHECKING:
     from robot_runtime.experiments.comm_test.document import CommTest
-    from server.features.comm_tests.reference import Place as Cell
+    from server.features.comm_tests.reference import GridPlace
     from server.features.comm_tests.runs import CommTestRuns
 
 RUN = click.argument("run", type=int)
@@ -111,7 +111,7 @@ def _open_runs(settings: Settings) -> "Iterator[CommTestRuns]":
         yield CommTestRuns(store)
 
 
-def _rates(runs: "CommTestRuns", name: str) -> "dict[Cell, float]":
+def _rates(runs: "CommTestRuns", name: str) -> "dict[GridPlace, float]":
     from server.features.comm_tests import tables
     from server.features.comm_tests.reference import TABLES, read_table
 

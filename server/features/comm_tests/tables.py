@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from server.features.comm_tests.reference import Place
+from server.features.comm_tests.reference import GridPlace
 from server.platform.models import CommTestCell, CommTestRun
 
 COLUMNS = [name for name in CommTestCell.model_fields if name not in ("id", "run_id")]
 
 
-def places(cells: Sequence[CommTestCell]) -> dict[Place, float]:
+def places(cells: Sequence[CommTestCell]) -> dict[GridPlace, float]:
     """The rates of cells by their place in the grid."""
     return {(cell.baud, cell.arduino_delay, cell.pi_delay): cell.rate for cell in cells}
 
@@ -40,7 +40,8 @@ def show_run(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
         "firmware": run.firmware,
         "tools": ", ".join(f"{name} {text}" for name, text in json.loads(run.tools).items()),
         "host": run.host,
-        "emulated time": f"{sum(cell.seconds for cell in cells):.0f} s",
+        "place": run.place,
+        "test's time": f"{sum(cell.seconds for cell in cells):.0f} s",
     }
     lines = [f"{name:<14}{text}" for name, text in facts.items()]
     reasons = [
@@ -61,7 +62,7 @@ def show_list(runs: Sequence[CommTestRun]) -> str:
     return _table(["id", "started", "state", "framing", "direction", "cells", "name"], rows)
 
 
-def show_comparison(columns: Mapping[str, Mapping[Place, float]]) -> str:
+def show_comparison(columns: Mapping[str, Mapping[GridPlace, float]]) -> str:
     """The rates of the first column's cells, and those of the other columns with the differences."""
     first, *others = columns
     header = ["baud", "Arduino delay (s)", "Pi delay (s)", first]
@@ -97,7 +98,7 @@ def write_json(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
-def _place(place: Place) -> list[str]:
+def _place(place: GridPlace) -> list[str]:
     baud, arduino_delay, pi_delay = place
     return [str(baud), f"{arduino_delay:g}", f"{pi_delay:g}"]
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from importlib.resources import files
 from typing import Literal, get_args
 
-Place = tuple[int, float, float]
+GridPlace = tuple[int, float, float]
 """Baud (bit/s), Arduino delay (s), Pi delay (s)."""
 TableName = Literal["table5", "table6"]
 TABLES: tuple[TableName, ...] = get_args(TableName)
@@ -17,18 +17,18 @@ TITLES = {"table5": "Thesis, Table 5: plain numbers", "table6": "Thesis, Table 6
 TABLE5_DELAYS = (0.0, 0.5, 1.0)
 
 
-def read_table(name: str) -> dict[Place, float]:
+def read_table(name: str) -> dict[GridPlace, float]:
     """The success rates of one of TABLES, 0 to 1."""
     return dict(_table5() if name == "table5" else _table6())
 
 
-def _table5() -> Iterator[tuple[Place, float]]:
+def _table5() -> Iterator[tuple[GridPlace, float]]:
     for number, row in enumerate(_rows("table5")):
         delay = TABLE5_DELAYS[number % len(TABLE5_DELAYS)]
         yield (int(row["baud"]), 0.0, delay), float(row["success_rate"])
 
 
-def _table6() -> Iterator[tuple[Place, float]]:
+def _table6() -> Iterator[tuple[GridPlace, float]]:
     for row in _rows("table6"):
         place = (int(row["baud"]), float(row["arduino_delay_s"]), int(row["pi_delay_ms"]) / 1000)
         yield place, float(row["success_rate"])

@@ -67,6 +67,8 @@ def test_run_show_compare_and_export(
     for words in (
         "avr-g++",
         "emulated board",
+        "place         emulated",
+        "test's time   ",
         "/micro_cat_test/",
         "ring overrun: the sketch read too slowly",
     ):

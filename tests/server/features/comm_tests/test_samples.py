@@ -8,7 +8,7 @@ import pytest
 
 from bench.samples import FOLDER, SAMPLES
 from robot_runtime.experiments.comm_test.document import read_document
-from server.features.comm_tests.reference import Place
+from server.features.comm_tests.reference import GridPlace
 from tests.board.rig import ROOT
 
 DOCUMENT = ROOT / "docs/use/comm-tests.md"
@@ -21,7 +21,7 @@ def read(name: str) -> dict[str, Any]:
     return run
 
 
-def rates(name: str) -> dict[Place, float]:
+def rates(name: str) -> dict[GridPlace, float]:
     cells = read(name)["cells"]
     return {(cell["baud"], cell["arduino_delay"], cell["pi_delay"]): cell["rate"] for cell in cells}
 
@@ -51,7 +51,7 @@ def test_over_the_robot_s_link_every_number_arrives_in_every_cell(name: str) -> 
 
 def test_the_table_in_the_docs_equals_the_samples() -> None:
     thesis, plain = rates("grid-thesis"), rates("grid-plain")
-    printed: dict[Place, tuple[float, float]] = {}
+    printed: dict[GridPlace, tuple[float, float]] = {}
     for baud, arduino_delay, entries in TABLE_6.findall(DOCUMENT.read_text(encoding="utf-8")):
         for pi_delay, entry in zip(PI_DELAYS, entries.split("|"), strict=True):
             _, ours, plainly = map(float, entry.split("/"))
