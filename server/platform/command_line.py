@@ -1,7 +1,7 @@
 """The parts that the commands of `mucat` share."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
 from typing import IO, Any
@@ -78,3 +78,8 @@ def with_settings(command: Callable[..., int | None]) -> Callable[..., int | Non
         return status
 
     return run
+
+
+def name_error(error: Mapping[str, Any]) -> str:
+    """A line for an error of pydantic's: the place of the value, and what is wrong with it."""
+    return f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}"

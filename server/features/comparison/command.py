@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from server.platform.command_line import FILE, RowCommand, with_settings
+from server.platform.command_line import FILE, RowCommand, name_error, with_settings
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
@@ -18,7 +18,12 @@ from server.platform.terminal import echo
     default="armed",
     help="The moment of each session that is 0 s.",
 )
-@click.option("--step", type=int, default=1, help="Which step of the set point, for --align set_point.")
+@click.option(
+    "--step",
+    type=click.IntRange(min=1),
+    default=1,
+    help="Which step of the set point, for --align set_point.",
+)
 @click.option("--marker", help="Align at the bookmark of this text instead.")
 @click.option("--mission-step", metavar="PATH", help="Align at the start of a mission's step instead: 3.1.2.")
 @click.option(
@@ -39,6 +44,8 @@ def report(
     signals: tuple[str, ...],
 ) -> None:
     """Compare sessions in an HTML file."""
+    from pydantic import ValidationError
+
     from server.features.comparison.alignment import Align
     from server.features.comparison.comparer import Comparer
     from server.features.comparison.report import write_report
@@ -64,6 +71,8 @@ def report(
         with open_reader(settings.data) as store:
             text = write_report(Comparer(store).compare(query))
         out.write_text(text, encoding="utf-8")
+    except ValidationError as problem:
+        raise SetupError("; ".join(name_error(error) for error in problem.errors())) from problem
     except ValueError as problem:
         raise SetupError(f"The report cannot be made: {problem}") from problem
     except OSError as problem:

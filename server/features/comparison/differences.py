@@ -89,7 +89,7 @@ def _in_force(history: ControlHistory) -> Iterator[tuple[str, str]]:
         if key in history.state:
             yield title, _words(history.state[key])
     times = [one.time for one in history.controls]
-    used = [one for one in history.controls if _rules(one.time, times, history.armed)]
+    used = [one for one in history.controls if _used_while_armed(one.time, times, history.armed)]
     controllers = list(dict.fromkeys(one.controller for one in used))
     if controllers:
         yield "Controller", _sequence(controllers)
@@ -106,7 +106,7 @@ def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
     times = [one.time for one in history.parameters]
     values: dict[str, list[str]] = {}
     for one in history.parameters:
-        if _rules(one.time, times, history.armed):
+        if _used_while_armed(one.time, times, history.armed):
             for name, value in one.values.items():
                 values.setdefault(name, []).append(_words(value))
     for name, seen in values.items():
@@ -124,7 +124,7 @@ def _numbers(history: ControlHistory) -> Iterator[tuple[str, str]]:
         yield name, ", then ".join(dict.fromkeys(seen))
 
 
-def _rules(time: float, times: Sequence[float], armed: Sequence[Span]) -> bool:
+def _used_while_armed(time: float, times: Sequence[float], armed: Sequence[Span]) -> bool:
     """True if the choice made at `time`, one of `times`, is in force at any time while armed."""
     if not armed:
         return time == times[0]

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from server.platform.command_line import FILE, RowCommand, with_settings
+from server.platform.command_line import FILE, RowCommand, name_error, with_settings
 from server.platform.folder_lock import claim, record_command
 from server.platform.running_server import send_file, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
@@ -58,7 +58,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
             written = write_part(part, lambda file: kind.write(store, source, file))
             put_in_place(part, path)
     except ValidationError as problem:
-        raise SetupError("; ".join(_words(error) for error in problem.errors())) from problem
+        raise SetupError("; ".join(name_error(error) for error in problem.errors())) from problem
     echo(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
 
 
@@ -93,10 +93,6 @@ def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
     with open_writer(folder) as store:
         number = asyncio.run(take(Imports(folder, store)))
         return number, find_row(store, number).name
-
-
-def _words(error: Any) -> str:
-    return f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}"
 
 
 class _Progress:

@@ -38,5 +38,8 @@ def test_an_impossible_report_is_refused_in_one_line(
     assert main(["report", "7", *options]) == 1
     assert "There is no session 7" in capsys.readouterr().err
     assert main(["report", "7", "--signals", "depth", *options]) == 1
-    assert "signals.0" in capsys.readouterr().err
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "signals.0: " in line
+    assert main(["report", "7", "--align", "set_point", "--step", "0", *options]) == 2
+    assert "0 is not in the range x>=1" in capsys.readouterr().err
     assert not out.exists()
