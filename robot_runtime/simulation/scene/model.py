@@ -197,8 +197,8 @@ def _targets_and_beacons(spec: Any, contents: Contents) -> None:
             quat=[cos(0.3), 0, 0, sin(0.3)], rgba=[red / 255, green / 255, blue / 255, 1],
         )  # fmt: skip
         _rope(spec, north, east, down + half, floor, line)
-    for north, east, down in contents.beacons:
-        material = spec.add_material(name=f"beacon{north} {east} {down}", emission=1.0, rgba=[1, 1, 0.94, 1])
+    for number, (north, east, down) in enumerate(contents.beacons):
+        material = spec.add_material(name=f"beacon{number}", emission=1.0, rgba=[1, 1, 0.94, 1])
         spec.worldbody.add_geom(
             type=_BALL, size=[0.035, 0.035, 0.035], pos=[north, -east, -down], material=material.name
         )

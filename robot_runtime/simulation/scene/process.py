@@ -170,6 +170,9 @@ class SceneProcess:
                 self._publish_observer(*self._truth)
             except RefusedError as problem:
                 log.warning("no picture for the observer: %s", problem)
+            except Exception:
+                log.exception("no picture for the observer")
+                period = QUERY_PERIOD
         done = self._clock.now()
         # Slow rendering of the observer's pictures takes at most half of the time.
         self._observe_due = max(self._observe_due + period, done + (done - now))

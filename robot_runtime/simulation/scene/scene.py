@@ -61,11 +61,12 @@ class SceneRenderer:
         self.fill(contents)
 
     def fill(self, contents: Contents) -> None:
-        """Replaces the contents of the scene."""
+        """Replaces the contents of the scene; where they cannot be built, it stays as it is."""
+        model = modelling.build(contents, self._parameters)
         if self._context is not None:
             self._context.free()
-        self.contents = contents
-        self._model = modelling.build(contents, self._parameters)
+            self._context = None
+        self._model = model
         self._data = mujoco.MjData(self._model)
         self._view = mujoco.MjvScene(self._model, maxgeom=2000)
         self._context = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_100)
@@ -78,6 +79,7 @@ class SceneRenderer:
         }
         self._nose.fixedcamid = self._model.camera("nose").id
         self._card = self._model.geom("card").id
+        self.contents = contents
 
     def render_camera(
         self,
@@ -143,7 +145,8 @@ class SceneRenderer:
     def close(self) -> None:
         """Releases the memory of OpenGL."""
         if self._gl is not None:
-            self._context.free()
+            if self._context is not None:
+                self._context.free()
             self._gl.free()
             self._gl = None
 

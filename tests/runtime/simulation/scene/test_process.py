@@ -231,6 +231,22 @@ def test_the_bystander_view_is_rendered_only_for_subscribers() -> None:
     assert np.abs(pictures[0].astype(int) - pictures[1]).mean() > 2  # type: ignore[union-attr]
 
 
+@rendered
+def test_a_bystanders_picture_that_fails_does_not_end_the_scene(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    with link() as ends:
+        ends.tell(5.0, truth((0.0, 0.0, 1.0)))
+        ends.picture()
+        with monkeypatch.context() as patch:
+            patch.setattr("robot_runtime.simulation.scene.model.build", lambda *_: 1 / 0)
+            ends.ask("targets", {"targets": []})
+            subscription = ends.other.subscribe("observer", lambda *_: None)
+            wait_until(lambda: "no picture for the observer" in caplog.text)
+            subscription.close()
+        assert ends.picture().time == 5.0
+
+
 def wait_until(condition: Callable[[], bool]) -> None:
     end = time.monotonic() + SLOW
     while not condition():

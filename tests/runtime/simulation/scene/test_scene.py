@@ -1,6 +1,6 @@
 """The rendered picture, by position and water."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import product
 
 import numpy as np
@@ -9,6 +9,7 @@ import pytest
 from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS, WHITE
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.vision_settings import VisionSettings
+from robot_runtime.simulation.scene import model as modelling
 from robot_runtime.simulation.scene.contents import Contents, SceneWater, Target
 from robot_runtime.simulation.scene.view import ObserverView
 from robot_runtime.simulation.scene.water import Kind
@@ -208,3 +209,28 @@ def test_fins_move(scene: Make) -> None:
     assert len(down) > 50
     # The front left fin of a robot that looks north is, seen from the west, to the left.
     assert right.mean() < 320
+
+
+def test_two_beacons_may_have_one_place(scene: Make) -> None:
+    made = scene(replace(open_water(), beacons=((2.0, 0.0, 5.0), (2.0, 0.0, 5.0))))
+    one = made.render_camera(0.0, truth(), *SIZE)
+    made.fill(replace(open_water(), beacons=((2.0, 0.0, 5.0),)))
+    assert (made.render_camera(0.0, truth(), *SIZE) == one).all()
+
+
+def test_contents_that_cannot_be_built_leave_the_scene_as_it_is(
+    scene: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    contents = open_water(AHEAD)
+    made = scene(contents)
+    before = made.render_camera(0.0, truth(), *SIZE)
+
+    def refuse(*_: object) -> None:
+        raise ValueError("repeated name")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(modelling, "build", refuse)
+        with pytest.raises(ValueError, match="repeated name"):
+            made.fill(open_water())
+    assert made.contents == contents
+    assert (made.render_camera(0.0, truth(), *SIZE) == before).all()
