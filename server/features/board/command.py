@@ -1,6 +1,8 @@
 """`mucat upload`: the robot's firmware onto its board."""
 
 import asyncio
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -8,6 +10,9 @@ from server.platform.command_line import with_settings
 from server.platform.folder_lock import claim
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
+
+if TYPE_CHECKING:
+    from server.features.board.reservation import RobotBoard
 
 
 @click.command()
@@ -19,8 +24,8 @@ def upload(settings: Settings, previous: bool) -> None:
     What was on the board is stored as firmware-previous.hex in the data folder. The board's calibration
     stays. Beside a running server, press the button on the System page.
     """
+    from robot_runtime.errors import RefusedError
     from robot_runtime.places import FIRMWARE_REMEDY
-    from server.features.board.firmware_upload import store_previous
     from server.features.board.reservation import RobotBoard
     from server.platform.pidfile import end_parts
 
@@ -37,10 +42,20 @@ def upload(settings: Settings, previous: bool) -> None:
     firmware = older if previous else board.built
     with claim(settings.data):
         end_parts(settings.data.run)
-        if not previous:
-            echo(asyncio.run(store_previous(board, settings.data.path, older)))
-        echo(f"{firmware} is uploaded to {settings.link.port}.")
-        asyncio.run(board.restore(firmware))
+        try:
+            asyncio.run(_upload(board, settings, firmware, None if previous else older))
+        except RefusedError as problem:
+            raise SetupError(str(problem)) from problem
     if board.problem:
         raise SetupError(board.problem)
     echo("It is on the board, read back and compared.")
+
+
+async def _upload(board: "RobotBoard", settings: Settings, firmware: Path, older: Path | None) -> None:
+    """Uploads the firmware; what was on the board before is stored as `older`, if that is given."""
+    from server.features.board.firmware_upload import store_previous
+
+    async with board.reserve("The upload of firmware", firmware):
+        if older is not None:
+            echo(await store_previous(board, settings.data.path, older))
+        echo(f"Uploading {firmware} to {settings.link.port}.")

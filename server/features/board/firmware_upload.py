@@ -113,12 +113,14 @@ async def store_previous(board: RobotBoard, folder: Path, previous: Path) -> str
     if problem := await board.read_out(read):
         return f"The firmware before it could not be read, so it is not stored: {problem}."
     try:
-        replaced = await asyncio.to_thread(store_if_other, read, board.built, previous)
+        content = await asyncio.to_thread(store_if_other, read, board.built, previous)
     except (HexFileError, OSError) as problem:
         return f"The firmware before it is not stored: {problem}."
     finally:
         read.unlink(missing_ok=True)
-    return f"The firmware before it is stored as {previous}." if replaced else "The same was on it before."
+    if content == "other":
+        return f"The firmware before it is stored as {previous}."
+    return "The same was on it before." if content == "same" else "No firmware was on it before."
 
 
 def read_progress(said: str, *, verified: bool) -> float:

@@ -1,12 +1,15 @@
 """The firmware that a board had before an upload: read from the board, stored without the boot loader."""
 
 from pathlib import Path
+from typing import Literal
 
 from robot_runtime.durable_files import write_whole
 
 BOOT_LOADER = 0x7E00
 """Flash address from which the ATmega328P's boot loader lies (512 B): it must not be written by itself."""
 _ERASED = 0xFF
+BoardContent = Literal["empty", "same", "other"]
+"""The program on a board: none, as on a new one; the firmware that was built; another."""
 _LINE_BYTES = 16
 
 
@@ -48,14 +51,16 @@ def _write_record(record: bytes) -> str:
     return f":{record.hex().upper()}{-sum(record) % 256:02X}\n"
 
 
-def store_if_other(read: Path, built: Path, previous: Path) -> bool:
-    """Store what was read from the board, unless it is the firmware that was built; True if it was stored.
+def store_if_other(read: Path, built: Path, previous: Path) -> BoardContent:
+    """Stores what was read from the board, unless it is the firmware that was built, or none; returns which.
 
     So a second upload does not replace the older firmware by the newer one. Raises HexFileError, and OSError.
     """
     program = read_program(read)
+    if not program:
+        return "empty"
     # The boot loader leaves the end of a longer program behind that was there before.
-    if not program or program.startswith(read_program(built)):
-        return False
+    if program.startswith(read_program(built)):
+        return "same"
     write_program(program, previous)
-    return True
+    return "other"

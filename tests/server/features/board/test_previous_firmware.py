@@ -29,23 +29,23 @@ def test_a_program_is_read_as_it_was_written(built: Path) -> None:
 def test_what_was_read_is_stored_without_the_boot_loader(tmp_path: Path, built: Path) -> None:
     read = tmp_path / "read.hex"
     write_program(OLD.ljust(BOOT_LOADER, b"\xff") + b"\x11\x24" * 200, read)
-    assert store_if_other(read, built, tmp_path / "previous.hex")
+    assert store_if_other(read, built, tmp_path / "previous.hex") == "other"
     assert read_program(tmp_path / "previous.hex") == OLD
     assert ":107E" not in (tmp_path / "previous.hex").read_text()
 
 
 @pytest.mark.parametrize(
-    "program",
-    [NEW, NEW.ljust(640, b"\xff") + OLD, b""],
+    ("program", "content"),
+    [(NEW, "same"), (NEW.ljust(640, b"\xff") + OLD, "same"), (b"", "empty")],
     ids=["the same", "over a longer one", "an empty board"],
 )
 def test_an_older_firmware_is_not_replaced_by_the_new_one_or_by_none(
-    tmp_path: Path, built: Path, program: bytes
+    tmp_path: Path, built: Path, program: bytes, content: str
 ) -> None:
     read, previous = tmp_path / "read.hex", tmp_path / "previous.hex"
     write_program(OLD, previous)
     write_program(program, read)
-    assert not store_if_other(read, built, previous)
+    assert store_if_other(read, built, previous) == content
     assert read_program(previous) == OLD
 
 
