@@ -3526,9 +3526,9 @@ export interface components {
         DeviceDetails: {
             /**
              * Ended
-             * @description true where the token, or an unused sign-in, has ended
+             * @description why the token, or an unused sign-in, counts no longer; else empty
              */
-            ended: boolean;
+            ended: string;
             /**
              * Ends
              * @description end of a token; null where it never ends

@@ -42,8 +42,7 @@ export const people = {
     actions: 'Change or revoke',
     thisOne: 'this browser',
     since: (kind: string, time: string) => `${kind}, since ${time}`,
-    ends: (ended: boolean, time: string | null) =>
-      time === null ? 'ended: not used for 90 days' : ended ? `ended on ${time}` : `ends on ${time}`,
+    ends: (time: string) => `ends on ${time}`,
     revokeSelf: 'You will be signed out here.',
     revokeOther: 'Signs it out at once. It needs a new code to sign in again.',
     revoke: 'Revoke',

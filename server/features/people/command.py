@@ -110,6 +110,5 @@ def _tabulate(devices: list[dict[str, Any]]) -> str:
 def _rights(device: dict[str, Any]) -> str:
     """Words about a token's scope and end; empty where there is nothing to say."""
     limited = "does not administer  " if device["limited"] and device["role"] == "operator" else ""
-    verb = "ended" if device["ended"] else "ends"
-    ends = "" if device["ends"] is None else f"{verb} {datetime.fromtimestamp(device['ends']):%Y-%m-%d}  "
-    return limited + (ends or ("ended  " if device["ended"] else ""))
+    ends = "" if device["ends"] is None else f"ends {datetime.fromtimestamp(device['ends']):%Y-%m-%d}  "
+    return limited + (f"{device['ended']}  " if device["ended"] else ends)

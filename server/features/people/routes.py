@@ -179,5 +179,5 @@ def _describe_caller(
 
 
 def _describe(access: Access, caller: Identity, device: Device) -> DeviceDetails:
-    ended = access.devices.explain_end(device) is not None
+    ended = access.devices.explain_end(device) or ""
     return DeviceDetails(**asdict(device), ended=ended, you=caller.device == device.id)

@@ -73,7 +73,9 @@ class DeviceDetails(BaseModel):
     seen: float
     limited: Annotated[bool, Field(description="true for a token that may not administer, in any role")]
     ends: Annotated[float | None, Field(description="end of a token; null where it never ends")]
-    ended: Annotated[bool, Field(description="true where the token, or an unused sign-in, has ended")]
+    ended: Annotated[
+        str, Field(description="why the token, or an unused sign-in, counts no longer; else empty")
+    ]
     you: Annotated[bool, Field(description="true for the caller itself")]
 
 

@@ -94,7 +94,10 @@ def test_a_token_is_refused_in_words_after_its_end_and_its_live_socket_closes(
         assert answer.json()["detail"].startswith("This token ended on 20")
         assert "make a new one under people" in answer.json()["detail"].lower()
         (listed,) = (await served.api.get("/access/devices")).json()
-        assert listed["ended"]
+        assert listed["ended"] == answer.json()["detail"]
+        monkeypatch.setattr(served.container.access.devices, "_utc", lambda: 300.0)
+        (listed,) = (await served.api.get("/access/devices")).json()
+        assert listed["ended"].startswith("The clock of the robot's computer has not been set")
 
     play(settings, scenario)
 
