@@ -12,6 +12,7 @@ from robot_runtime.transport.lifetime import give_way
 from server.platform.command_line import FILE, with_settings
 from server.platform.database_copies import (
     CHECKSUM,
+    Kind,
     copy_database,
     open_database,
     place,
@@ -65,12 +66,11 @@ def back_up(folder: DataFolder, file: Path | None) -> str:
         path = file or place(folder, "backup")
         copy_database(folder.database, path)
         checksum = write_checksum(path)
-        if file is None:
-            thin_out(folder, "backup", path)
     except (sqlite3.DatabaseError, OSError) as problem:
         where = folder.backups if file is None else file.parent
         raise SetupError(f"No backup was made: {explain(problem, where)}") from problem
-    return f"{path}: {path.stat().st_size / 1e6:.1f} MB, {_count(path)}, SHA-256 {checksum}"
+    remark = _thin_out(folder, "backup", path) if file is None else ""
+    return f"{path}: {path.stat().st_size / 1e6:.1f} MB, {_count(path)}, SHA-256 {checksum}{remark}"
 
 
 def put_back(folder: DataFolder, file: Path) -> str:
@@ -84,13 +84,20 @@ def put_back(folder: DataFolder, file: Path) -> str:
         copy_database(file, fresh)
         aside = _put_aside(folder) if folder.database.exists() else None
         put_in_place(fresh, folder.database)
-        if aside is not None:
-            thin_out(folder, "replaced", aside)
     except (sqlite3.DatabaseError, OSError) as problem:
         fresh.unlink(missing_ok=True)
         raise SetupError(f"Nothing was restored: {explain(problem, folder.path)}") from problem
-    saved = f" The database before is now {aside}." if aside else ""
+    saved = f" The database before is now {aside}.{_thin_out(folder, 'replaced', aside)}" if aside else ""
     return f"{folder.database} was restored from {file} (revision {revision}): {_count(file)}.{saved}"
+
+
+def _thin_out(folder: DataFolder, kind: Kind, made: Path) -> str:
+    """Remove the oldest copies; returns a remark where they cannot be removed."""
+    try:
+        thin_out(folder, kind, made)
+    except OSError as problem:
+        return f" Older copies cannot be deleted: {problem.strerror} ({problem.filename})."
+    return ""
 
 
 def _examine(file: Path) -> str:

@@ -239,6 +239,22 @@ def test_copies_dated_in_the_future_do_not_cost_the_one_just_made(
         assert not copies[0].name.startswith(f"mucat-{kind}-2931")
 
 
+def test_older_copies_that_cannot_be_deleted_are_a_remark_beside_what_was_done(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill(settings, "one")
+    for kind in ("backup", "replaced"):
+        for day in range(1, 1 + database_copies.COPIES_MOST):
+            (settings.data.backups / f"mucat-{kind}-2026-01-0{day}_00-00-00.db").mkdir(parents=True)
+    assert run(settings, "backup") == 0
+    said = capsys.readouterr().out
+    assert "Older copies cannot be deleted: Is a directory" in said
+    assert run(settings, "restore", said.partition(": ")[0]) == 0
+    said = capsys.readouterr().out
+    assert "was restored from" in said
+    assert "Older copies cannot be deleted" in said
+
+
 def test_a_second_writer_is_refused(settings: Settings) -> None:
     prepare(settings.data)
     with closing(Store(settings.data.database)) as store:
