@@ -43,6 +43,7 @@ class MqttOutlet:
         self._tally = Tally(f"Broker {config.mqtt}")
         self._client: Client | None = None
         self._retained: dict[str, str] = {}
+        self._retaining = threading.Lock()
 
     def open(self) -> None:
         """Connect from now on; again and again where it fails."""
@@ -69,9 +70,10 @@ class MqttOutlet:
 
     def retain(self, name: str, text: str) -> None:
         """Set a retained topic; after each connection they are set again."""
-        self._retained = {**self._retained, name: text}
-        if self._client is not None and self._client.is_connected():
-            self._client.publish(f"{self._prefix}/{name}", text, retain=True)
+        with self._retaining:
+            self._retained[name] = text
+            if self._client is not None and self._client.is_connected():
+                self._client.publish(f"{self._prefix}/{name}", text, retain=True)
 
     def condition(self) -> OutletCondition:
         """The state, and a sentence about it."""
@@ -125,8 +127,10 @@ class MqttOutlet:
             self._tally.set("failed", f"The broker refuses the robot: {reason}.")
             return
         self._tally.set("ok", "Connected.")
-        for name, text in {"status": ONLINE, **self._retained}.items():
-            client.publish(f"{self._prefix}/{name}", text, retain=True)
+        # What is set meanwhile comes after it.
+        with self._retaining:
+            for name, text in {"status": ONLINE, **self._retained}.items():
+                client.publish(f"{self._prefix}/{name}", text, retain=True)
 
     def _not_connected(self, _client: "Client", _data: Any) -> None:
         # paho calls this while it handles the exception.

@@ -10,8 +10,10 @@ from contextlib import closing, suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import pytest
+from paho.mqtt.client import Client
 
 from robot_runtime.config import EventsConfig
 from robot_runtime.contract.published_events import PublishedEvent
@@ -112,6 +114,30 @@ def test_a_broker_gets_events_and_a_newcomer_finds_what_holds_now(tmp_path: Path
                 assert newcomer.next(f"mucat/tested/{topic}") == value
         outlet.close()
         assert listener.next("mucat/tested/status") == "offline"
+
+
+def test_what_is_set_while_it_connects_is_what_stays_at_the_broker(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    outlet = to_broker(tmp_path, port)
+    outlet.retain("session", '{"id": 1}')
+    publish, setting = Client.publish, threading.Thread(target=outlet.retain, args=("session", '{"id": 2}'))
+
+    def publish_beside(client: Client, topic: str, *args: Any, **options: Any) -> Any:
+        if topic.endswith("/status") and not setting.ident:
+            setting.start()
+            # Long enough for it to overtake, if it may.
+            setting.join(0.3)
+        return publish(client, topic, *args, **options)
+
+    with broker(tmp_path, port):
+        monkeypatch.setattr(Client, "publish", publish_beside)
+        outlet.open()
+        wait_for(lambda: setting.ident and not setting.is_alive(), "the new value to be set")
+        monkeypatch.undo()
+        outlet.close()
+        with closing(Listener(port)) as newcomer:
+            assert newcomer.next("mucat/tested/session") == {"id": 2}
 
 
 def test_what_waits_while_the_broker_is_away_comes_with_it(
