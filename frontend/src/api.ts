@@ -54,7 +54,7 @@ export type { ColourRange } from './generated/topics';
 export type PickedColour = Schemas['PickedColour'];
 export type View = Schemas['SceneView'];
 export type Course = Commands['steering']['by'];
-export type KeptLayout = Schemas['SavedLayout'];
+export type SavedLayout = Schemas['SavedLayout'];
 export type OwnPanel = Schemas['OwnPanel'];
 export type ThesisTable = Schemas['ThesisTable'];
 export type TuningState = Schemas['TuningState'];
@@ -242,10 +242,10 @@ export const api = {
   missionTrial: () => request<MissionTrial>('GET', '/missions/trial'),
   startMissionTrial: (text: string, seeds: number) => request<MissionTrial>('POST', '/missions/trial', { text, seeds }),
   cancelMissionTrial: () => command('POST', '/missions/trial/cancel'),
-  layouts: () => request<KeptLayout[]>('GET', '/layouts'),
-  layout: (id: KeptLayout['id']) => request<Schemas['LayoutDetails']>('GET', `/layouts/${id}`),
-  saveLayout: (name: string, document: object) => request<KeptLayout>('POST', '/layouts', { name, document }),
-  deleteLayout: (id: KeptLayout['id']) => command('DELETE', `/layouts/${id}`),
+  layouts: () => request<SavedLayout[]>('GET', '/layouts'),
+  layout: (id: SavedLayout['id']) => request<Schemas['LayoutDetails']>('GET', `/layouts/${id}`),
+  saveLayout: (name: string, document: object) => request<SavedLayout>('POST', '/layouts', { name, document }),
+  deleteLayout: (id: SavedLayout['id']) => command('DELETE', `/layouts/${id}`),
   ownPanels: () => request<OwnPanel[]>('GET', '/panels'),
   ownPanel: (name: OwnPanel['name']) =>
     request<Schemas['OwnPanelScript']>('GET', `/panels/own/${encodeURIComponent(name)}`),

@@ -21,13 +21,13 @@ describe('Arranger', () => {
   it('moves into free room', () => {
     const done = arranger.move([panel('a', 0, 0, 5, 5)], 'a', 3, 2);
     expect(where(done, 'a')).toEqual([3, 2, 5, 5]);
-    expect(done).toHaveProperty('told', 'a: column 4, row 3.');
+    expect(done).toHaveProperty('message', 'a: column 4, row 3.');
   });
 
   it('lets a panel change places with the one that it is moved into most', () => {
     const done = arranger.move(PANELS_THREE, 'a', 1, 0);
     expect([where(done, 'a'), where(done, 'b')]).toEqual([[12, 0, 12, 12], [0, 0, 12, 12]]);
-    expect(done).toHaveProperty('told', 'a and b swapped places.');
+    expect(done).toHaveProperty('message', 'a and b swapped places.');
   });
 
   it('stops at the edges', () => {

@@ -1,3 +1,4 @@
+import { readStoredJson, writeStored } from '../storage';
 import { driven, isNeutral, NEUTRAL, type Axes, type Axis } from './axes';
 
 export const SPEEDS = 9;
@@ -7,7 +8,7 @@ export const TRIM_STEP = 0.02;
 export const TRIM_MOST = 0.2;
 const KEY = 'mucat-handling';
 
-/** How sticks become commands: the speed step and the trim, which outlast a reload of this tab and nothing else. */
+/** The way from sticks to commands: the speed step and the trim, which outlast a reload of this tab and nothing else. */
 export class Handling {
   /** 1 to SPEEDS */
   speed = $state(SPEED_FIRST);
@@ -15,14 +16,10 @@ export class Handling {
   trim = $state.raw<Axes>(NEUTRAL);
 
   constructor() {
-    try {
-      const kept = JSON.parse(sessionStorage.getItem(KEY) ?? '{}') as { speed?: unknown; trim?: unknown };
-      const { speed, trim } = kept;
-      if (typeof speed === 'number') this.setSpeed(speed);
-      if (Array.isArray(trim)) NEUTRAL.forEach((_, axis) => this.setTrim(axis as Axis, Number(trim[axis]) || 0));
-    } catch {
-      // Storage may be forbidden, or hold what another version wrote: then all begins as it comes.
-    }
+    // Another version may have written something else: then all begins as it comes.
+    const { speed, trim } = Object(readStoredJson(KEY, 'sessionStorage')) as { speed?: unknown; trim?: unknown };
+    if (typeof speed === 'number') this.setSpeed(speed);
+    if (Array.isArray(trim)) NEUTRAL.forEach((_, axis) => this.setTrim(axis as Axis, Number(trim[axis]) || 0));
   }
 
   /** of full speed */
@@ -57,10 +54,6 @@ export class Handling {
   }
 
   #keep(): void {
-    try {
-      sessionStorage.setItem(KEY, JSON.stringify({ speed: this.speed, trim: this.trim }));
-    } catch {
-      // As above.
-    }
+    writeStored(KEY, JSON.stringify({ speed: this.speed, trim: this.trim }), 'sessionStorage');
   }
 }

@@ -1,5 +1,5 @@
 /**
- * What may be done to a layout. Each answers the panels as they then stand, or why it cannot be, in words.
+ * Changes of a layout. Each answers the panels as they then stand, or why it cannot be, in words.
  *
  * No panel ever lies over another: one that is moved onto another changes places with it, and one that grows into
  * another takes its room, down to the least size of that one.
@@ -8,9 +8,9 @@ import type { Size } from '../parts/panelKind';
 import { COLUMNS, overlaps, PANELS_MOST, ROWS_MOST, ROWS_SEEN, rowsOf, within, type Placed, type Rect } from './layout';
 import { layout as texts } from '../texts/layout';
 
-export type Arranged = { readonly panels: readonly Placed[]; readonly told: string } | { readonly refused: string };
+export type Arranged = { readonly panels: readonly Placed[]; readonly message: string } | { readonly refused: string };
 
-/** What the rules must know of a panel. */
+/** Properties of a panel that the rules need. */
 export type Known = (panel: string) => { readonly title: string; readonly least: Size };
 
 export class Arranger {
@@ -37,7 +37,7 @@ export class Arranger {
     const changed = panels.map((panel) =>
       panel.id === id ? { ...panel, ...rectOf(two) } : panel.id === other ? { ...panel, ...rectOf(one) } : panel,
     );
-    return { panels: changed, told: texts.done.swapped(this.#title(one), this.#title(two)) };
+    return { panels: changed, message: texts.done.swapped(this.#title(one), this.#title(two)) };
   }
 
   /** Give a panel these edges, which takes from others what they can spare. */
@@ -56,7 +56,7 @@ export class Arranger {
         changed.push(rest);
       }
     }
-    return { panels: changed, told: texts.done.resized(this.#title(target), sizeWords(target)) };
+    return { panels: changed, message: texts.done.resized(this.#title(target), sizeWords(target)) };
   }
 
   /** Stand a new panel where there is room: of this size, smaller, or below all others. */
@@ -71,19 +71,19 @@ export class Arranger {
   }
 
   remove(panels: readonly Placed[], id: string): Arranged {
-    return { panels: panels.filter((one) => one.id !== id), told: texts.done.removed(this.#title(find(panels, id))) };
+    return { panels: panels.filter((one) => one.id !== id), message: texts.done.removed(this.#title(find(panels, id))) };
   }
 
   #place(panels: readonly Placed[], target: Placed): Arranged {
     const changed = panels.map((one) => (one.id === target.id ? target : one));
-    return { panels: changed, told: texts.done.moved(this.#title(target), placeWords(target)) };
+    return { panels: changed, message: texts.done.moved(this.#title(target), placeWords(target)) };
   }
 
   #title(panel: Placed): string {
     return this.known(panel.panel).title;
   }
 
-  /** Whether so much room is enough; what is smaller already need not become larger. */
+  /** True where so much room is enough; what is smaller already need not become larger. */
   #fits(panel: Placed, { width, height }: Size): boolean {
     const { least } = this.known(panel.panel);
     return width >= Math.min(least.width, panel.width) && height >= Math.min(least.height, panel.height);
@@ -101,14 +101,14 @@ function find(panels: readonly Placed[], id: string): Placed {
 
 const rectOf = ({ x, y, width, height }: Rect): Rect => ({ x, y, width, height });
 
-/** How many cells both take. */
+/** Number of cells that both take. */
 function shared(one: Rect, other: Rect): number {
   const wide = Math.min(one.x + one.width, other.x + other.width) - Math.max(one.x, other.x);
   const high = Math.min(one.y + one.height, other.y + other.height) - Math.max(one.y, other.y);
   return Math.max(0, wide) * Math.max(0, high);
 }
 
-/** What is left of `panel` on its side of what grew from `before` to `after`. */
+/** The rest of `panel` on its side of what grew from `before` to `after`. */
 function cut(panel: Rect, before: Rect, after: Rect): Rect {
   const right = panel.x + panel.width;
   const bottom = panel.y + panel.height;

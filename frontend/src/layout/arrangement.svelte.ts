@@ -1,10 +1,11 @@
 import { createContext } from 'svelte';
-import { api, type KeptLayout } from '../api';
+import { api, type SavedLayout } from '../api';
 import { Arranger, type Arranged } from './arrange';
 import type { ShownChart } from '../parts/panelKind';
 import { FORMAT, readLayout, VERSION, type Layout, type Placed } from './layout';
 import { CHART, describe } from '../panels/registry';
 import { SHIPPED } from './shipped';
+import { readStoredJson, writeStored } from '../storage';
 import { layout as texts } from '../texts/layout';
 
 const STANDARD = 'standard';
@@ -20,7 +21,9 @@ interface Standing {
   readonly changed: boolean;
 }
 
-export const keptChoice = (id: KeptLayout['id']): string => `kept/${id}`;
+type Stored = Partial<Record<'choice' | 'title' | 'changed' | 'document', unknown>>;
+
+export const savedChoice = (id: SavedLayout['id']): string => `kept/${id}`;
 
 /** The layout of Operate, or of replays, in this browser: which one, how it was changed, what can be undone. */
 export class Arrangement {
@@ -28,9 +31,9 @@ export class Arrangement {
   #past = $state.raw<readonly Standing[]>([]);
   arranging = $state(false);
   /** what was done last or could not be done, in words */
-  told = $state('');
-  /** the layouts that the server keeps */
-  kept = $state.raw<readonly KeptLayout[]>([]);
+  message = $state('');
+  /** the layouts that are saved on the server */
+  saved = $state.raw<readonly SavedLayout[]>([]);
   readonly #arranger = new Arranger(describe);
   readonly #key: string;
 
@@ -63,7 +66,7 @@ export class Arrangement {
     return { format: FORMAT, version: VERSION, panels: this.panels };
   }
 
-  /** What would come of it; nothing is changed yet. */
+  /** The result of a change; nothing is changed yet. */
   try(change: (arranger: Arranger, panels: readonly Placed[]) => Arranged): Arranged {
     return change(this.#arranger, this.panels);
   }
@@ -71,7 +74,7 @@ export class Arrangement {
   /** Change the layout, or tell why not. Returns whether it was. */
   do(change: (arranger: Arranger, panels: readonly Placed[]) => Arranged): boolean {
     const done = this.try(change);
-    this.told = 'refused' in done ? done.refused : done.told;
+    this.message = 'refused' in done ? done.refused : done.message;
     if ('refused' in done) return false;
     this.#become({ ...this.#now, panels: done.panels, changed: true });
     return true;
@@ -96,7 +99,7 @@ export class Arrangement {
     if (before === undefined) return;
     this.#past = this.#past.slice(0, -1);
     this.#now = before;
-    this.told = texts.done.undone;
+    this.message = texts.done.undone;
     this.#remember();
   }
 
@@ -121,21 +124,21 @@ export class Arrangement {
     return null;
   }
 
-  /** Keep it on the server under this name. Returns why not, in words; null where it is kept. */
+  /** Save it on the server under this name. Returns why not, in words; null where it is saved. */
   async save(name: string): Promise<string | null> {
     const answer = await api.saveLayout(name, this.document);
     if ('problem' in answer) return answer.problem;
-    this.#now = { ...this.#now, choice: keptChoice(answer.value.id), title: answer.value.name, changed: false };
-    this.told = texts.done.saved(answer.value.name);
+    this.#now = { ...this.#now, choice: savedChoice(answer.value.id), title: answer.value.name, changed: false };
+    this.message = texts.done.saved(answer.value.name);
     this.#remember();
     await this.list();
     return null;
   }
 
   /** Delete a layout from the server; what is shown goes on being shown. */
-  async delete(id: KeptLayout['id']): Promise<string | null> {
+  async delete(id: SavedLayout['id']): Promise<string | null> {
     const problem = await api.deleteLayout(id);
-    if (problem === null && this.choice === keptChoice(id)) this.#now = { ...this.#now, choice: '', changed: true };
+    if (problem === null && this.choice === savedChoice(id)) this.#now = { ...this.#now, choice: '', changed: true };
     this.#remember();
     await this.list();
     return problem;
@@ -144,20 +147,20 @@ export class Arrangement {
   /** Ask the server which layouts it keeps. */
   async list(): Promise<void> {
     const answer = await api.layouts();
-    if ('value' in answer) this.kept = answer.value;
+    if ('value' in answer) this.saved = answer.value;
   }
 
   /** Panels in the order in which they are read, which must not change under the hand that moves them. */
   finish(): void {
     this.arranging = false;
-    this.told = '';
+    this.message = '';
     this.#now = { ...this.#now, panels: inReadingOrder(this.panels) };
     this.#remember();
   }
 
   #apply(standing: Standing): void {
     this.#become({ ...standing, panels: inReadingOrder(standing.panels) });
-    this.told = texts.done.shown(standing.title);
+    this.message = texts.done.shown(standing.title);
   }
 
   #become(next: Standing): void {
@@ -168,36 +171,23 @@ export class Arrangement {
 
   #remember(): void {
     const { choice, title, changed } = this.#now;
-    try {
-      localStorage.setItem(this.#key, JSON.stringify({ choice, title, changed, document: this.document }));
-    } catch {
-      // Storage may be forbidden; then the layout lasts as long as the page.
-    }
+    writeStored(this.#key, JSON.stringify({ choice, title, changed, document: this.document }));
   }
 
   #recall(): void {
-    const kept = recall(this.#key);
-    if (kept === null) return;
-    const { choice, title, changed, document } = kept;
+    const stored = readStoredJson(this.#key) as Stored | null;
+    if (stored === null) return;
+    const { choice, title, changed, document } = stored;
     // What comes with the program is as this version has it, and as this screen wants it.
     if (changed === false && SHIPPED.some(({ name }) => name === choice)) {
       this.#now = shipped(String(choice));
       return;
     }
     const layout = readLayout(document);
-    if ('problem' in layout) this.told = layout.problem;
+    if ('problem' in layout) this.message = layout.problem;
     else if (typeof choice === 'string' && typeof title === 'string') {
       this.#now = { panels: layout.panels, choice, title, changed: changed === true };
     }
-  }
-}
-
-/** What this browser keeps under this key; null where it keeps nothing, or may not. */
-function recall(key: string): Partial<Record<'choice' | 'title' | 'changed' | 'document', unknown>> | null {
-  try {
-    return JSON.parse(localStorage.getItem(key) ?? 'null') as ReturnType<typeof recall>;
-  } catch {
-    return null;
   }
 }
 

@@ -1,5 +1,6 @@
 /** Where the panels of Operate stand: a document that the server keeps (server/features/layouts/document.py) and files hold. */
 
+import { MOST } from '../charts/strips';
 import type { ShownChart } from '../parts/panelKind';
 import { layout as texts } from '../texts/layout';
 
@@ -10,7 +11,6 @@ export const COLUMNS = 24;
 export const ROWS_SEEN = 24;
 export const ROWS_MOST = 96;
 export const PANELS_MOST = 40;
-export const SIGNALS_MOST = 12;
 
 /** In columns and rows, from the grid's upper left corner. */
 export interface Rect {
@@ -97,6 +97,6 @@ function isChart(value: unknown): value is ShownChart {
   if (!isObject(value)) return false;
   const { signals, seconds } = value;
   const spans = typeof seconds === 'number' && seconds >= 1 && seconds <= 3600;
-  if (!spans || !Array.isArray(signals) || signals.length > SIGNALS_MOST || !signals.every(isWord)) return false;
+  if (!spans || !Array.isArray(signals) || signals.length > MOST || !signals.every(isWord)) return false;
   return new Set(signals).size === signals.length;
 }
