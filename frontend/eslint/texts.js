@@ -29,7 +29,7 @@ function literals(expression) {
 
 const words = (node) => (node.type === 'TemplateElement' ? node.value.cooked : String(node.value));
 
-/** Whether what stands directly in this node is code, for machines: an element of styles, of a script or of code. */
+/** True where what stands directly in this node is code, for machines: an element of styles, of a script or of code. */
 function isCode(node) {
   return ['SvelteStyleElement', 'SvelteScriptElement'].includes(node.type) || (node.type === 'SvelteElement' && node.name.name === 'code');
 }
@@ -39,7 +39,7 @@ const SENTENCE = /\p{L}[\p{L}’']+ \p{L}{2}/u;
 /** Selectors, markup and functions of styles. */
 const CODE = /[=[]|\w\(/;
 
-/** Whether a text below this node is for programs: of an error that is thrown, compared, or a type. */
+/** True where a text below this node is for programs: of an error that is thrown, compared, or a type. */
 const isForPrograms = (node) => ['NewExpression', 'BinaryExpression', 'TSLiteralType'].includes(node?.type) && node.operator !== '+';
 
 /** For modules and scripts: a sentence belongs in src/texts, whatever it is used for. */

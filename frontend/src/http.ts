@@ -1,4 +1,4 @@
-/** How the page talks to the server: what every call carries, how long it may take, and what went wrong in words. */
+/** Calls to the server: what each carries, how long it may take, and what went wrong in words. */
 import { secretHeader } from './pageSecret';
 import { connection } from './texts/connection';
 

@@ -1,7 +1,7 @@
 /**
  * Look again and again, `pause` ms after each answer, while the page is visible. Answers how to end it.
  *
- * In an effect that reads `pause` from a state, a new pause begins with a look at once.
+ * A changed `pause` restarts an effect that reads it, and so looks at once.
  */
 export function poll(look: () => Promise<unknown>, pause: number): () => void {
   let ended = false;

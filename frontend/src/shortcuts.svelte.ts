@@ -7,7 +7,7 @@ const TYPED = 'input:not([type="range"], [type="checkbox"], [type="radio"]), tex
 /** True where a key that goes down at `target` is typed into a field, or chooses in one. */
 export const isTyping = (target: EventTarget | null): boolean => target instanceof Element && target.closest(TYPED) !== null;
 
-/** Whether single keys mark and drive (WCAG 2.1.4); remembered on this device. Esc is STOP in any case. */
+/** Switch of the single keys that mark and drive (WCAG 2.1.4); remembered on this device. Esc is STOP in any case. */
 export class Shortcuts {
   on = $state(readStored(KEY) !== 'off');
 

@@ -12,7 +12,7 @@ export type Operation = keyof operations;
 /** ms between two looks while the server does not answer */
 const LOOK_AGAIN = 2000;
 
-/** Who uses this page, and whether the robot knows them. */
+/** Identity and rights of this page's user. */
 export class Access {
   /** `unknown` until the server has said it, so that nobody sees the sign-in in passing */
   state = $state<'unknown' | 'out' | 'in'>('unknown');

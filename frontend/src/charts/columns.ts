@@ -1,7 +1,7 @@
 import type { Column } from '../live/ring';
 import type { View } from './view';
 
-/** What `Columns` needs of a ring. */
+/** The part of a ring that `Columns` reads. */
 export interface TimedColumns {
   readonly length: number;
   readonly time: Float64Array;
@@ -30,7 +30,7 @@ export function spanOf({ start, seconds }: View, columns: number): Span {
   return { first: Math.floor(start / width), columns: columns + 2, width };
 }
 
-/** How a column's samples lie: none, the least first, the greatest first. */
+/** Order of a column's samples: none, the least first, the greatest first. */
 export const Order = { NONE: 0, RISING: 1, FALLING: 2 } as const;
 
 /**

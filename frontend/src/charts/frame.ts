@@ -14,7 +14,7 @@ export interface FrameOptions {
   readonly edge: string;
 }
 
-/** What the axis of time shows. */
+/** Times that the axis of time shows. */
 export interface Times {
   /** s */
   readonly seconds: number;

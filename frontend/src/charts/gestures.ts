@@ -1,7 +1,7 @@
 import type { ChartTime } from './time.svelte';
 import { viewUntil, type View } from './view';
 
-/** What pointers, wheel and keys need of the chart over which they are. */
+/** The chart over which pointers, wheel and keys are. */
 export interface Under {
   readonly time: ChartTime;
   view(): View;
@@ -38,7 +38,7 @@ export function listen(node: HTMLElement, under: Under): () => void {
   };
 }
 
-/** What pointers, wheel and keys do to the chart over which they are. */
+/** Has pointers, wheel and keys move the chart over which they are. */
 class Gestures {
   /** x of each pointer that is down, px */
   readonly #pointers = new Map<number, number>();

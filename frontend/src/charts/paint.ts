@@ -82,7 +82,7 @@ export function paintTrace(
   context.stroke();
 }
 
-/** How far a trace goes up and down in each column on average, in its own unit, the way from column to column included. */
+/** Mean extent of a trace in each column, in its own unit, the way from column to column included. */
 function travel({ low, high, order, place }: Columns, { first, columns: many }: Span): number {
   let sum = 0;
   let last = NaN;

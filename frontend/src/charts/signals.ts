@@ -23,7 +23,7 @@ export interface Signal {
 }
 
 const QUATERNION = ['w', 'x', 'y', 'z'];
-/** What the places of a field mean; of what is not here they are numbered. */
+/** Names of the elements of a field; those of other fields are numbered. */
 const ELEMENTS: Readonly<Record<string, readonly string[]>> = {
   'imu.attitude': QUATERNION,
   'imu.rate': ['x', 'y', 'z'],
@@ -84,7 +84,7 @@ export function findSignals(names: readonly string[]): Signal[] {
   return names.map(findSignal).filter((signal) => signal !== null);
 }
 
-/** What a live chart may show. */
+/** Signals that a live chart may show. */
 export const GROUPS: readonly ChoiceGroup[] = TOPICS.map((topic) => ({
   topic,
   meaning: ROW_TOPICS[topic].meaning,

@@ -1,7 +1,7 @@
 import type { Live } from '../live/live.svelte';
 import { moved, viewUntil, within, zoomed, type View } from './view';
 
-/** What is held: up to when, and how long where it was zoomed. */
+/** A held view: up to when, and how long where it was zoomed. */
 interface Held {
   readonly end: number;
   /** s; null while each chart shows its own span */
@@ -17,7 +17,7 @@ export class ChartTime {
   /** where the cursor stands, in s before the charts' right edge; null where there is none */
   ago = $state<number | null>(null);
 
-  /** What a chart of a span of `seconds` shows at `now`. */
+  /** View of a chart of a span of `seconds` at `now`. */
   view(seconds: number, now: number): View {
     return viewUntil(this.held?.end ?? now, this.held?.seconds ?? seconds);
   }

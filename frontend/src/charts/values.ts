@@ -1,4 +1,4 @@
-/** What a cursor reads off a signal. */
+/** Reading of a cursor on a signal. */
 import type { Column } from '../live/ring';
 import type { TimedColumns } from './columns';
 
@@ -9,7 +9,7 @@ export interface Read {
 }
 
 /**
- * What a signal is at `time`: the samples within half of `width` (s) of it, or where there are none the newest before
+ * Value of a signal at `time`: the samples within half of `width` (s) of it, or where there are none the newest before
  * it that is not older than `gap`; null where there is none.
  */
 export function readAt(ring: TimedColumns, column: Column, time: number, width: number, gap: number): Read | null {

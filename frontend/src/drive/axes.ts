@@ -1,4 +1,4 @@
-/** What a pilot asks of the robot: x, y, z, roll, pitch and yaw, each -1 to 1, in body axes (forward, right, down). */
+/** A pilot's command to the robot: x, y, z, roll, pitch and yaw, each -1 to 1, in body axes (forward, right, down). */
 export type Axes = readonly [number, number, number, number, number, number];
 export type Axis = 0 | 1 | 2 | 3 | 4 | 5;
 
@@ -23,7 +23,7 @@ export function combine(held: Iterable<readonly Push[]>): Axes {
 }
 
 /**
- * What the sticks ask for at this share of full speed, with the trim; neutral where they are in the middle.
+ * Command of the sticks at this share of full speed, with the trim; neutral where they are in the middle.
  *
  * @param kept whether the robot holds this axis by itself: then only the stick moves it
  */

@@ -1,6 +1,6 @@
 import { PITCH, ROLL, X, Y, YAW, Z, type Push } from './axes';
 
-/** What is read of a gamepad in the "standard" layout of the Gamepad API. */
+/** The part of a gamepad, in the "standard" layout of the Gamepad API, that is read. */
 export type Pad = Pick<Gamepad, 'axes' | 'buttons'>;
 
 /** share of the way from the middle within which a stick that nobody touches may stand */
@@ -23,7 +23,7 @@ function beyondDead(right: number, down: number): [right: number, down: number] 
   return [right * share, down * share];
 }
 
-/** What is held on it; nothing where every stick rests. As on the screen: the left stick lifts and turns. */
+/** Pushes of its sticks and its directional pad; none where every stick rests. As on the screen: the left stick lifts and turns. */
 export function pushesOf({ axes, buttons }: Pad): Push[] {
   const [leftX = 0, leftY = 0, rightX = 0, rightY = 0] = axes;
   const [turn, down] = beyondDead(leftX, leftY);

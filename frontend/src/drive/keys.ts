@@ -59,7 +59,7 @@ export type Action =
   | { readonly do: 'speed'; readonly speed: number }
   | { readonly do: 'hold'; readonly loop: Holdable };
 
-/** What a key that goes down asks for; null where it is meant for something else, a field to type in above all. */
+/** Action of a key that goes down; null where it is meant for something else, a field to type in above all. */
 export function actionOf(event: KeyboardEvent): Action | null {
   if (event.ctrlKey || event.metaKey || event.altKey) return null;
   if (isTyping(event.target)) return null;

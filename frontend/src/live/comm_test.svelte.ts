@@ -2,7 +2,7 @@ import type { Cell } from '../api';
 import { mergeCells } from './cells';
 import type { CommTestActive } from './messages';
 
-/** What the live socket tells of the communication test that runs, on this page or on another. */
+/** The communication test that runs, started on this page or on another, as the live socket tells of it. */
 export class CommTestWatch {
   /** null while none runs, and until the server has said whether one does */
   active = $state.raw<CommTestActive | null>(null);

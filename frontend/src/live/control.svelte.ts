@@ -4,7 +4,7 @@ import type { ControlMessage, You } from './messages';
 const texts = connection.barred;
 
 /**
- * Who has the control of the robot: one page or program at a time.
+ * The control lease as this page sees it: one page or program at a time has control.
  *
  * A page whose user may have it takes control that is free by itself when it connects and is seen, so that somebody
  * who is alone with the robot never hears of it. What was given up on purpose is not taken back.
@@ -93,7 +93,7 @@ export class Control {
   }
 }
 
-/** What can be asked about control; each answers what went wrong, or null. */
+/** Requests about control; each answers what went wrong, or null. */
 export interface ControlCalls {
   take(): Promise<string | null>;
   release(): Promise<string | null>;

@@ -1,4 +1,4 @@
-/** Whether a value may be believed: `none` never came, `stale` came too long ago. */
+/** State of a value by its age: `none` never came, `stale` came too long ago. */
 export interface Freshness {
   readonly state: 'none' | 'fresh' | 'stale';
   /** s; null where nothing ever came */
@@ -13,7 +13,7 @@ export function staleAfter(period: number): number {
   return Math.max(LEAST_LIMIT, PERIODS_MISSED * period);
 }
 
-/** How fresh a value of `time` is at `now` (s, both of one clock), where one is due every `period` s. */
+/** Freshness of a value of `time` at `now` (s, both of one clock), where one is due every `period` s. */
 export function freshness(time: number | null, now: number, period: number): Freshness {
   if (time === null || Number.isNaN(now)) return { state: 'none', age: null };
   const age = Math.max(0, now - time);

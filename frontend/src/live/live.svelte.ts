@@ -122,7 +122,7 @@ export class Live {
     return this.control === null ? connection.barred.replay : this.control.barred;
   }
 
-  /** What is wrong, or was and nobody has acknowledged it; the most urgent first. */
+  /** Present alarms, and past ones that nobody has acknowledged; the most urgent first. */
   get alarms(): readonly Alarm[] {
     return inOrder([...(this.state?.alarms ?? []), ...this.serverAlarms]);
   }
@@ -160,7 +160,7 @@ export class Live {
     return this.clock();
   }
 
-  /** As `now`, for whoever comes by himself at each frame. */
+  /** As `now`, not reactive: for callers that run at each frame anyway. */
   get instantNow(): number {
     return this.clock();
   }

@@ -4,7 +4,7 @@ import type { components } from '../generated/api';
 import type { Alarm } from '../generated/topics';
 import type { Instant } from './clock';
 
-/** Who a page is to the robot. `client` is its number at the control lease, for as long as the live socket is open. */
+/** A page as the server knows it. `client` is its number at the control lease, for as long as the live socket is open. */
 export interface You {
   readonly name: string;
   readonly role: Role;

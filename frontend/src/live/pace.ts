@@ -9,7 +9,7 @@ export class Pace {
   #due = Infinity;
   #drawn = Infinity;
 
-  /** Whether to draw at `now` (s), with `step` s from one drawing to the next; `fresh`: samples came since the last one. */
+  /** True where it is time to draw at `now` (s), with `step` s from one drawing to the next; `fresh`: samples came since the last one. */
   isDue(now: number, step: number, fresh: boolean): boolean {
     const due = Math.min(this.#due, this.#drawn + step);
     if (now >= this.#drawn && now < (fresh ? due - EARLY * step : due)) return false;

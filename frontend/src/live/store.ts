@@ -30,7 +30,7 @@ export class Gaps {
     return this.#missed.get(topic) ?? 0;
   }
 
-  /** What follows need not join on to what was, for example after a connection was lost. */
+  /** Samples that follow need not join on to those before, for example after a connection was lost. */
   restart(): void {
     this.#next.clear();
   }

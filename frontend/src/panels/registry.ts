@@ -9,7 +9,7 @@ import { ownTitle, type PanelKind, type Plain, type Size } from '../parts/panelK
 import { missionRun } from '../texts/mission_run';
 import { panels as texts } from '../texts/panels';
 
-/** What an operator looks at first comes with the page, the others when they are first shown. */
+/** Panels that an operator looks at first come with the page, the others when they are first shown. */
 const here = (component: Plain) => () => Promise.resolve({ default: component });
 
 export const loadMission = () => import('./mission/Mission.svelte');
@@ -140,7 +140,7 @@ export const loadOwn = () => import('./own/OwnPanel.svelte');
 const CHART_KIND = { title: texts.titles.chart, size: { width: 12, height: 7 }, least: { width: 7, height: 5 } };
 const OWN_SIZE = { size: { width: 8, height: 7 }, least: { width: 4, height: 3 } };
 
-/** What a layout's panel is called and how large it is; an unknown one can be moved and removed as well. */
+/** Title and size of a layout's panel; an unknown one can be moved and removed as well. */
 export function describe(panel: string): { readonly title: string; readonly size: Size; readonly least: Size } {
   if (panel === CHART) return CHART_KIND;
   if (panel.startsWith(OWN)) return { title: ownTitle(panel.slice(OWN.length)), ...OWN_SIZE };

@@ -2,7 +2,7 @@
 import type { FigureMark, FigureMeaning } from '../api';
 import { fixed, MISSING } from '../format';
 
-/** What a figure of the table is read from, in the chart of the depth. */
+/** The place in the depth chart that a figure of the table is read from. */
 export interface Pointed {
   readonly session: number;
   readonly mark: FigureMark;

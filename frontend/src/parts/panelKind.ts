@@ -1,4 +1,4 @@
-/** What a panel is to the grid that it stands in. */
+/** A panel as the grid that it stands in sees it. */
 import type { Component } from 'svelte';
 
 /** In columns and rows of the grid. */
@@ -22,7 +22,7 @@ export interface PanelKind {
   readonly tab?: 'motion' | 'sensors' | 'console' | 'events';
 }
 
-/** What a panel of kind `chart` shows. */
+/** Signals and length of a panel of kind `chart`. */
 export interface ShownChart {
   /** names of signals (charts/signals.ts) */
   readonly signals: readonly string[];

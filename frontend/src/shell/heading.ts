@@ -1,10 +1,10 @@
 import { shell } from '../texts/shell';
 
-/** The page's heading names the document, and gets the focus when another page is there, unless it has moved on by then. */
+/** The page's heading names the document, and gets the focus where another page is there and nothing else has got it. */
 export class Heading {
   #current: HTMLElement | null = null;
   /** what had the focus when the page was left */
-  #left: Element | null = null;
+  #focusBefore: Element | null = null;
   readonly #appearing = new MutationObserver(() => this.#find());
   readonly #changing = new MutationObserver(() => this.#name());
 
@@ -18,7 +18,7 @@ export class Heading {
   follow(title: string): void {
     this.end();
     document.title = shell.titleOf(title);
-    this.#left = document.activeElement;
+    this.#focusBefore = document.activeElement;
     // Until it is there: the page of a robot at work changes all the time.
     this.#appearing.observe(this.place, { childList: true, subtree: true });
     this.#find();
@@ -35,7 +35,7 @@ export class Heading {
     this.#appearing.disconnect();
     this.#changing.observe(found, { childList: true, characterData: true, subtree: true });
     const { activeElement } = document;
-    const still = activeElement === document.body || activeElement === this.#left;
+    const still = activeElement === document.body || activeElement === this.#focusBefore;
     if (found !== this.#current && this.#current !== null && still) {
       found.tabIndex = -1;
       found.focus();

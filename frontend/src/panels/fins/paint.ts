@@ -14,7 +14,7 @@ export interface Look {
   readonly track: string;
 }
 
-/** What one fin does. */
+/** State of one fin. */
 export interface FinState {
   /** rad */
   readonly angle: number;

@@ -3,7 +3,7 @@ import { ROW_TOPICS, type Detection, type Rows, type State } from '../../generat
 
 type Topic = keyof Rows;
 
-/** What one's own panel is given, ten times a second (docs/use/panels.md). Times are in s, steady clock of the robot. */
+/** Data that one's own panel is given, ten times a second (docs/use/panels.md). Times are in s, steady clock of the robot. */
 export interface Samples {
   readonly now: number;
   readonly replayed: boolean;

@@ -51,7 +51,7 @@ export function isGoing(phase: ShownPhase): boolean {
   return phase === 'running' || phase === 'paused';
 }
 
-/** Whether Operate shows a mission by itself: while it runs, and for a while after its end. */
+/** True where Operate shows a mission by itself: while it runs, and for a while after its end. */
 export function isCurrent(mission: Mission, state: State | null, now: number): boolean {
   if (isGoing(phaseOf(mission, state))) return true;
   return state?.armed !== true && now - mission.time < ENDED_SHOWN;
@@ -63,7 +63,7 @@ export function sinceReport(mission: Mission, now: number): number {
   return Number.isFinite(since) ? Math.min(Math.max(since, 0), PERIOD) : 0;
 }
 
-/** Whether a step lasts so long that its time means something. */
+/** True where a step lasts so long that its time means something. */
 export function isTimed(step: MissionStepState): boolean {
   return step.longest > SHORT && step.status !== 'waiting';
 }
