@@ -21,7 +21,7 @@ Begin = Callable[..., Person]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _sketch() -> None:
+def _sketch(built: None) -> None:  # noqa: ARG001 - the board comes first
     build(ROOT / "firmware", "bring_up")
 
 
