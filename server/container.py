@@ -36,7 +36,7 @@ from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.sync import LeaseSync
 from server.features.missions.marks import MissionMarks
 from server.features.missions.trials import MissionTrials
-from server.features.operate.performing import CommandDesk
+from server.features.operate.performing import CheckedCommands
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import Profiles
 from server.features.scenarios.live_run import LiveExecutor
@@ -105,7 +105,7 @@ class Container:
         self._add_scenarios()
         self._add_identification()
         self.doors = Doors(settings, self.clock, self.hub)
-        self.commands = CommandDesk(self.changes, settings, self.alarms)
+        self.commands = CheckedCommands(self.changes, settings, self.alarms)
         self._add_ros2()
         self.heavy_requests = HeavyRequests()
         self.downloads = DatabaseDownloads(settings.data)

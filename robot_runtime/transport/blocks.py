@@ -23,6 +23,8 @@ from robot_runtime.contract.topics import BY_ID, ROW_BYTES, TIME, Kind, Topic
 HEADER = Struct("<BBHII")
 NUMBERS = 1 << 32
 """Samples are numbered modulo this."""
+COUNT_MAX = 65_535
+"""Greatest number of samples in a block."""
 
 
 @dataclass(slots=True)

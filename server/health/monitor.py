@@ -65,14 +65,14 @@ class HealthMonitor:
         settings: Settings,
         clock: Clock,
         store: Store,
-        parts: ProcessSupervisor,
+        processes: ProcessSupervisor,
         events: Callable[[], Condition | None] = lambda: None,
     ) -> None:
         self._events = events
         self._settings = settings
         self._clock = clock
         self._store = store
-        self._processes = parts
+        self._processes = processes
         self._began = clock.now()
         self._newest: dict[str, tuple[float, Block]] = {}
         self._bytes_received = -1
@@ -137,7 +137,8 @@ class HealthMonitor:
         parts = [PartHealth(name=name, state=state, text=text) for name, (state, text) in conditions.items()]
         simulator = self._processes.get("simulator")
         if self._settings.in_the_loop and simulator is not None:
-            parts[5].here = simulator.state != "paused"
+            part = next(part for part in parts if part.name == "simulator")
+            part.here = simulator.state != "paused"
         states = {part.state for part in parts}
         status: Literal["ok", "starting", "failed"] = "ok"
         if "failed" in states:
@@ -239,8 +240,8 @@ class HealthMonitor:
 
     def _silent(self, process: ManagedProcess | None, text: str) -> Condition:
         if process is not None and process.state == "waiting":
-            missing = ", ".join(path.name for path in process.command.needs if not path.exists())
-            return "starting", f"Waits for {missing or 'its turn'}."
+            absent = ", ".join(path.name for path in process.command.needs if not path.exists())
+            return "starting", f"Waits for {absent or 'its turn'}."
         since = self._began if process is None else process.since
         if (process is None or process.state == "running") and self._clock.now() - since < GRACE_SECONDS:
             return "starting", text or "Starting."

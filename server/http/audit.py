@@ -100,13 +100,13 @@ class AuditLog:
             about=clean(about),
             outcome=outcome,
         )
-        counted = self._end_windows()
-        if self._passes(entry):
-            counted.append(entry)
+        entries = self._end_windows()
+        if self._admit(entry):
+            entries.append(entry)
             if outcome == "done" and identity is not None and operation in NOTICED:
                 self._notify(operation, f"“{identity.name}” {NOTICED[operation]}.")
-        if counted:
-            self._thread.submit(self._write, counted)
+        if entries:
+            self._thread.submit(self._write, entries)
 
     def close(self) -> None:
         """Write what is still waiting. Blocks; call it once."""
@@ -119,7 +119,8 @@ class AuditLog:
             self._noticed = now, text
             self._notice(operation, text)
 
-    def _passes(self, entry: AuditEntry) -> bool:
+    def _admit(self, entry: AuditEntry) -> bool:
+        """Count an entry; False where there are too many of its kind, so that it is only counted."""
         operator = entry.role == "operator" and entry.outcome == "done"
         window = self._windows.setdefault(
             (entry.device, entry.action, entry.outcome), _Window(self._clock.now())

@@ -39,7 +39,7 @@ must confirm first, `kind` is `confirmation`.
 | 413 | a body of more than 64 KiB, or without its length; imports may be larger |
 | 422 | not valid |
 | 423 | only for the page or program that has control |
-| 429 | a wrong pairing code was tried a moment ago; or several long requests of this device are under way |
+| 429 | a wrong pairing code was tried a moment ago; or too many requests of this device or address at once |
 | 503 | a part that is needed does not run |
 | 504 | the runtime did not answer within 2 s |
 | 507 | the disk is too full |

@@ -38,7 +38,7 @@ class Running:
 
     pid: int
     started: int
-    made: str
+    fingerprint: str
 
 
 class PidFile:
@@ -47,9 +47,9 @@ class PidFile:
     def __init__(self, path: Path) -> None:
         self._path = path
 
-    def write(self, pid: int, made: str) -> None:
-        """Raises OSError where it cannot be written; the part runs all the same, and is not found again."""
-        text = json.dumps({"pid": pid, "started": started_at(pid), "made": made})
+    def write(self, pid: int, fingerprint: str) -> None:
+        """Raises OSError where it cannot be written; the process runs on, and is not found again."""
+        text = json.dumps({"pid": pid, "started": started_at(pid), "made": fingerprint})
         fresh = self._path.with_name(self._path.name + ".new")
         fresh.write_text(text, encoding="utf-8")
         fresh.replace(self._path)
@@ -64,13 +64,13 @@ class PidFile:
         return running if started_at(running.pid) == running.started else None
 
     def remove(self) -> None:
-        """The part has ended."""
+        """The process has ended."""
         with suppress(OSError):
             self._path.unlink(missing_ok=True)
 
 
 def pid_file(run: Path, name: str) -> PidFile:
-    """The file of the part of this name, in the folder `run`."""
+    """The file of the process of this name, in the folder `run`."""
     return PidFile(run / f"{name}.pid")
 
 
@@ -92,7 +92,7 @@ def hold_still(run: Path) -> Iterator[None]:
 
 
 def end_parts(run: Path, but: Collection[str] = ()) -> None:
-    """End what a killed server has left running, and wait for it; parts of the names in `but` stay.
+    """End what a killed server has left running, and wait for it; processes of the names in `but` stay.
 
     A runtime that systemd starts again waits as long as the caller has claimed the data folder.
     """

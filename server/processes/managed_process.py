@@ -113,7 +113,7 @@ class ManagedProcess:
             return False
         with suppress(OSError):
             self._process = AdoptedProcess(found.pid, found.started)
-        if found.made != self.command.fingerprint():
+        if found.fingerprint != self.command.fingerprint():
             await self.end()
         return self._process is not None
 

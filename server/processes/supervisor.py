@@ -21,7 +21,8 @@ from server.processes.logs import ProcessLog
 from server.processes.managed_process import ManagedProcess, ProcessCommand, SeeDown
 
 HEARTBEAT_SECONDS = 4.0
-"""Silence of the server after which, plus half a second, the runtime stops the robot; the limit is 5 s."""
+"""Silence of the server after which the runtime stops the robot. It notices half a second later at most; the
+limit is 5 s."""
 
 SIMULATION = ("simulator", "scene")
 """Processes that may run on another computer."""

@@ -75,6 +75,7 @@ class Bridge:
 
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
+        """Invalid messages so far."""
         self.on_stop: Callable[[], None] | None = None
         """Called at each STOP."""
         self.reserved_reason: str | None = None
@@ -159,11 +160,11 @@ class Bridge:
         except NoAnswerError as problem:
             raise RuntimeSilentError(str(problem), waited=False) from problem
 
-    def watch_pictures(self, names: frozenset[str]) -> None:
+    def watch_pictures(self, topics: frozenset[str]) -> None:
         """Subscribe to these picture topics and no other; a picture is encoded only for subscribers."""
-        for name in self._pictures.keys() - names:
+        for name in self._pictures.keys() - topics:
             self._pictures.pop(name).close()
-        for name in names - self._pictures.keys():
+        for name in topics - self._pictures.keys():
             self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -10,12 +10,10 @@ from dataclasses import dataclass
 from math import inf
 
 from robot_runtime.contract.topics import BY_ID, TIME, Kind, Topic
-from robot_runtime.transport.blocks import HEADER, Block
+from robot_runtime.transport.blocks import COUNT_MAX, HEADER, Block
 
 CHUNK_SECONDS = 2.0
 CHUNK_BLOCKS = 100
-COUNT_MAX = 65_535
-"""Samples in one block."""
 
 Totals = dict[int, int]
 """Samples of each topic, by its number, since the server started."""

@@ -167,7 +167,7 @@ def read_machine(
         address=f"{settings.host}:{settings.port}",
         address_problem="" if serves else _try_address(settings.host, settings.port),
         server_runs=serves,
-        runtime_outdated=runtime is not None and runtime.made != _fingerprint(settings),
+        runtime_outdated=runtime is not None and runtime.fingerprint != _fingerprint(settings),
         units=units,
     )
 

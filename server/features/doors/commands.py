@@ -13,7 +13,7 @@ from server.features.doors.ros_axes import stick_axes
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.features.lease.driving import DriveCommand
-from server.features.operate.performing import CommandDesk
+from server.features.operate.performing import CheckedCommands
 from server.http.audit import AuditLog
 from server.http.sign_in.access import Access
 from server.http.sign_in.policy import Need, refusal
@@ -41,7 +41,7 @@ class DoorCommands:
         door: str,
         clock: Clock,
         access: Access,
-        desk: CommandDesk,
+        commands: CheckedCommands,
         bridge: Bridge,
         arbiter: ControlArbiter,
         audit: AuditLog,
@@ -49,7 +49,7 @@ class DoorCommands:
         self._door = door
         self._clock = clock
         self._access = access
-        self._desk = desk
+        self._commands = commands
         self._bridge = bridge
         self._arbiter = arbiter
         self._audit = audit
@@ -124,7 +124,7 @@ class DoorCommands:
         if cls is None or cls.policy.need is None:
             raise InvalidCallError(f"There is no command {name[:80]!r}; the manual lists them.")
         self._require(pilot, cls.policy.need)
-        await self._desk.perform(pilot.owner.identity.name, read_command(cls, fields))
+        await self._commands.perform(pilot.owner.identity.name, read_command(cls, fields))
         return f"Done: {cls.policy.words or cls.policy.name}."
 
     def _require(self, pilot: "DoorPilot", need: Need) -> None:

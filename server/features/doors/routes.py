@@ -14,7 +14,7 @@ from server.features.doors.schemas import DoorClientDetails, DoorDetails
 from server.features.doors.session import UnusableMessageError
 from server.features.doors.subscriptions import DoorClient
 from server.features.lease.arbiter import ControlArbiter
-from server.features.operate.performing import CommandDesk
+from server.features.operate.performing import CheckedCommands
 from server.http.audit import AuditLog, address_of
 from server.http.dependencies import Provided, find_service
 from server.http.operations import Operations
@@ -75,7 +75,7 @@ class _Visit:
             f"/{name}",
             find_service(socket, Clock),  # type: ignore[type-abstract]
             self._access,
-            find_service(socket, CommandDesk),
+            find_service(socket, CheckedCommands),
             find_service(socket, Bridge),
             self._arbiter,
             self._audit,

@@ -20,6 +20,9 @@ def in_control(folder: DataFolder) -> Iterator[None]:
 
 
 def renew_control(folder: DataFolder) -> None:
-    """Renew control; call this every few seconds. Does nothing if somebody else took it over."""
+    """Renew control; call this every few seconds.
+
+    It does nothing while somebody else has control, and takes it again where that one has released it.
+    """
     with suppress(SetupError):
         ask(folder, "POST", "/control/take")

@@ -9,7 +9,7 @@ from server.platform.disk_space import check_room
 from server.platform.settings import Settings
 
 
-class CommandDesk:
+class CheckedCommands:
     """Sends commands to the robot with the checks of the server. The caller's rights are checked before."""
 
     def __init__(self, changes: Changes, settings: Settings, alarms: Alarms) -> None:

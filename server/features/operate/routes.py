@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
 from robot_runtime.contract.documents import State
 from robot_runtime.link.dissection import Dissection
-from server.features.operate.performing import CommandDesk
+from server.features.operate.performing import CheckedCommands
 from server.features.parameters.changes import COMMAND_ERRORS
 from server.features.parameters.schemas import Restored
 from server.health.monitor import Health, HealthMonitor
@@ -93,8 +93,8 @@ def _add_command(cls: type[RobotCommand], need: Need) -> None:
     optional = not any(map(is_required, fields(cls)))
     answer = Restored if cls.policy.tunes else None
 
-    async def perform(desk: Provided[CommandDesk], caller: Caller, command: Any) -> Restored | None:
-        restored = await desk.perform(caller.name, cls() if command is None else command)
+    async def perform(commands: Provided[CheckedCommands], caller: Caller, command: Any) -> Restored | None:
+        restored = await commands.perform(caller.name, cls() if command is None else command)
         return restored if answer else None
 
     # FastAPI takes name, texts and schemas of the operation from the function.

@@ -28,7 +28,7 @@ Moment = Annotated[float | None, Query(allow_inf_nan=False, description="s since
 
 
 class AuditFilter(BaseModel):
-    """The entries that are wanted."""
+    """Conditions on entries of the audit log."""
 
     model_config = ConfigDict(frozen=True)
     who: str
@@ -37,7 +37,7 @@ class AuditFilter(BaseModel):
     until: float | None
 
     def fits(self, entry: AuditEntry) -> bool:
-        """True where the entry is wanted; upper and lower case are the same."""
+        """True where the entry meets them; upper and lower case are the same."""
         if self.since is not None and entry.time < self.since:
             return False
         if self.until is not None and entry.time > self.until:

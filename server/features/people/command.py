@@ -71,8 +71,8 @@ def revoke(settings: Settings, device: int) -> None:
 
 @access.command()
 @click.argument("name")
-@click.option("--scope", type=SCOPE, default="read", help="What it may do. Default: read.")
-@click.option("--days", type=click.IntRange(1, 3650), default=90, help="Until it ends. Default: 90.")
+@click.option("--scope", type=SCOPE, default="read", help="What it may do.")
+@click.option("--days", type=click.IntRange(1, 3650), default=90, help="Days until it ends.")
 @click.option("--never-ends", is_flag=True, help="Instead of --days.")
 @with_settings
 def token(settings: Settings, name: str, scope: str, days: int, never_ends: bool) -> None:

@@ -16,7 +16,7 @@ from sqlalchemy import bindparam
 from sqlmodel import col, select
 
 from robot_runtime.contract.topics import BY_NAME, CHART_SECONDS, LINES, TIME, Kind, Topic
-from robot_runtime.transport.blocks import Block
+from robot_runtime.transport.blocks import COUNT_MAX, Block
 from server import VERSION
 from server.features.sessions.chunks import (
     DOCUMENTS_ENCODING,
@@ -40,9 +40,6 @@ BYTES_MAX = 16_000_000
 """Largest size of one answer; two minutes at the robot's full rate are 2 MB."""
 LISTED_CHUNKS = 300
 STATE = BY_NAME["state"]
-COUNT_MAX = 65_535
-"""Samples in one block."""
-
 
 log = logging.getLogger(__name__)
 

@@ -43,7 +43,7 @@ def issue(settings: Settings, name: str, destination: Path | None) -> None:
     default="read",
     help="What it may do: see everything, or also take control.",
 )
-@click.option("--days", type=click.IntRange(1, 3650), default=90, help="Until it ends.")
+@click.option("--days", type=click.IntRange(1, 3650), default=90, help="Days until it ends.")
 @click.option("--to", "destination", type=FILE, help="New folder for it.  [default: mucat-NAME]")
 @with_settings
 def ros2(settings: Settings, name: str, scope: str, days: int, destination: Path | None) -> None:
