@@ -38,8 +38,9 @@ TOPICS_INTRODUCTION = """\
 A topic is a stream of samples that one process sends and the others receive over Zenoh; the page receives it
 on the [live socket](live-socket.md). *Rows* are fixed binary records, *documents* are JSON objects, a
 *picture* is one JPEG file. A page that connects receives the last minute of rows, the documents of the last
-ten minutes, and of *newest only* topics the newest document. *Lines* are shown one by one to a person, and are the log of an MCAP export. Every
-sample has a time in s of the steady clock. [The serial link's packets](packets.md) are topics, too.
+ten minutes, and of *newest only* topics the newest document. *Lines* are shown one by one to a person, and
+are the log of an MCAP export. Every sample has a time in s of the steady clock.
+[The serial link's packets](packets.md) are topics, too.
 """
 EVENTS_SOURCE = "robot_runtime/contract/published_events.py"
 EVENTS_INTRODUCTION = """\
