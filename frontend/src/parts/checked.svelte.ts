@@ -4,6 +4,8 @@ import type { Draft } from './draft';
 
 /** ms without a change after which the server is asked */
 const PAUSE = 250;
+/** ms after a check without an answer, or refused for now, until the next */
+const AGAIN = 2000;
 
 /** A document that somebody writes, and what the server says to it. To be made while a component begins. */
 export class CheckedText<Check extends { readonly problems: readonly unknown[] }> {
@@ -25,17 +27,18 @@ export class CheckedText<Check extends { readonly problems: readonly unknown[] }
       if (this.#text === '' || live.connection !== 'open') return;
       const asked = this.#text;
       let outdated = false;
-      const timer = setTimeout(
-        () =>
-          void ask(asked).then((answer) => {
-            if (outdated) return;
-            this.problem = 'problem' in answer ? answer.problem : '';
-            if ('problem' in answer) return;
-            this.check = answer.value;
-            this.checked = asked;
-          }),
-        PAUSE,
-      );
+      const look = async () => {
+        const answer = await ask(asked);
+        if (outdated) return;
+        this.problem = 'problem' in answer ? answer.problem : '';
+        if ('problem' in answer) {
+          timer = setTimeout(() => void look(), AGAIN);
+          return;
+        }
+        this.check = answer.value;
+        this.checked = asked;
+      };
+      let timer = setTimeout(() => void look(), PAUSE);
       return () => {
         outdated = true;
         clearTimeout(timer);
