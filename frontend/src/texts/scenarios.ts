@@ -43,7 +43,7 @@ export const scenarios = {
     run: 'Run in simulation',
     holdAction: 'run live',
     liveHint: 'The scenario can arm and move the robot.',
-    liveBusy: 'A live scenario is running. Only one can run at a time.',
+    liveBusy: 'A scenario is running. A live one needs it to end first.',
   },
   place: {
     legend: 'Run on',

@@ -1,3 +1,5 @@
 import { Draft } from '../../parts/draft';
 
 export const draft = new Draft('mucat-comm-test');
+/** one's own text, while another of the list is chosen */
+export const ownDraft = new Draft('mucat-comm-test-own');
