@@ -89,7 +89,10 @@ describe('the form', () => {
   it('has no faults where none is left', () => {
     const faults = changeFault({}, 'drop', 0.01);
     expect(faults).toEqual({ drop: 0.01 });
-    expect(changeFault({ faults: { drop: 0.01, seed: 3 } }, 'drop', undefined)).toBeUndefined();
+    expect(changeFault({ faults: { drop: 0.01 } }, 'drop', undefined)).toBeUndefined();
+    // A seed stays while its fault is written anew, and may be written first.
+    expect(changeFault({ faults: { drop: 0.01, seed: 3 } }, 'drop', undefined)).toEqual({ seed: 3 });
+    expect(changeFault({}, 'seed', 3)).toEqual({ seed: 3 });
     expect(changeFault({ faults: { drop: 0.01, seed: 3 } }, 'insert', 0.1)).toEqual({ drop: 0.01, seed: 3, insert: 0.1 });
     expect(faultText({ faults: { burst: [0.001, 8] } }, 'burst', 1)).toBe('8');
     expect(faultText({ faults: { drop: 0.01 } }, 'drop')).toBe('0.01');

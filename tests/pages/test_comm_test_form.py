@@ -6,6 +6,8 @@ from pathlib import Path
 
 from playwright.sync_api import Page, expect
 
+from tests.pages.dive_site import DiveSite
+
 FIGURE_10 = Path("firmware/examples/comm_test/figure10.json")
 
 
@@ -39,6 +41,41 @@ def test_the_choice_of_tests_counts_the_problems_of_each(page: Page) -> None:
     page.get_by_role("button", name="Edit", exact=True).click()
     options = page.get_by_label("Test of the document").locator("option")
     expect(options).to_have_text([re.compile(r"^Test 1 of 2: [^(]*$"), re.compile(r"\(2 problems\)$")])
+
+
+def test_faults_stay_open_and_their_seed_stays_while_a_fault_is_written_anew(page: Page) -> None:
+    open_form(page)
+    faults = page.locator("details", has_text="Faults on the line")
+    faults.locator("summary").click()
+    seed, dropped = (
+        faults.get_by_label(re.compile("^Seed")),
+        faults.get_by_label(re.compile("^Dropped bytes")),
+    )
+    seed.fill("5")
+    seed.blur()
+    expect(seed).to_have_value("5")
+    dropped.fill("0.01")
+    dropped.fill("")
+    expect(dropped).to_be_visible()
+    expect(seed).to_have_value("5")
+
+
+def test_ones_own_document_stays_in_the_list_while_another_page_is_looked_at(page: Page) -> None:
+    open_form(page)
+    page.get_by_label(re.compile("^Pi delays")).fill("0.125")
+    own = page.get_by_role("radio", name="Your own")
+    expect(own).to_be_checked()
+    page.get_by_role("radio").first.check()
+    page.get_by_role("link", name="Sessions", exact=True).click()
+    expect(page.get_by_role("heading", name="Sessions", exact=True)).to_be_visible()
+    open_form(page)
+    own.check()
+    expect(page.get_by_label(re.compile("^Pi delays"))).to_have_value("0.125")
+
+
+def test_a_run_that_the_address_names_twice_is_compared_once(page: Page, site: DiveSite) -> None:
+    page.goto(f"{site.url}/#/comm-tests/compare/table6/table6")
+    expect(page.get_by_role("heading", name="Compare runs")).to_be_visible()
 
 
 def open_form(page: Page) -> None:
