@@ -34,6 +34,7 @@ export const craft = {
   missingHint: 'These sessions do not show the following numbers; they stay as before.',
   prediction: 'Prediction of the checking session',
   predicted: (name: string, gain: string) => `${name} is predicted ${gain} times better than before.`,
+  predictedWorse: (name: string, loss: string) => `${name} is predicted ${loss} times worse than before.`,
   notChecked: 'No session was left out, so nothing checks the result.',
   signal: 'Signal',
   measured: 'measured',
@@ -43,5 +44,4 @@ export const craft = {
   chart: (signal: string) => `${signal}, measured and predicted`,
   empty: { title: 'No fit yet', text: 'Choose sessions and fit. The numbers appear here, then a chart of measured and predicted signals.' },
   failed: (problem: string) => `The last fit has no result: ${problem}`,
-  windows: (names: string) => `Fitted to ${names}.`,
 } as const;

@@ -26,7 +26,7 @@ export interface CurvePlotOptions {
   readonly hover: (index: number | null) => void;
 }
 
-/** A chart of these lines; `setLines` gives it others as long as they are as many. */
+/** A chart of these lines; `setData(columns(…))` gives it others as long as they are as many. */
 export function createCurvePlot(host: HTMLElement, lines: readonly CurveLine[], options: CurvePlotOptions): uPlot {
   const { what, loop } = options;
   const values = what === 'values';

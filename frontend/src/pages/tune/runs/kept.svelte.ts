@@ -5,13 +5,18 @@ const MOST_SHOWN = 6;
 
 /** The runs of one kind on one loop, and which of them are laid over each other. */
 export class KeptRuns {
-  loop = $state<LoopName>('depth');
+  loop: LoopName;
   list = $state.raw<TuningRuns | null>(null);
   problem = $state('');
   chosen = $state.raw<readonly number[]>([]);
   readonly #whole = new SvelteMap<number, TuningRunDetail>();
 
-  constructor(private readonly kind: 'step' | 'relay') {}
+  constructor(
+    private readonly kind: 'step' | 'relay',
+    loop: LoopName,
+  ) {
+    this.loop = $state(loop);
+  }
 
   /** The run where it is one of these, else null. */
   own<Run extends { readonly kind: string; readonly loop: string }>(run: Run | null | undefined): Run | null {

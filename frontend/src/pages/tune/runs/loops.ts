@@ -24,10 +24,12 @@ const DEPTH: Loop = { name: 'depth', title: texts.loops.depth, unit: 'm', factor
 export const LOOPS: readonly Loop[] = [
   DEPTH,
   { name: 'heading', title: texts.loops.heading, least: -180, most: 180, ...angle },
+  // Of the robot's ±0.5 rad.
   { name: 'pitch', title: texts.loops.pitch, least: -28, most: 28, ...angle },
   { name: 'roll', title: texts.loops.roll, least: -28, most: 28, ...angle },
 ];
 
-export function loopOf(name: LoopName): Loop {
+/** The loop of this name; the depth where there is none. */
+export function loopOf(name: string | undefined): Loop {
   return LOOPS.find((one) => one.name === name) ?? DEPTH;
 }
