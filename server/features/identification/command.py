@@ -61,6 +61,8 @@ def _progress() -> "ProgressBar[int]":
 
 
 def _print(result: "IdentificationResult") -> None:
+    from server.features.identification.schemas import describe_improvement
+
     width = max(len(one.title) for one in result.numbers)
     echo(f"{'':<{width}}  {'before':>10}  {'found':>10}")
     for one in result.numbers:
@@ -77,7 +79,7 @@ def _print(result: "IdentificationResult") -> None:
         echo(
             f"Prediction of {check.name}, which was left out: the error is {100 * check.after_error:.1f} % "
             f"of what the signals vary, before {100 * check.before_error:.0f} %: "
-            f"{check.improvement:.1f} times better."
+            f"{describe_improvement(check.improvement)}."
         )
 
 

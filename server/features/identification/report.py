@@ -8,7 +8,7 @@ from plotly.io import to_html
 
 from server import VERSION
 from server.features.comparison.report import COLOURS, FONT, PAGE
-from server.features.identification.schemas import CheckedSession, IdentificationResult
+from server.features.identification.schemas import CheckedSession, IdentificationResult, describe_improvement
 
 HIGH, GAP = 170, 44
 LINES = (("measured", "#0d1a22", "solid"), ("before", COLOURS[1], "dot"), ("after", COLOURS[0], "solid"))
@@ -56,7 +56,7 @@ def _check(check: CheckedSession | None) -> str:
         for one in check.channels
     ]
     words = (
-        f"{check.name} is predicted {check.improvement:.1f} times better than before: the error is "
+        f"{check.name} is predicted {describe_improvement(check.improvement)} than before: the error is "
         f"{100 * check.after_error:.1f} % of what the signals vary, before {100 * check.before_error:.0f} %."
     )
     return f"<p>{escape(words)}</p>{_table(('Signal', 'Error before', 'Error after'), rows)}{_chart(check)}"

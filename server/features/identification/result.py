@@ -23,6 +23,7 @@ from server.features.identification.schemas import (
     IdentificationResult,
     IdentifiedNumber,
     PredictedChannel,
+    describe_improvement,
 )
 from server.features.metrics.series import Floats
 
@@ -62,7 +63,7 @@ def write_craft(craft: Craft, names: Sequence[str], check: Prediction | None) ->
     day = f"{datetime.now(UTC):%Y-%m-%d}"
     origin = f"Fitted to {', '.join(names)} on {day}."
     if check is not None:
-        origin += f" {check.session} is predicted {check.improvement:.1f} times better than before."
+        origin += f" {check.session} is predicted {describe_improvement(check.improvement)} than before."
     title = f"Fitted to {', '.join(names)}"
     document = {"title": title[:TITLE_MAX], "origin": origin[:2000], "craft": craft_table(craft)}
     return tomli_w.dumps(document)

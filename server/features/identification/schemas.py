@@ -69,6 +69,11 @@ class CheckedSession(BaseModel):
     channels: list[PredictedChannel]
 
 
+def describe_improvement(improvement: float) -> str:
+    """The share of the error before over the one after, in words: below 1 the fit has made it worse."""
+    return f"{improvement:.1f} times better" if improvement >= 1 else f"{1 / improvement:.1f} times worse"
+
+
 class IdentificationResult(BaseModel):
     """The result of a fit."""
 

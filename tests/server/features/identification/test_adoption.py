@@ -1,4 +1,4 @@
-"""Adoptions: twice, beside a configuration that cannot be read, and beside a simulator that rests."""
+"""Adoptions: twice, beside a configuration that cannot be read, beside a simulator that rests; a worse fit."""
 
 import asyncio
 import sys
@@ -9,6 +9,7 @@ import pytest
 
 from robot_runtime.contract.commands import ControllerCommand
 from server.features.identification.adoption import CraftAdoption
+from server.features.identification.schemas import describe_improvement
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
 from server.processes.supervisor import SIMULATION_ELSEWHERE
@@ -16,6 +17,11 @@ from tests.server.serving import serve
 
 LIGHT = 'title = "Light"\n[craft]\nmass = 2.5\n'
 HEAVY = 'title = "Heavy"\n[craft]\nmass = 3.1\n'
+
+
+def test_a_fit_that_predicts_worse_is_not_called_better() -> None:
+    assert describe_improvement(12.04) == "12.0 times better"
+    assert describe_improvement(0.5) == "2.0 times worse"
 
 
 class Robot:
