@@ -1,4 +1,4 @@
-"""Adoptions: twice, beside a configuration that cannot be read, beside a simulator that rests; a worse fit."""
+"""Adoptions: twice, beside a configuration that cannot be read, beside a resting simulator; a worse fit."""
 
 import asyncio
 import sys
