@@ -232,6 +232,27 @@ def test_toml_changes_the_cards_and_cards_write_toml(page: Page, site: Site) -> 
     assert tomllib.loads(toml.input_value()) == document
 
 
+def test_an_emptied_text_is_checked_and_can_be_undone(page: Page, site: Site) -> None:
+    page.goto(f"{site.url}/#/missions")
+    page.get_by_role("button", name="New mission").click()
+    expect(page.get_by_text("Not saved")).to_be_visible()
+    toml = show_toml(page)
+    text = toml.input_value()
+    assert text
+    toml.fill("")
+    expect(page.get_by_text(re.compile("problems?$")).first).to_be_visible()
+    expect(page.get_by_text("Not saved")).to_be_visible()
+    expect(toml).to_have_value("")
+    page.get_by_role("button", name="Undo").click()
+    expect(toml).to_have_value(text)
+
+
+def test_an_address_of_no_mission_says_so(page: Page, site: Site) -> None:
+    page.goto(f"{site.url}/#/missions/edit/%")
+    expect(page.get_by_role("heading", level=1, name="Missions")).to_be_visible()
+    expect(page.get_by_text(re.compile("“%”"))).to_be_visible()
+
+
 def drag(page: Page, place: str, to: Locator, at: tuple[float, float] | None = None) -> None:
     """Drag the step at this place over something, to a position in it."""
     card(page, place).locator("xpath=preceding-sibling::*").hover()
@@ -345,6 +366,16 @@ def test_a_dry_run_shows_its_outcomes_as_a_picture_and_where_it_failed(page: Pag
     expect(card(page, "2")).to_be_focused()
     page.get_by_text("All runs").click()
     expect(page.get_by_role("table").get_by_role("row")).to_have_count(4)
+
+    # Also where another view stands beside, the cards do not claim a text that was not tried.
+    show_toml(page)
+    expect(card(page, "2")).to_contain_text("failed in 3 of 3")
+    timeout = page.get_by_role("textbox", name=re.compile("^timeout"))
+    timeout.fill("3")
+    expect(card(page, "2")).not_to_contain_text("failed in")
+    timeout.fill("1")
+    expect(card(page, "2")).to_contain_text("failed in 3 of 3")
+    page.get_by_role("button", name="Dry run", exact=True).click()
 
     # Of another text, it says so, and no card claims it.
     page.get_by_role("textbox", name=re.compile("^timeout")).fill("2")

@@ -17,14 +17,17 @@ export class CheckedText<Check extends { readonly problems: readonly unknown[] }
   problem = $state('');
   readonly #draft: Draft;
   #text = $state('');
+  /** whether there has been a text: one that is emptied is checked, too */
+  #begun = $state(false);
 
   constructor(draft: Draft, ask: (text: string) => Promise<Answer<Check>>) {
     this.#draft = draft;
     this.#text = draft.read();
+    this.#begun = this.#text !== '';
     const live = useLive();
     $effect(() => {
       // What could not be checked while the server was away is checked when it is back.
-      if (this.#text === '' || live.connection !== 'open') return;
+      if (!this.#begun || live.connection !== 'open') return;
       const asked = this.#text;
       let outdated = false;
       const look = async () => {
@@ -52,6 +55,7 @@ export class CheckedText<Check extends { readonly problems: readonly unknown[] }
 
   set text(next: string) {
     this.#text = next;
+    if (next !== '') this.#begun = true;
     this.#draft.write(next);
   }
 

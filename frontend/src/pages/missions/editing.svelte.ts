@@ -30,6 +30,13 @@ import { placeProblems } from './problems';
 import { time } from './words';
 import { writeMission } from './toml';
 
+/** A text, how many seeds it was tried with, and how often each step failed, by its place. */
+interface TriedText {
+  readonly text: string;
+  readonly seeds: number;
+  readonly failures: Readonly<Record<string, number>>;
+}
+
 interface Entry {
   readonly text: string;
   /** null until the server has read the text */
@@ -53,9 +60,8 @@ export class MissionEditing {
   viewOnly = $state(false);
   /** while the library has another text of it than what it was opened as */
   saving = $state(false);
-  /** how many seeds the present text was tried with, and how often each step failed, by its place */
-  tried = $state(0);
-  failures = $state.raw<Readonly<Record<string, number>>>({});
+  /** the last dry run; null where there was none */
+  trial = $state.raw<TriedText | null>(null);
   readonly #heads: Record<symbol, HTMLElement> = {};
   readonly problems = $derived(placeProblems(this.written.check?.problems ?? []));
 
@@ -77,9 +83,24 @@ export class MissionEditing {
     return this.#source;
   }
 
+  /** whether there is a mission in the editor; an emptied text can be undone */
+  get opened(): boolean {
+    return this.written.text !== '' || this.canUndo;
+  }
+
+  /** how many seeds the present text was tried with */
+  get tried(): number {
+    return this.trial?.text === this.written.text ? this.trial.seeds : 0;
+  }
+
+  /** how often each step of the present text failed then, by its place */
+  get failures(): Readonly<Record<string, number>> {
+    return this.trial?.text === this.written.text ? this.trial.failures : {};
+  }
+
   /** whether there is something that the library does not have */
   get unsaved(): boolean {
-    return this.written.text !== this.#source.text;
+    return this.opened && (this.#source.name === '' || this.written.text !== this.#source.text);
   }
 
   /** null where there are none, as of a text that is no TOML */
