@@ -56,7 +56,7 @@ class RobotBoard:
 
     @asynccontextmanager
     async def reserve(self, work: str, program: Path | None = None) -> AsyncIterator[list[str]]:
-        """Reserve the board for this work, in words; the value are the lab's arguments for the board.
+        """Reserves the board for this work, in words; yields the arguments that name the board to the lab.
 
         Afterwards it gets this program (Intel HEX), by default the firmware that was built. Raises
         RefusedError if the note that the firmware is away cannot be written.
@@ -97,13 +97,13 @@ class RobotBoard:
 
     async def upload(self, program: Path) -> str:
         """Upload a program (Intel HEX); the problem in words, empty on success."""
-        return await self._transfer("--restore", program)
+        return await self._transfer("--restore", program, "upload")
 
     async def read_out(self, program: Path) -> str:
         """Read all flash memory into a file (Intel HEX); the problem in words, empty on success."""
-        return await self._transfer("--read-out", program)
+        return await self._transfer("--read-out", program, "read-out")
 
-    async def _transfer(self, way: str, program: Path) -> str:
+    async def _transfer(self, way: str, program: Path, title: str) -> str:
         output = ProcessLog(self._settings.data.logs / "restore.log")
         before = output.size()
         command = [sys.executable, "-m", "robot_runtime.experiments.comm_test", way, str(program)]
@@ -123,14 +123,14 @@ class RobotBoard:
             finally:
                 process.close()
         except TimeoutError:
-            return f"the upload took more than {RESTORE_SECONDS:g} s"
+            return f"the {title} took more than {RESTORE_SECONDS:g} s"
         except OSError as problem:
-            return f"the upload could not be started: {problem.strerror}"
+            return f"the {title} could not be started: {problem.strerror}"
         finally:
             output.trim()
         if status == 0:
             return ""
-        return output.last(LINES_SHOWN, since=before) or f"the upload {describe_status(status)}"
+        return output.last(LINES_SHOWN, since=before) or f"the {title} {describe_status(status)}"
 
 
 class BoardReservation:

@@ -2,10 +2,12 @@
 
 import asyncio
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from robot_runtime.durable_files import write_whole
 from server.platform.command_line import with_settings
 from server.platform.folder_lock import claim
 from server.platform.settings import Settings, SetupError
@@ -28,6 +30,8 @@ def bring_up(settings: Settings) -> int:
     For the robot's own board (robot.mode = "robot"). The page does the same, with pictures. At the end the
     robot's firmware is on its board again, and the report is bring-up.html in the data folder.
     """
+    from robot_runtime.places import FIRMWARE_REMEDY
+    from robot_runtime.simulation.boards.firmware import bring_up_path
     from server.platform.pidfile import end_parts
 
     if settings.emulated_board:
@@ -35,16 +39,18 @@ def bring_up(settings: Settings) -> int:
             "The emulated robot's board runs only while the server does. Start `mucat run --uncalibrated`, "
             "and the bring-up from its page."
         )
+    sketch = bring_up_path(settings.build, settings.link.baud)
+    if not sketch.exists():
+        raise SetupError(f"There is no {sketch}; {FIRMWARE_REMEDY}.")
     with claim(settings.data):
         end_parts(settings.data.run)
-        return asyncio.run(_perform(settings))
+        return asyncio.run(_perform(settings, sketch))
 
 
-async def _perform(settings: Settings) -> int:
+async def _perform(settings: Settings, sketch: Path) -> int:
     from robot_runtime.errors import RefusedError
     from robot_runtime.experiments.bring_up.bench import BenchError, SerialBench
     from robot_runtime.experiments.bring_up.procedure import BringUp
-    from robot_runtime.simulation.boards.firmware import bring_up_path
     from server.features.board.reservation import RobotBoard
     from server.features.bring_up.report import write_report
 
@@ -52,7 +58,7 @@ async def _perform(settings: Settings) -> int:
     try:
         async with board.reserve("The bring-up") as arguments:
             echo("The bring-up's sketch is uploaded to the board.")
-            if trouble := await board.upload(bring_up_path(settings.build, settings.link.baud)):
+            if trouble := await board.upload(sketch):
                 raise SetupError(f"The sketch is not on the board: {trouble}")
             port = arguments[arguments.index("--port") + 1]
             try:
@@ -62,7 +68,10 @@ async def _perform(settings: Settings) -> int:
             except BenchError as problem:
                 raise SetupError(str(problem)) from problem
             report = write_report(settings.robot, datetime.now(UTC), procedure)
-            settings.data.bring_up.write_text(report, encoding="utf-8")
+            try:
+                await asyncio.to_thread(write_whole, settings.data.bring_up, report.encode())
+            except OSError as problem:
+                raise SetupError(f"The report could not be written: {problem.strerror}.") from problem
             echo(f"The report is {settings.data.bring_up}. The robot's firmware is uploaded again.")
     except RefusedError as problem:
         raise SetupError(str(problem)) from problem
