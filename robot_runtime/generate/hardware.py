@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from robot_runtime.contract.wiring import (
     BATTERY_MAX,
-    FINS,
     IMU_ADDRESS,
     PARTS,
     PRESSURE_ADDRESS,
@@ -18,6 +17,7 @@ from robot_runtime.contract.wiring import (
     find_wiring_faults,
 )
 from robot_runtime.generate.markdown import page, table
+from robot_runtime.generate.wiring_drawing import strap_rows
 
 SOURCE = "robot_runtime/contract/wiring.py"
 
@@ -144,10 +144,7 @@ def wiring_page() -> str:
         raise ValueError("the wiring is wrong: " + "; ".join(faults))
     fins = table(
         ("fin", "place", "CSn of its encoder", "address of its H-bridge", "A1", "A0"),
-        (
-            (str(number), fin.place, fin.select, f"0x{fin.address:02x}", fin.a1.value, fin.a0.value)
-            for number, fin in enumerate(FINS)
-        ),
+        strap_rows(),
     )
     sensors = (
         f"\nOn the same bus: the IMU at 0x{IMU_ADDRESS:02x} (AD0 high) and the pressure sensor at "

@@ -60,7 +60,7 @@ def hash_file(path: Path) -> str:
 
 
 class Builder:
-    """Compiles into `folder`. Raises BuildError where there is no compiler or no Arduino core."""
+    """Compiles into `folder`. Raises SketchBuildError where there is no compiler or no Arduino core."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -81,7 +81,7 @@ class Builder:
         """Hash of all inputs but the parameters."""
 
     def build(self, test: CommTest, baud: int, arduino_delay: float) -> Product:
-        """The sketch with these parameters, compiled now or before. Raises BuildError."""
+        """The sketch with these parameters, compiled now or before. Raises SketchBuildError."""
         parameters = _macros(test, baud, arduino_delay)
         inputs = self._hash([], [self.firmware_hash, *parameters])
         place = self._folder / inputs

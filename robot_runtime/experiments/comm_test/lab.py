@@ -72,7 +72,7 @@ class EmulatedLab:
         self._runner: Runner | None = None
 
     def prepare(self) -> tuple[str, dict[str, str], str]:
-        """See Lab."""
+        """See CommTestLab."""
         program = self._build / "board"
         if not program.exists():
             raise BoardError(f"there is no emulated board at {program}; {EMULATOR_REMEDY}")
@@ -90,7 +90,7 @@ class EmulatedLab:
         return builder.firmware_hash, tools, f"{_host()}, emulated board"
 
     def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
-        """See Lab."""
+        """See CommTestLab."""
         assert self._runner
         return self._runner.run(test, tell)
 
@@ -110,13 +110,13 @@ class RobotLab:
         self._builder: Builder | None = None
 
     def prepare(self) -> tuple[str, dict[str, str], str]:
-        """See Lab."""
+        """See CommTestLab."""
         self._builder = Builder(self._build / "comm_test")
         tools = {"compiler": self._builder.compiler, "avrdude": avrdude_version()}
         return self._builder.firmware_hash, tools, f"{_host()}, the robot's own board at {self._port}"
 
     def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
-        """See Lab."""
+        """See CommTestLab."""
         assert self._builder
         for number, cell in enumerate(test.cells):
             check(self._stop)
@@ -133,12 +133,12 @@ class RobotLab:
 
 
 def upload_to(port: str, pull: Pull, program: Path, stop: Cancellation, progress: Path | None = None) -> None:
-    """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TEST_ERRORS."""
+    """Uploads to the board at a port, whose reset pin `pull` pulls. Raises the errors in TEST_ERRORS."""
     _try_with(port, pull, lambda: upload(program, port, BOOT_BAUD, stop, progress=progress))
 
 
 def read_from(port: str, pull: Pull, program: Path, stop: Cancellation, progress: Path | None) -> None:
-    """Read the firmware of the board at a port into a file. Raises the errors in TEST_ERRORS."""
+    """Reads the firmware of the board at a port into a file. Raises the errors in TEST_ERRORS."""
     _try_with(port, pull, lambda: read_out(program, port, BOOT_BAUD, stop, progress))
 
 
@@ -157,7 +157,7 @@ def _try_with(port: str, pull: Pull, work: Callable[[], None]) -> None:
 
 
 def run_tests(tests: Sequence[CommTest], lab: CommTestLab, writer: EventWriter, stop: Cancellation) -> bool:
-    """Run tests one after the other up to the first that does not come to its end; whether all did."""
+    """Runs tests one after the other up to the first that does not come to its end; True if all did."""
     return all(_run_test(number, test, lab, writer, stop) for number, test in enumerate(tests))
 
 

@@ -59,7 +59,7 @@ class Runner:
     def run(self, test: CommTest, tell: Tell = lambda _number, _phase: None) -> Iterator[CellResult]:
         """The cells of the grid, in its order; `tell` is called by several threads.
 
-        Whoever stops asking has cancelled. Raises BuildError, BoardError, UploadError, PortError, and
+        Closing the iterator cancels. Raises SketchBuildError, BoardError, UploadError, PortError, and
         StoppedError.
         """
 

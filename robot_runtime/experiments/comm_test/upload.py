@@ -57,7 +57,7 @@ def upload(
 
 
 def read_out(program: Path, port: str, baud: int, stop: Cancellation, progress: Path | None) -> None:
-    """Write the flash memory of a chip whose boot loader listens to an Intel HEX file, the boot loader too.
+    """Writes the flash memory of a chip whose boot loader listens to an Intel HEX file, the boot loader too.
 
     Raises UploadError, and StoppedError.
     """
@@ -107,7 +107,7 @@ def _open_output(progress: Path | None) -> IO[bytes]:
 
 
 def upload_paused(program: Path, tty: Path, board: EmulatorClient, stop: Cancellation) -> None:
-    """The same for a paused board with a boot loader, whose time passes only while there is something to do.
+    """Uploads to a paused board with a boot loader; its time passes only while there is something to do.
 
     The boot loader's patience, 1 s, does not run out, however busy the computer is. avrdude's does: it waits
     by its own clock, asks again, and loses step over the two answers. It then starts over, a few times.

@@ -69,7 +69,7 @@ class PtyProxy:
         self.close()
 
     def close(self) -> None:
-        """End the line and take the link away."""
+        """Ends the line and removes the link."""
         self._ending = True
         self._wake()
         self._thread.join()
@@ -189,7 +189,7 @@ def _set_fault(line: PtyProxy, direction: Direction, words: list[str]) -> None:
 
 
 def main() -> None:
-    """Carry bytes until SIGTERM, SIGINT, or the port goes away."""
+    """Carries bytes until SIGTERM, SIGINT, or the port goes away."""
     arguments = _parser().parse_args()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: sys.exit(0))

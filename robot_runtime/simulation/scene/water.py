@@ -51,11 +51,11 @@ class WaterOptics:
 
 
 CLEAN = {
-    "pool": WaterOptics((0.030, 0.055, 0.30), (190.0, 164.0, 44.0), SCATTERING, 0.5),
     # Pure water absorbs 0.009, 0.043 and 0.28 (450, 530, 620 nm; R. M. Pope and E. S. Fry, Applied Optics 36,
     # 1997, 8710); the rest is scattering, assumed. Its own light is chosen: tiles in daylight.
-    "natural": WaterOptics((0.06, 0.09, 0.60), (150.0, 128.0, 30.0), 1.5 * SCATTERING, 0.7),
+    "pool": WaterOptics((0.030, 0.055, 0.30), (190.0, 164.0, 44.0), SCATTERING, 0.5),
     # Chosen: as the card camera's, coastal water in which yellow turns green at about 3 m.
+    "natural": WaterOptics((0.06, 0.09, 0.60), (150.0, 128.0, 30.0), 1.5 * SCATTERING, 0.7),
 }
 """Clean water of each kind of scene."""
 
