@@ -18,6 +18,7 @@ from server.features.doors.session import (
     DoorSession,
     UnusableMessageError,
     mapping_of,
+    read_json,
     text_of,
 )
 from server.features.doors.subscriptions import SUBSCRIPTIONS_MAX, DoorClient, DoorSubscription
@@ -128,11 +129,7 @@ class FoxgloveSession(DoorSession):
         if isinstance(message, bytes):
             self._act_on_bytes(message)
             return
-        try:
-            said = json.loads(message, parse_constant=_refuse_constant)
-        except (ValueError, RecursionError) as problem:
-            raise UnusableMessageError("Messages of text must be JSON.") from problem
-        said = mapping_of(said, "A message")
+        said = mapping_of(read_json(message, "A message of text"), "A message")
         name = said.get("op")
         operation = self._operations.get(name) if isinstance(name, str) else None
         if operation is None:
@@ -216,7 +213,7 @@ class FoxgloveSession(DoorSession):
         if topic == STOP_TOPIC:
             self.begin(self._stop(), always=True)
         elif topic == CMD_VEL:
-            linear, angular = read_twist(_read_json(payload))
+            linear, angular = read_twist(read_json(payload, "The payload"))
             try:
                 self._commands.drive(self._pilot, linear, angular)
             except REFUSALS as problem:
@@ -243,7 +240,7 @@ class FoxgloveSession(DoorSession):
                 raise UnusableMessageError(f"There is no service {service}.")
             if encoding != b"json":
                 raise UnusableMessageError("Services take json alone.")
-            fields = mapping_of(_read_json(payload) if payload else {}, "A request")
+            fields = mapping_of(read_json(payload, "The payload") if payload else {}, "A request")
             self.begin(self._answer_call(service, call, name, fields))
         except UnusableMessageError as problem:
             self._fail_call(service, call, str(problem))
@@ -388,14 +385,3 @@ def _whole(value: object, name: str = "id") -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= NUMBER_MAX:
         raise UnusableMessageError(f"{name} must be a whole number from 0 to {NUMBER_MAX}.")
     return value
-
-
-def _read_json(payload: bytes) -> Any:
-    try:
-        return json.loads(payload, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as problem:
-        raise UnusableMessageError("The payload must be JSON.") from problem
-
-
-def _refuse_constant(name: str) -> None:
-    raise ValueError(f"{name} is no JSON")

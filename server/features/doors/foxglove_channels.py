@@ -20,7 +20,7 @@ from server.features.exports.values import MICRO
 from server.features.sessions.chunks import describe_topics
 
 CLOCK, PARAMETERS = "clock", "changed parameters"
-"""Hidden channels: when to tell the time, ten times a second, and changes of parameters."""
+"""Hidden channels: the moments at which the time is sent, and changes of parameters."""
 PICTURES = {"picture": "/camera", "observer": "/observer", "mask": "/mask", "balanced": "/balanced"}
 _TEXT = {"type": "string"}
 _WHOLE = {"type": "integer"}

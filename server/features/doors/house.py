@@ -12,7 +12,7 @@ from robot_runtime.transport.blocks import Block
 from server.features.doors.channels import HEALTH, DoorChannel, Sample, read_samples
 from server.features.doors.foxglove_channels import foxglove_channels
 from server.features.doors.publisher import Publisher
-from server.features.doors.ros_channels import ros_channels, standard_channels
+from server.features.doors.ros_channels import BILLION, ros_channels, standard_channels
 from server.features.doors.subscriptions import DoorClient
 from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.identity import SHELL, Identity
@@ -23,7 +23,6 @@ DoorName = Literal["rosbridge", "foxglove", "ros2"]
 ROS2: DoorName = "ros2"
 CLIENTS_MAX = 20
 """Programs at one door."""
-BILLION = 1_000_000_000
 
 
 class Door:

@@ -81,12 +81,14 @@ class RosApi:
         self._answers: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "topics": lambda _: {"topics": [*self._types], "types": [*self._types.values()]},
             "topics_for_type": lambda said: {"topics": _of_type(self._types, said)},
-            "topic_type": lambda said: {"type": self._types.get(_named(said, "topic"), "")},
+            "topic_type": lambda said: {"type": self._types.get(name_of(said, "topic"), "")},
             "services": lambda _: {"services": [*SERVICES]},
             "services_for_type": lambda said: {"services": _of_type(SERVICES, said)},
-            "service_type": lambda said: {"type": SERVICES.get(_named(said, "service"), "")},
-            "service_node": lambda said: {"node": NODE if _named(said, "service") in SERVICES else ""},
-            "service_host": lambda said: {"host": doors.robot if _named(said, "service") in SERVICES else ""},
+            "service_type": lambda said: {"type": SERVICES.get(name_of(said, "service"), "")},
+            "service_node": lambda said: {"node": NODE if name_of(said, "service") in SERVICES else ""},
+            "service_host": lambda said: {
+                "host": doors.robot if name_of(said, "service") in SERVICES else ""
+            },
             "nodes": lambda _: {"nodes": [NODE, *self._nodes()]},
             "node_details": self._describe_node,
             "publishers": self._publishers,
@@ -144,7 +146,7 @@ class RosApi:
         return {f"/client_{client.number}": client for client in self._door.clients}
 
     def _publishers(self, said: dict[str, Any]) -> dict[str, Any]:
-        name = _named(said, "topic")
+        name = name_of(said, "topic")
         own = [NODE] if name in self._door.publisher.channels else []
         others = [
             node for node, one in self._nodes().items() if name in self._door.published.get(one, frozenset())
@@ -152,13 +154,13 @@ class RosApi:
         return {"publishers": own + others}
 
     def _subscribers(self, said: dict[str, Any]) -> dict[str, Any]:
-        name = _named(said, "topic")
+        name = name_of(said, "topic")
         own = [NODE] if name in TAKEN_IN else []
         others = [node for node, one in self._nodes().items() if name in one.subscriptions]
         return {"subscribers": own + others}
 
     def _describe_node(self, said: dict[str, Any]) -> dict[str, Any]:
-        name = _named(said, "node")
+        name = name_of(said, "node")
         if name == NODE:
             return {
                 "subscribing": [*TAKEN_IN],
@@ -172,7 +174,11 @@ class RosApi:
         return {"subscribing": [*client.subscriptions], "publishing": sorted(published), "services": []}
 
 
-def _named(said: dict[str, Any], key: str) -> str:
+def name_of(said: dict[str, Any], key: str) -> str:
+    """The name of a topic or service, which begins with a slash: roslib 2 leaves it out of rosapi's.
+
+    Raises UnusableMessageError.
+    """
     name = text_of(said.get(key), key)
     return name if name.startswith("/") else f"/{name}"
 

@@ -8,12 +8,13 @@ from server.features.doors.channels import ChannelMessage, encode_json
 from server.features.doors.commands import REFUSALS, DoorCommands, DoorPilot
 from server.features.doors.house import Door, Doors
 from server.features.doors.ros_channels import type_name
-from server.features.doors.rosapi import RosApi
+from server.features.doors.rosapi import RosApi, name_of
 from server.features.doors.session import (
     DoorSession,
     UnusableMessageError,
     mapping_of,
     number_of,
+    read_json,
     text_of,
 )
 from server.features.doors.subscriptions import (
@@ -90,7 +91,7 @@ class RosbridgeSession(DoorSession):
         operation(message)
 
     def _subscribe(self, message: dict[str, Any]) -> None:
-        name = topic_name(message.get("topic"))
+        name = name_of(message, "topic")
         channel = self._door.publisher.channels.get(name)
         if channel is None:
             raise UnusableMessageError(f"There is no topic {name}; /rosapi/topics lists them.")
@@ -163,7 +164,7 @@ class RosbridgeSession(DoorSession):
         ]
 
     def _unsubscribe(self, message: dict[str, Any]) -> None:
-        name = topic_name(message.get("topic"))
+        name = name_of(message, "topic")
         asked = self._asked.get(name, {})
         if "id" in message:
             asked.pop(_identifier(message), None)
@@ -181,7 +182,7 @@ class RosbridgeSession(DoorSession):
         self._doors.count_audience()
 
     def _advertise(self, message: dict[str, Any]) -> None:
-        name = topic_name(message.get("topic"))
+        name = name_of(message, "topic")
         if name not in TAKEN_IN:
             raise UnusableMessageError(f"Programs may publish {', '.join(TAKEN_IN)}, and not {name}.")
         _check_type(message.get("type"), name, TAKEN_IN[name])
@@ -190,12 +191,12 @@ class RosbridgeSession(DoorSession):
         self._doors.note_change()
 
     def _unadvertise(self, message: dict[str, Any]) -> None:
-        self._advertised.pop(topic_name(message.get("topic")), None)
+        self._advertised.pop(name_of(message, "topic"), None)
         self._door.published[self.client] = frozenset(self._advertised)
         self._doors.note_change()
 
     def _publish(self, message: dict[str, Any]) -> None:
-        name = topic_name(message.get("topic"))
+        name = name_of(message, "topic")
         if name == STOP_TOPIC:
             self.begin(self._stop(), always=True)
         elif name == CMD_VEL:
@@ -214,7 +215,7 @@ class RosbridgeSession(DoorSession):
             self._say("error", f"STOP has not been confirmed: {problem}")
 
     def _call_service(self, message: dict[str, Any]) -> None:
-        name = topic_name(message.get("service"))
+        name = name_of(message, "service")
         given = message.get("id")
         identifier = given if isinstance(given, str | int) else None
         if name == STOP_TOPIC:
@@ -266,20 +267,7 @@ def read_operation(text: str | bytes) -> dict[str, Any]:
     """An operation of rosbridge. Raises UnusableMessageError."""
     if isinstance(text, bytes):
         raise UnusableMessageError("Operations must be text: JSON.")
-    try:
-        message = json.loads(text, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as problem:
-        raise UnusableMessageError("Operations must be JSON.") from problem
-    return mapping_of(message, "An operation")
-
-
-def topic_name(value: object) -> str:
-    """A topic's or service's name, which begins with a slash: roslib 2 leaves it out of rosapi's.
-
-    Raises UnusableMessageError.
-    """
-    name = text_of(value, "topic or service")
-    return name if name.startswith("/") else f"/{name}"
+    return mapping_of(read_json(text, "An operation"), "An operation")
 
 
 def _check_type(given: object, name: str, expected: str) -> None:
@@ -303,7 +291,3 @@ def _fragment_size(value: object) -> int:
     if size < FRAGMENT_MIN:
         raise UnusableMessageError(f"fragment_size must be {FRAGMENT_MIN} at least.")
     return size
-
-
-def _refuse_constant(name: str) -> None:
-    raise ValueError(f"{name} is no JSON")

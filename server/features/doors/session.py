@@ -1,6 +1,7 @@
 """The base of the doors' sessions: the limits of a program that sends nonsense or too much."""
 
 import asyncio
+import json
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
 
@@ -74,6 +75,18 @@ class DoorSession:
         under_way = self._stops if always else self._calls
         under_way.add(task)
         task.add_done_callback(under_way.discard)
+
+
+def read_json(text: str | bytes, name: str) -> Any:
+    """The value of a text of JSON. Raises UnusableMessageError."""
+    try:
+        return json.loads(text, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as problem:
+        raise UnusableMessageError(f"{name} must be JSON.") from problem
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(f"{name} is no JSON")
 
 
 def text_of(value: object, name: str) -> str:

@@ -87,7 +87,8 @@ def make_tls(authority: Path | None) -> ssl.SSLContext:
     try:
         return ssl.create_default_context(cafile=authority)
     except OSError as problem:  # a broken certificate as well
-        raise OutletError(f"events.ca_file, {authority}, cannot be used: {problem}.") from problem
+        named = f"events.ca_file, {authority}," if authority else "The computer's own list of authorities"
+        raise OutletError(f"{named} cannot be used: {problem}.") from problem
 
 
 def name_problem(problem: BaseException) -> str:
