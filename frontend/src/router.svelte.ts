@@ -29,3 +29,9 @@ export class Router {
 }
 
 export const [useRouter, provideRouter] = createContext<Router>();
+
+/** Remember the address. The answer says later whether it is the same: whoever has gone on is not taken back. */
+export function rememberAddress(): () => boolean {
+  const { hash } = location;
+  return () => location.hash === hash;
+}

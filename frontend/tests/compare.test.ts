@@ -101,6 +101,10 @@ describe('picture', () => {
     const shapes = drawPicture(whole, new Map(), wholeView(whole), 1000, LOOK, { session: 9, mark }).layout.shapes ?? [];
     expect(shapes).toHaveLength(plain.length + 1);
     expect(shapes.at(-1)).toMatchObject({ x0: 2, x1: 4, y0: 0.1, y1: 0.2, yref: 'y' });
+    const fins = ['angle.angle_0'];
+    const other = comparison(fins, [session(9, 2, fins)]);
+    const alone = drawPicture(other, new Map(), wholeView(other), 1000, LOOK, { session: 9, mark }).layout.shapes ?? [];
+    expect(alone.at(-1)).toMatchObject({ x0: 2, x1: 4, y0: 0, y1: 1, yref: 'y domain' });
   });
 });
 

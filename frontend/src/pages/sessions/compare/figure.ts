@@ -4,6 +4,7 @@ import type { Pointed } from '../../../parts/figures';
 import type { Data, Layout } from 'plotly.js-basic-dist-min';
 import { chartsOf, columnWords, type Chart } from './charts';
 import { compare as texts } from '../../../texts/compare';
+import { sessions as recorded } from '../../../texts/sessions';
 
 export interface Look {
   readonly text: string;
@@ -128,7 +129,7 @@ function frameOf(comparison: Comparison, view: View, look: Look, charts: number)
 export function axisTitle({ align }: Comparison): string {
   if (align.by === 'armed') return texts.charts.since.armed;
   if (align.by === 'set_point') return texts.charts.since.step(align.number);
-  if (align.by === 'marker') return texts.charts.since.bookmark(align.marker);
+  if (align.by === 'marker') return texts.charts.since.bookmark(align.marker || recorded.bookmarks.noText);
   if (align.by === 'mission') return texts.charts.since.mission(align.step);
   return texts.charts.since.start;
 }
@@ -276,8 +277,10 @@ function moments(sessions: readonly Compared[], comparison: Comparison, look: Lo
 
 function pointedShape({ session, mark }: Pointed, sessions: readonly Compared[], charts: readonly Chart[], look: Look) {
   const offset = sessions.find(({ id }) => id === session)?.offset ?? 0;
-  const place = Math.max(0, charts.findIndex(({ title }) => title === texts.charts.depth));
-  const bounded = mark.low !== null && mark.low !== undefined;
+  const depth = charts.findIndex(({ title }) => title === texts.charts.depth);
+  const place = Math.max(0, depth);
+  // In m: a chart of something else shows when it was alone.
+  const bounded = depth >= 0 && mark.low !== null && mark.low !== undefined;
   return {
     type: 'rect',
     xref: 'x',
