@@ -60,7 +60,7 @@ CUT = assemble(encode(Hello(definitions=1, epoch=2, credit=3))[:-1], False, 1, 0
         (b"\x20\x01", "stuffing"),
         (b"\x03\x01\x02", "too short"),
         (b"\x40" + bytes([7]) * (FRAME_BYTES_MAX - 1), f"longer than {FRAME_BYTES_MAX}"),
-        (b"", f"longer than {FRAME_BYTES_MAX}"),
+        (b"", "too short"),
         (UNKNOWN, "other definitions"),
         (CUT, "other definitions"),
     ],
