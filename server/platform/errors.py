@@ -68,3 +68,8 @@ class InsufficientStorageError(ApiError):
     """It cannot be written: the disk is full, or broken"""
 
     status = 507
+
+
+def explain_internal_error(error: Exception) -> str:
+    """A sentence for a person, of an error that nobody has foreseen; the caller logs it."""
+    return f"Internal error ({error!r}); the server's log has details."

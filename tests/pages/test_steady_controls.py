@@ -141,7 +141,7 @@ ENDS = {
     "STOP by another finger": "document.querySelector('button.stop').click()",
     "another page": "location.hash = '#/people'",
 }
-"""What ends a hold while the pointer stays down."""
+"""Ends of a hold while the pointer stays down."""
 # In one turn: on a busy computer the hold could be over before its end comes.
 HOLD_AND_END = """(button) => {
     button.dispatchEvent(new PointerEvent('pointerdown', { button: 0, bubbles: true }));

@@ -34,7 +34,7 @@ from server.features.bring_up.schemas import (
     Phase,
     RawReadings,
 )
-from server.platform.errors import NotFoundError
+from server.platform.errors import NotFoundError, explain_internal_error
 from server.platform.settings import Settings
 from server.processes.supervisor import ProcessSupervisor
 
@@ -168,7 +168,7 @@ class BringUpRun:
                 reserved.set_exception(problem)
         except Exception as why:
             log.exception("the bring-up failed")
-            self._problem = f"Internal error ({why!r}); the server's log has details."
+            self._problem = explain_internal_error(why)
         finally:
             if begun:
                 self._problem = " ".join(filter(None, (self._problem, self._board.problem)))

@@ -18,6 +18,7 @@ from server.features.identification.schemas import (
     IdentificationStart,
     IdentificationState,
 )
+from server.platform.errors import explain_internal_error
 from server.platform.settings import Settings
 from server.processes.exit_status import describe_status
 
@@ -86,7 +87,7 @@ class IdentificationRunner:
             problem = f"No process can be started for it ({error.strerror})."
         except Exception as error:
             log.exception("a fit failed")
-            problem = f"Internal error ({error!r}); the server's log has details."
+            problem = explain_internal_error(error)
         finally:
             self._last = EndedIdentification(
                 run=self._count,

@@ -20,7 +20,7 @@ from server.platform.settings import SetupError
 
 WORDS_SHOWN = 300
 DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError)
-"""What zipfile raises for an archive that is not whole."""
+"""Errors of zipfile for an archive that is not whole."""
 Run = Callable[[Sequence[str], Mapping[str, str], float], "subprocess.CompletedProcess[str]"]
 """Runs a command with these additions to its environment, for so many s at most."""
 

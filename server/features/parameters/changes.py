@@ -57,7 +57,7 @@ class Changes:
         self._undoing = asyncio.Lock()
         self._groups: list[_Group] = []
         self._undone: dict[int, str] = {}
-        """Who has undone the changes for which that could not be stored."""
+        """Names of those who have undone a change, by its number, where that could not be stored."""
 
     async def command(self, who: str, command: RobotCommand, why: str = "") -> Restored:
         """Send a command; returns the parameters that it changed, and those that it left out."""

@@ -12,6 +12,7 @@ from robot_runtime.experiments.scenario.document import Scenario
 from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
 from server.features.scenarios.schemas import BoardKind, End, EndedRun, Place, QueuedRun, ScenarioState
 from server.features.sessions.recorder import RecordingRefusedError
+from server.platform.errors import explain_internal_error
 from server.platform.store import StoreError
 from server.stream.bridge import RuntimeSilentError
 
@@ -138,7 +139,7 @@ class ScenarioRunner:
             state, problem = "failed", str(why)
         except Exception as why:
             log.exception("a scenario failed")
-            state, problem = "failed", f"Internal error ({why!r}); the server's log has details."
+            state, problem = "failed", explain_internal_error(why)
         return run.end(state, problem)
 
     async def _announce_regularly(self) -> None:

@@ -19,7 +19,7 @@ REST_SECONDS = 5.0
 """Time that it records after the robot is disarmed, until the fins rest and the robot begins to rise."""
 
 ARMING_SECONDS = 2.0
-"""How long the notice of who armed waits for the session to begin; then it is written all the same."""
+"""Longest wait of the notice of who armed, for the session to begin; then it is written all the same."""
 
 
 class AutoRecorder:

@@ -27,6 +27,7 @@ from server.features.tuning.schemas import (
     TuningRun,
     TuningState,
 )
+from server.platform.errors import explain_internal_error
 from server.platform.store import StoreError
 from server.processes.managed_process import Notify
 from server.stream.bridge import Bridge, RuntimeSilentError
@@ -235,7 +236,7 @@ class TuningRunner:
             self._notice("tuning", "caution", f"The run could not be stored: {why}.")
         except Exception as why:
             log.exception("a tuning run could not be measured")
-            words = f"Internal error ({why!r}); the server's log has details."
+            words = explain_internal_error(why)
             curve = active.samples.curve.between(-inf, inf, active.began)
             with suppress(StoreError):
                 await self.runs.end(active.run, "failed", words, {}, curve)
