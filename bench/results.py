@@ -12,6 +12,8 @@ from typing import Any
 from bench.calibration import Slowness
 
 FILE = Path("build/bench.json")
+PROOFS = Path("docs/develop/proofs")
+"""The tables that proofs store."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,14 +83,15 @@ class Results:
 
 
 def commit() -> str:
-    """Returns the commit of the working tree, with a `+` where files differ from it."""
-    described = subprocess.run(
-        ["git", "describe", "--always", "--abbrev=10", "--exclude=*", "--dirty=+"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    return described.stdout.strip() or "unknown"
+    """Returns the commit of the working tree, with a `+` where a file other than a proof's table differs."""
+    head = _git("rev-parse", "--short=10", "HEAD").stdout.strip()
+    # A proof that stores its table would make all that was proven before it count as proven of other code.
+    changed = head and _git("diff", "--quiet", "HEAD", "--", ".", f":(exclude){PROOFS}").returncode
+    return (head or "unknown") + ("+" if changed else "")
+
+
+def _git(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["git", *words], capture_output=True, text=True, check=False)
 
 
 def machine() -> str:

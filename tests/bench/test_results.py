@@ -1,11 +1,12 @@
 """The file of figures: where each comes from, and what becomes of a part that fails."""
 
 import json
+import subprocess
 from pathlib import Path
 
 import pytest
 
-from bench.results import Results, commit
+from bench.results import PROOFS, Results, commit
 
 
 @pytest.fixture
@@ -56,3 +57,22 @@ def test_a_flat_file_of_earlier_versions_counts_as_empty(file: Path) -> None:
     file.parent.mkdir()
     file.write_text('{"page.fps": 60.0}')
     assert Results(file).figures == {}
+
+
+def test_a_stored_table_of_a_proof_changes_no_commit_and_code_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert commit() == "unknown"
+    table, code = tmp_path / PROOFS / "control.md", tmp_path / "code.py"
+    table.parent.mkdir(parents=True)
+    for file in (table, code):
+        file.write_text("1")
+    author = ("-c", "user.name=anybody", "-c", "user.email=anybody@localhost")
+    for words in (("init", "--quiet"), ("add", "."), (*author, "commit", "--quiet", "--message", "all")):
+        subprocess.run(["git", *words], check=True)
+    clean = commit()
+    table.write_text("2")
+    assert commit() == clean
+    code.write_text("2")
+    assert commit() == f"{clean}+"
