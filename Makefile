@@ -187,9 +187,11 @@ firmware: build/.packages-run ## compile the firmware for the baud of robot.toml
 	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
 	@$(MAKE) --silent -C firmware/emulator
 
-# After the robot's firmware, of which it needs objects, too.
+# After the robot's firmware, of which it needs objects, too. What robots in real time run is not left to a build of
+# little weight, for which they would wait.
 host-firmware: firmware
-	@$(MAKE) --silent -C firmware host hang
+	@$(MAKE) --silent -C firmware host hang proofs
+	@$(MAKE) --silent -C firmware HIL=1 robot > /dev/null
 
 setup: build/.packages-run .venv/.ready server/page/index.html server/help/index.html firmware
 

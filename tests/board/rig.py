@@ -24,7 +24,8 @@ PATIENCE = 30.0
 
 def build(folder: Path, *targets: str) -> None:
     """Build `folder`, or fail with make's output."""
-    with build_lock():
+    products = ROOT / "build/firmware"
+    with build_lock(products / "hil" if "HIL=1" in targets else products):
         made = subprocess.run(["make", "-s", "-C", str(folder), *targets], capture_output=True, text=True)
     assert made.returncode == 0, made.stdout + made.stderr
 

@@ -43,14 +43,18 @@ def bring_up_path(build: Path, baud: int) -> Path:
 
 
 @contextmanager
-def build_lock() -> Iterator[None]:
-    """Waits for other builds: make does not notice another make that writes the same files."""
-    sources = os.open(FIRMWARE_SOURCES, os.O_RDONLY)
+def build_lock(products: Path) -> Iterator[None]:
+    """Waits for other builds into this folder: make does not notice another make that writes the same files.
+
+    Builds into other folders go on: one of little weight would hold up the start of a robot.
+    """
+    products.mkdir(parents=True, exist_ok=True)
+    handle = os.open(products, os.O_RDONLY)
     try:
-        fcntl.flock(sources, fcntl.LOCK_EX)
+        fcntl.flock(handle, fcntl.LOCK_EX)
         yield
     finally:
-        os.close(sources)
+        os.close(handle)
 
 
 def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
@@ -74,7 +78,7 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
     command = ["make", "--silent", "-C", str(FIRMWARE_SOURCES), *sketches]
     command += [f"BAUD={baud}", f"BUILD={product.parent}"]
     command += ["HIL=1"] if hil else []
-    with build_lock():
+    with build_lock(product.parent):
         # Another make's flags are not for this one: to keep going would bury the compiler's words.
         alone = os.environ | {"MAKEFLAGS": ""}
         made = subprocess.run(command, capture_output=True, text=True, check=False, env=alone)

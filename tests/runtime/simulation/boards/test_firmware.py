@@ -1,5 +1,6 @@
 """The firmware for each baud: its own path, and its build where it is missing."""
 
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -45,6 +46,25 @@ def test_two_builds_at_once_wait_for_each_other(tmp_path: Path, monkeypatch: pyt
     with ThreadPoolExecutor(2) as pool:
         for build in [pool.submit(build_firmware, tmp_path, 4800) for _ in range(2)]:
             build.result()
+
+
+def test_a_build_for_another_speed_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The build for 4800 bit/s ends as soon as the one for 9600, begun after it, has ended."""
+    make = tmp_path / "make"
+    make.write_text(
+        "#!/bin/sh\n"
+        f"case $* in *BAUD=9600*) touch {tmp_path}/ended; exit; esac\n"
+        f"touch {tmp_path}/begun\n"
+        f"timeout 30 sh -c 'until [ -e {tmp_path}/ended ]; do sleep 0.02; done'\n"
+    )
+    make.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    with ThreadPoolExecutor(1) as pool:
+        first = pool.submit(build_firmware, tmp_path, 4800)
+        while not (tmp_path / "begun").exists() and not first.done():
+            time.sleep(0.02)
+        build_firmware(tmp_path, 9600)
+        first.result()
 
 
 def test_a_compiler_error_is_reported(tmp_path: Path) -> None:
