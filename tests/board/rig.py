@@ -1,7 +1,6 @@
 """A board whose time advances only on request, with a host at its serial port."""
 
 import os
-import subprocess
 import time
 from collections.abc import Callable
 from functools import cache
@@ -11,7 +10,7 @@ from typing import Self
 import serial
 
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient, EmulatorProcess
-from robot_runtime.simulation.boards.firmware import build_lock
+from robot_runtime.simulation.boards.firmware import make
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/board"
@@ -26,13 +25,8 @@ PATIENCE = 30.0
 @cache
 def build(folder: Path, *targets: str) -> None:
     """Build `folder`, or fail with make's output."""
-    command = ["make", "-s", "-C", str(folder), *targets]
-    # A robot's start would wait for the lock, and a test of little weight asks for long what it could build.
-    if subprocess.run([*command, "--question"], capture_output=True).returncode == 0:
-        return
     products = ROOT / "build/firmware"
-    with build_lock(products / "hil" if "HIL=1" in targets else products):
-        made = subprocess.run(command, capture_output=True, text=True)
+    made = make(folder, *targets, products=products / "hil" if "HIL=1" in targets else products)
     assert made.returncode == 0, made.stdout + made.stderr
 
 

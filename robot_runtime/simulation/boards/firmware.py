@@ -10,8 +10,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from robot_runtime.config import LinkConfig, load
@@ -42,17 +41,24 @@ def bring_up_path(build: Path, baud: int) -> Path:
     return firmware_path(build, baud, ".hex").with_name("bring_up.hex")
 
 
-@contextmanager
-def build_lock(products: Path) -> Iterator[None]:
-    """Waits for other builds into this folder: make does not notice another make that writes the same files.
+def make(folder: Path, *words: str, products: Path) -> subprocess.CompletedProcess[str]:
+    """Runs `make` in this folder, with these targets and variables. Returns its status and its words.
 
-    Builds into other folders go on: one of little weight would hold up the start of a robot.
+    It waits for others that build into the folder `products`: make does not notice another make that writes
+    the same files. Where nothing is to be built, a robot starts without waiting.
     """
+    # Another make's flags are not for this one: to keep going would bury the compiler's words.
+    alone = os.environ | {"MAKEFLAGS": ""}
+    run = partial(subprocess.run, capture_output=True, text=True, check=False, env=alone)
+    command = ["make", "--silent", "-C", str(folder), *words]
+    asked = run([*command, "--question"])
+    if asked.returncode == 0:
+        return asked
     products.mkdir(parents=True, exist_ok=True)
     handle = os.open(products, os.O_RDONLY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
+        return run(command)
     finally:
         os.close(handle)
 
@@ -75,13 +81,8 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
             "gcc-avr and arduino-core-avr, or set link.baud in robot.toml to what the firmware was built for."
         )
     sketches = ["robot"] if hil else ["robot", "bring_up"]
-    command = ["make", "--silent", "-C", str(FIRMWARE_SOURCES), *sketches]
-    command += [f"BAUD={baud}", f"BUILD={product.parent}"]
-    command += ["HIL=1"] if hil else []
-    with build_lock(product.parent):
-        # Another make's flags are not for this one: to keep going would bury the compiler's words.
-        alone = os.environ | {"MAKEFLAGS": ""}
-        made = subprocess.run(command, capture_output=True, text=True, check=False, env=alone)
+    variables = [f"BAUD={baud}", f"BUILD={product.parent}", *(["HIL=1"] if hil else [])]
+    made = make(FIRMWARE_SOURCES, *sketches, *variables, products=product.parent)
     if made.returncode != 0:
         last = " ".join((made.stderr or made.stdout).split("\n")[-_LINES_SHOWN:]).strip()
         raise FirmwareBuildError(f"The firmware for {baud} baud could not be built: {last}")

@@ -1,6 +1,7 @@
 """The firmware for each baud: its own path, and its build where it is missing."""
 
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -38,32 +39,44 @@ def test_without_a_compiler_an_existing_build_is_used_or_the_remedy_named(
     build_firmware(tmp_path, 4800)
 
 
-def test_two_builds_at_once_wait_for_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    make = tmp_path / "make"
-    make.write_text(f"#!/bin/sh\nmkdir {tmp_path}/busy && sleep 0.2 && rmdir {tmp_path}/busy\n")
-    make.chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+@pytest.fixture
+def place_make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    """Places a `make` of these words of the shell before the computer's own."""
+
+    def place(words: str) -> None:
+        make = tmp_path / "make"
+        make.write_text(f"#!/bin/sh\n{words}\n")
+        make.chmod(0o755)
+        monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+
+    return place
+
+
+def test_two_builds_at_once_wait_for_each_other(tmp_path: Path, place_make: Callable[[str], None]) -> None:
+    busy = tmp_path / "busy"
+    place_make(f"case $* in *--question*) exit 1; esac\nmkdir {busy} && sleep 0.2 && rmdir {busy}")
     with ThreadPoolExecutor(2) as pool:
         for build in [pool.submit(build_firmware, tmp_path, 4800) for _ in range(2)]:
             build.result()
 
 
-def test_a_build_for_another_speed_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The build for 4800 bit/s ends as soon as the one for 9600, begun after it, has ended."""
-    make = tmp_path / "make"
-    make.write_text(
-        "#!/bin/sh\n"
-        f"case $* in *BAUD=9600*) touch {tmp_path}/ended; exit; esac\n"
-        f"touch {tmp_path}/begun\n"
-        f"timeout 30 sh -c 'until [ -e {tmp_path}/ended ]; do sleep 0.02; done'\n"
+@pytest.mark.parametrize(("second", "is_current"), [(4800, "test -e"), (9600, "false")])
+def test_a_build_is_not_waited_for_where_nothing_is_to_be_built_or_elsewhere(
+    tmp_path: Path, place_make: Callable[[str], None], second: int, is_current: str
+) -> None:
+    """The first build ends as soon as the second one, which is begun after it, has ended."""
+    begun, ended = tmp_path / "begun", tmp_path / "ended"
+    place_make(
+        f"case $* in *--question*) {is_current} {begun}; exit; esac\n"
+        "case $* in *BAUD=9600*) exit; esac\n"
+        f"touch {begun}; timeout 30 sh -c 'until test -e {ended}; do sleep 0.02; done'"
     )
-    make.chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
     with ThreadPoolExecutor(1) as pool:
         first = pool.submit(build_firmware, tmp_path, 4800)
-        while not (tmp_path / "begun").exists() and not first.done():
+        while not begun.exists() and not first.done():
             time.sleep(0.02)
-        build_firmware(tmp_path, 9600)
+        build_firmware(tmp_path, second)
+        ended.touch()
         first.result()
 
 
