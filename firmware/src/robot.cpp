@@ -178,7 +178,8 @@ void Robot::send_telemetry() {
     sensors_.read(&beacon);
     link_.send(beacon);
   }
-  if (slot_ == kStatusSlot) report_changed_faults();
+  // Lines wait for a host: at power-on the encoders are not ready yet, and what they lack fills the queue.
+  if (slot_ == kStatusSlot && arming_.greeted()) report_changed_faults();
   // On a slow line the status slot may be far away, and the host that armed the board waits for the status.
   if (slot_ == kStatusSlot || (kSlow && armed() != reported_armed_)) send_status();
   link_.flush();

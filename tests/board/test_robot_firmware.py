@@ -86,6 +86,17 @@ def test_it_finds_every_device(robot: Robot) -> None:
     assert robot.board.stats()["framing_errors_host"] == 0
 
 
+def test_a_host_that_comes_late_reads_what_is_and_no_line_is_lost(robot: Robot) -> None:
+    """At power-on the encoders do not answer for 50 ms; nobody is there who would read of it."""
+    robot.listen(1.0)
+    robot.greet()
+    robot.converse(0.5)
+    lines = [packet.text for packet in robot.heard if isinstance(packet, Debug)]
+    devices = ("IMU", "pressure sensor", *(f"encoder {fin.replace('-', ' ')}" for fin in FINS))
+    assert lines == ["boot 1, power on", *(f"{device}: ok" for device in devices)]
+    assert robot.status().debug_lost == 0
+
+
 def test_its_drivers_return_the_true_readings(robot: Robot) -> None:
     robot.listen(1.0)  # at the surface, whose pressure it takes as zero depth
     reading = Reading(
