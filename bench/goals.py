@@ -100,7 +100,8 @@ GOALS = {
     **_fault("capsized", 2, 2),
     **_fault("vision_stale", 1),
     **_fault("not_rising", 20),
-    **_fault("battery_low", 20.5, 20.5),
+    # Until the motors have no power, 20.5 before: the host's STOP cut it, and no fin turned down.
+    **_fault("battery_low", 20.5, 22.0),
     **_fault("runtime_killed", _AGAIN, 1.1),
     **_fault("server_killed", _AGAIN),
     **_fault("server_hung", _AGAIN, 5),

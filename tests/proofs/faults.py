@@ -37,7 +37,9 @@ TICK = 0.015
 """s: the chip looks every 10 ms, and the fins are looked at every 5."""
 SWIM_MIN, SWIM_MAX = 1.0, 2.0
 """s of swimming before the fault."""
-AFTER = 1.2
+LOWERING = 1.5
+"""s at most for which the motors keep their power after a low battery, to turn the fins down."""
+AFTER = 2.0
 """s for which it is watched afterwards; the chip needs less for anything."""
 CALM = 60.0
 """s within which all is well again."""
@@ -198,9 +200,10 @@ class Row:
     """True if it cannot be repaired: each injection then takes its own board."""
 
 
-def _all_stop(fault: str, wrong: Callable[[Swim], Wrong], **more: bool | str) -> Row:
+def _all_stop(fault: str, wrong: Callable[[Swim], Wrong], later: float = 0.0, **more: bool | str) -> Row:
+    """The motors may lose power so much later (s) than the alarm is told."""
     limit = BY_NAME[fault].limit
-    return Row(name=fault, wrong=wrong, fault=fault, told=limit, off=limit, **more)  # type: ignore[arg-type]
+    return Row(name=fault, wrong=wrong, fault=fault, told=limit, off=limit + later, **more)  # type: ignore[arg-type]
 
 
 ROWS = (
@@ -240,7 +243,7 @@ ROWS = (
         more='[vision]\ncamera = "card"\nrate = 4.0',
     ),
     Row(name="not_rising", wrong=_held_down, fault="not_rising", told=20.0),
-    _all_stop("battery_low", _empty, once=True, more="[robot]\nbattery_full = 6.19"),
+    _all_stop("battery_low", _empty, LOWERING, once=True, more="[robot]\nbattery_full = 6.19"),
     Row(name="fin_failing", wrong=_broken("encoder2", "bus"), fault="fin_failing", told=0.5),
 )
 BY_ROW = {row.name: row for row in ROWS}
