@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor
 from pathlib import Path
 
+from bench.results import PROOFS
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.control.craft_gains import craft_gains
 from robot_runtime.simulation.water.parameters import SimulationParameters
@@ -124,7 +125,7 @@ def put(text: str, begin: str, made: str) -> str:
 
 def main() -> None:
     """Writes the tables into the document."""
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("docs/develop/proofs/control.md")
+    path = Path(sys.argv[1]) if len(sys.argv) > 1 else PROOFS / "control.md"
     text = path.read_text(encoding="utf-8")
     text = put(text, _KNOWN, known_table(perform_known()))
     text = put(text, _ALL, table(perform_all(one.name for one in CONTROLLERS["depth"])))
