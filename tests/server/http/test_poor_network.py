@@ -44,10 +44,12 @@ def test_the_connection_lasts(seen: dict[str, Any]) -> None:
 
 
 def test_stop_and_commands_get_through_in_time(seen: dict[str, Any]) -> None:
-    assert min(seen["stop_s"]) >= 0.1
-    # A lost packet is sent again after 0.3 s, one that is lost twice after 0.9 s.
-    assert max(seen["stop_s"]) < 2.0
-    assert max(seen["command_s"]) < 2.5
+    stops, commands = sorted(seen["stop_s"]), sorted(seen["command_s"])
+    assert stops[0] >= 0.1
+    # Waiting behind pictures would delay them all. A packet that is lost comes 0.5 s later, one that is lost
+    # twice 1.5 s, and three times 3.5 s: single ones have no limit but to arrive.
+    assert stops[-3] < 1.0
+    assert commands[-3] < 1.0
 
 
 def test_the_sticks_reach_the_robot_while_they_are_young(seen: dict[str, Any]) -> None:
