@@ -1,16 +1,22 @@
 """A computer with an installation, whose versions have schemas and firmware; some of them do not work."""
 
 import json
+import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
 from server.features.installation.places import SERVICES
+from server.features.installation.release import read_release
+from server.features.installation.report import UpdateReport
 from server.features.installation.survey import Survey
 from server.features.installation.units import write_units
 from server.features.installation.updater import Updater
-from tests.server.features.installation.computer import Computer
+from tests.server.features.installation.computer import Computer, place_release
+from tests.server.features.installation.signing import sign
+
+DIVES = "ten dives"
 
 
 class UpdatableComputer(Computer):
@@ -117,3 +123,35 @@ class UpdatableComputer(Computer):
                 )
             )
         return ""
+
+
+def signed(folder: Path, keys: Path, version: str) -> Path:
+    place_release(folder, version)
+    sign(folder, keys / "secret.pem")
+    return folder
+
+
+def installed(root: Path, keys: Path) -> UpdatableComputer:
+    """A computer on which 1.0.0 runs, with dives; 2.0.0 has another schema and other firmware."""
+    computer = UpdatableComputer(root)
+    computer.schemas, computer.firmware = {"1.0.0": 1, "2.0.0": 2}, {"1.0.0": "old", "2.0.0": "new"}
+    folder = place_release(root.parent / "first", "1.0.0")
+    shutil.copy(keys / "release.pem", folder)
+    computer.installer(computer.effects()).install(read_release(folder))
+    computer.database.write_text(f"1 {DIVES}")
+    computer.board = "old"
+    return computer
+
+
+def update(computer: UpdatableComputer, path: Path, cut: int = -1) -> str:
+    return Updater(computer.places, computer.effects(cut)).update(path)
+
+
+def roll_back(computer: UpdatableComputer) -> str:
+    return Updater(computer.places, computer.effects()).roll_back()
+
+
+def report_of(computer: UpdatableComputer) -> tuple[str, str]:
+    report = UpdateReport(computer.places.report).read()
+    assert report is not None
+    return report.phase, report.text
