@@ -9,6 +9,9 @@ const TIMEOUT = 5000;
 const SAFE = 'GET';
 const UNAUTHORISED = 401;
 const FORBIDDEN = 403;
+const TOO_MANY = 429;
+/** s; a longer wait than this is left to who uses the page */
+const WAIT = 2;
 
 /** what names the live socket of this page as the one that asks; null while there is none */
 let clientKey: string | null = null;
@@ -30,9 +33,18 @@ export function onUnconfirmed(call: () => Promise<boolean>): void {
   confirmed = call;
 }
 
+/** Fetch, and once more where the server names a short time to wait: somebody may have mistyped a code here. */
+async function fetchPatiently(path: string, options: () => RequestInit): Promise<Response> {
+  const response = await fetch(`/api${path}`, options());
+  const wait = Number(response.headers.get('Retry-After') ?? Infinity);
+  if (response.status !== TOO_MANY || !(wait <= WAIT)) return response;
+  await new Promise((resolve) => setTimeout(resolve, 1000 * wait));
+  return fetch(`/api${path}`, options());
+}
+
 /** Fetch, and once more where the server asks for a confirmation and gets it. */
 async function fetchConfirmed(path: string, options: () => RequestInit): Promise<Response> {
-  const response = await fetch(`/api${path}`, options());
+  const response = await fetchPatiently(path, options);
   if (response.status !== FORBIDDEN) return response;
   const asked = readProblem(await response.clone().text()).kind === 'confirmation';
   return asked && (await confirmed()) ? fetch(`/api${path}`, options()) : response;

@@ -79,6 +79,38 @@ describe('signing in', () => {
     expect(access.reason).toBe('This code has expired.');
   });
 
+  it('uses a code once more where somebody mistyped another a moment ago, and no third time', async () => {
+    vi.useFakeTimers();
+    const soon = () => Response.json({ detail: 'Try again in 1 s.' }, { status: 429, headers: { 'Retry-After': '1' } });
+    answers['GET /api/access/me'] = json(NOBODY);
+    answers['POST /api/access/pair'] = soon;
+    const access = new Access();
+    const opening = access.open('ABC', 'x');
+    await vi.advanceTimersByTimeAsync(900);
+    expect(sent).toHaveLength(2);
+    answers['POST /api/access/pair'] = json({ ...ME, page_secret: null });
+    await vi.advanceTimersByTimeAsync(200);
+    await opening;
+    expect(access.state).toBe('in');
+
+    answers['POST /api/access/pair'] = soon;
+    const again = access.pair('ABC', 'x');
+    await vi.advanceTimersByTimeAsync(1100);
+    expect(await again).toBe('Try again in 1 s.');
+    expect(sent).toHaveLength(5);
+  });
+
+  it.each([
+    [429, '60'],
+    [429, null],
+    [503, '1'],
+  ])('does not wait for longer, nor for other refusals (%i, %s)', async (status, wait) => {
+    answers['POST /api/access/pair'] = () =>
+      Response.json({ detail: 'Later.' }, { status, headers: wait === null ? {} : { 'Retry-After': wait } });
+    expect(await new Access().pair('ABC', 'x')).toBe('Later.');
+    expect(sent).toHaveLength(1);
+  });
+
   it('waits for a server that does not answer yet', async () => {
     vi.useFakeTimers();
     const access = new Access();
