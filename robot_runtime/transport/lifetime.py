@@ -8,6 +8,7 @@ import resource
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -20,6 +21,9 @@ _PR_SET_PDEATHSIG = 1
 _CHECK_SECONDS = 1.0
 _STACK_BYTES = 1_048_576
 """Of a thread; the kernel's default is 8 MB, and the runtime has forty threads."""
+_AUTOGROUP = Path("/proc/self/autogroup")
+_TRIES, _AGAIN = 20, 0.1
+"""s. The kernel takes one change in that time from all who are not root."""
 _PROCESSOR_BYTES = 20_000_000
 """Room for the stacks, of 8 MB each, of the threads that libraries start for a processor."""
 
@@ -65,8 +69,24 @@ def limit_memory(memory: int, share: float = 0.5) -> None:
 
 
 def give_way(niceness: int) -> None:
-    """Gives this process at least this niceness, also where it inherits one already."""
+    """Gives this process at least this niceness, also where it inherits one already, and its session, too.
+
+    Without control groups Linux shares the processors between sessions, and only within one by niceness
+    (sched(7), "The autogroup feature"). A session that another process leads stays as it is.
+    """
     os.setpriority(os.PRIO_PROCESS, 0, max(niceness, os.getpriority(os.PRIO_PROCESS, 0)))
+    if os.getsid(0) != os.getpid():
+        return
+    for _ in range(_TRIES):
+        try:
+            _AUTOGROUP.write_text(str(niceness), "ascii")
+        except BlockingIOError:
+            time.sleep(_AGAIN)
+        except OSError:
+            # This kernel does not share by session.
+            return
+        else:
+            return
 
 
 def memory_bytes() -> int:

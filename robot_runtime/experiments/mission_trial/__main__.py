@@ -23,9 +23,11 @@ from robot_runtime.experiments.mission_trial.trial import trial_scenario, try_mi
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.link.link_driver import PortError
 from robot_runtime.simulation.boards.emulator_process import BoardError
-from robot_runtime.transport.lifetime import limit_memory
+from robot_runtime.transport.lifetime import give_way, limit_memory
 
 REFUSED, FAILED = 2, 1
+NICENESS = 10
+"""A robot in real time goes first."""
 BYTES_MAX = 1_000_000_000
 """Of the process's own memory."""
 
@@ -40,6 +42,7 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=1, help="the first seed")
     options = parser.parse_args()
     logging.basicConfig(level=logging.ERROR, format="%(levelname)s %(name)s: %(message)s")
+    give_way(NICENESS)
     limit_memory(BYTES_MAX)
     cv2.setNumThreads(1)
     try:

@@ -30,12 +30,14 @@ from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.link.link_driver import PortError
 from robot_runtime.provenance import HASH_CHARACTERS, hash_software
 from robot_runtime.simulation.boards.emulator_process import BoardError
-from robot_runtime.transport.lifetime import limit_memory
+from robot_runtime.transport.lifetime import give_way, limit_memory
 from robot_runtime.transport.unbuffered_output import UnbufferedOutput
 
 HEADER = Struct("<IB")
 EVENTS, BLOCKS = 0, 1
 REFUSED, FAILED = 2, 1
+NICENESS = 10
+"""A robot in real time goes first."""
 BYTES_MAX = 1_000_000_000
 """Of the process's own memory."""
 
@@ -71,6 +73,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, metavar="FILE", help="write there instead of standard output")
     options = parser.parse_args()
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
+    give_way(NICENESS)
     limit_memory(BYTES_MAX)
     cv2.setNumThreads(1)
     with ExitStack() as opened:

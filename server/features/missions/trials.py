@@ -18,7 +18,6 @@ log = logging.getLogger(__name__)
 
 LINE_BYTES_MAX = 4_000_000
 SECONDS_MAX = 1800.0
-NICENESS = "10"
 CANCELLED = "It was cancelled."
 
 
@@ -82,15 +81,17 @@ class MissionTrials:
             trial.problem = "An error in the software ended it; see the server's log."
 
     async def _try(self, trial: MissionTrial, library: dict[str, str]) -> str:
-        command = ["nice", "-n", NICENESS, sys.executable, "-m", "robot_runtime.experiments.mission_trial"]
         process = await asyncio.create_subprocess_exec(
-            *command,
+            sys.executable,
+            "-m",
+            "robot_runtime.experiments.mission_trial",
             "--seeds",
             str(trial.seeds),
             "--craft",
             str(self._settings.craft_file),
             stdin=PIPE,
             stdout=PIPE,
+            start_new_session=True,
             limit=LINE_BYTES_MAX,
             env={**os.environ, "MUCAT_BUILD": str(self._settings.build)},
         )

@@ -33,7 +33,6 @@ EVENTS, BLOCKS = 0, 1
 MESSAGE_BYTES_MAX = 16_000_000
 FLUSH_BYTES = 2_000_000
 ERROR_LINES = 5
-NICENESS = "10"
 END_SECONDS = 10.0
 """Time after which a terminated process is killed."""
 
@@ -141,9 +140,6 @@ class _Playback:
 async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Process, deque[str]]]:
     """The process of a scenario; `errors` are the last lines of its standard error."""
     command = [
-        "nice",
-        "-n",
-        NICENESS,
         sys.executable,
         "-m",
         "robot_runtime.experiments.scenario",

@@ -1,4 +1,5 @@
 import fcntl
+import os
 import subprocess
 import sys
 import threading
@@ -100,3 +101,21 @@ print(len(bytearray(300_000_000)))
 def test_memory_beyond_the_limit_is_refused_and_a_process_may_set_another() -> None:
     ran = subprocess.run([sys.executable, "-c", LIMITED], capture_output=True, text=True, check=True)
     assert ran.stdout.split() == ["refused", "50000000", "300000000"]
+
+
+GIVE_WAY = """
+import os
+from robot_runtime.transport.lifetime import give_way
+give_way(12)
+print(os.getpriority(os.PRIO_PROCESS, 0), open("/proc/self/autogroup").read().split()[-1])
+"""
+
+
+@pytest.mark.parametrize("leads", [True, False])
+def test_who_gives_way_does_so_to_other_sessions_where_its_session_is_its_own(leads: bool) -> None:
+    if not Path("/proc/self/autogroup").exists():
+        pytest.skip("this kernel does not share the processors by session")
+    before = Path("/proc/self/autogroup").read_text().split()[-1]
+    said = subprocess.check_output([sys.executable, "-c", GIVE_WAY], start_new_session=leads, text=True)
+    niceness = max(12, os.getpriority(os.PRIO_PROCESS, 0))
+    assert said.split() == [str(niceness), "12" if leads else before]
