@@ -204,15 +204,19 @@ def test_a_gyroscope_whose_readings_do_not_change_is_not_measured(rig: Rig) -> N
 def test_what_was_stored_while_the_gyroscope_was_measured_stays(rig: Rig) -> None:
     rig.ask()
     meanwhile = replace(EMULATED, fin_zeros=(1, 2, 3, 4))
+    begun = threading.Event()
 
     def rate(_: float) -> tuple[float, float, float]:
+        assert begun.wait(10)
         if rig.calibrator.board.values == EMULATED:
             rig.calibrator.store(meanwhile)
         return (0.1, 0.0, 0.0)
 
     with readings(rig, rate):
-        told = rig.measure()
-    assert "was changed meanwhile" in told
+        rig.calibrator.measure_gyro()
+        begun.set()
+        assert rig.heard.wait(10)
+    assert "was changed meanwhile" in rig.told[-1]
     assert rig.calibrator.board.values == meanwhile
 
 
