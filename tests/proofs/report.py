@@ -65,7 +65,7 @@ STAGES: tuple[Stage, ...] = (
         Lane((Proof("kills", "A killed server leaves no hole in a recording."),)),
         Lane(
             (
-                # In simulated time: with the weight of a robot it made those in real time late.
+                # In simulated time, and so able to wait for robots in real time.
                 Proof("robot-faults", "Each fault of robot and chip stops the fins in time."),
                 Proof("guards", "Each guard is missed by a test when it is taken away."),
                 Proof("hours", "A recording of hours is whole, and an hour's load leaves no memory behind."),
