@@ -51,6 +51,8 @@ def test_two_markers_of_one_number_are_drawn(page: Page) -> None:
     page.get_by_role("link", name="Operate").click()
     camera = page.get_by_role("region", name="Camera")
     expect(camera.get_by_text("No picture yet")).to_be_visible()
+    # The state comes after the greeting, at which the page forgets a picture of another time.
+    expect(camera.get_by_label("Vision rate")).to_be_visible()
     sockets[-1].send(picture())
     expect(camera.locator("svg text", has_text="marker 7")).to_have_count(2)
 
