@@ -31,3 +31,12 @@ def test_a_key_shows_the_meaning_of_a_link_figure(page: Page, site: Site) -> Non
     term.focus()
     term.press("Enter")
     expect(meaning).to_be_visible()
+
+
+def test_a_meaning_stays_open_while_readings_come(page: Page, site: Site) -> None:
+    page.goto(f"{site.url}/#/system")
+    # Browsers send this event late; readings come first on a page that has much to do.
+    page.evaluate("addEventListener('toggle', (event) => event.stopImmediatePropagation(), true)")
+    link = page.get_by_role("region", name="Serial link")
+    link.locator("summary", has_text="Round trip").press("Enter")
+    expect(link.get_by_text("From a reliable frame to its acknowledgement")).to_be_visible()
