@@ -1,6 +1,8 @@
 """`mucat bring-up`: the bring-up from a shell, on a real board, if no server uses the data folder."""
 
 import asyncio
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +18,7 @@ from server.platform.terminal import echo
 if TYPE_CHECKING:
     from robot_runtime.experiments.bring_up.guide import Action, Question, Step
     from robot_runtime.experiments.bring_up.procedure import BringUp, Given
+    from server.features.board.reservation import RobotBoard
 
 HOLD_POSTS = 6
 HOLD_SECONDS = 0.1
@@ -44,10 +47,10 @@ def bring_up(settings: Settings) -> int:
         raise SetupError(f"There is no {sketch}; {FIRMWARE_REMEDY}.")
     with claim(settings.data):
         end_parts(settings.data.run)
-        return asyncio.run(_perform(settings, sketch))
+        return _perform(settings, sketch)
 
 
-async def _perform(settings: Settings, sketch: Path) -> int:
+def _perform(settings: Settings, sketch: Path) -> int:
     from robot_runtime.errors import RefusedError
     from robot_runtime.experiments.bring_up.bench import BenchError, SerialBench
     from robot_runtime.experiments.bring_up.procedure import BringUp
@@ -56,26 +59,40 @@ async def _perform(settings: Settings, sketch: Path) -> int:
 
     board = RobotBoard(settings, lambda _kind, _severity, words: echo(words, err=True))
     try:
-        async with board.reserve("The bring-up") as arguments:
+        with asyncio.Runner() as runner, _reserved(runner, board) as arguments:
             echo("The bring-up's sketch is uploaded to the board.")
-            if trouble := await board.upload(sketch):
+            if trouble := runner.run(board.upload(sketch)):
                 raise SetupError(f"The sketch is not on the board: {trouble}")
             port = arguments[arguments.index("--port") + 1]
             try:
                 with SerialBench(port, settings.link.baud) as bench:
                     procedure = BringUp(bench)
-                    await asyncio.to_thread(_guide, procedure)
+                    _guide(procedure)
+            except (click.Abort, KeyboardInterrupt):
+                echo("\nEnded. The robot's firmware is uploaded again.", err=True)
+                raise
             except BenchError as problem:
                 raise SetupError(str(problem)) from problem
             report = write_report(settings.robot, datetime.now(UTC), procedure)
             try:
-                await asyncio.to_thread(write_whole, settings.data.bring_up, report.encode())
+                write_whole(settings.data.bring_up, report.encode())
             except OSError as problem:
                 raise SetupError(f"The report could not be written: {problem.strerror}.") from problem
             echo(f"The report is {settings.data.bring_up}. The robot's firmware is uploaded again.")
     except RefusedError as problem:
         raise SetupError(str(problem)) from problem
     return 0 if not procedure.calibration().missing and not board.problem else 1
+
+
+@contextmanager
+def _reserved(runner: asyncio.Runner, board: "RobotBoard") -> Iterator[list[str]]:
+    """`RobotBoard.reserve`, between which no loop runs: Ctrl-C ends a prompt only in the main thread."""
+    reservation = board.reserve("The bring-up")
+    arguments = runner.run(reservation.__aenter__())
+    try:
+        yield arguments
+    finally:
+        runner.run(reservation.__aexit__(None, None, None))
 
 
 def _guide(procedure: "BringUp") -> None:

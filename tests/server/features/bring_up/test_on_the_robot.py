@@ -1,10 +1,11 @@
 """The whole stack: a bring-up on the robot's own board, here emulated, by HTTP and from a shell."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -75,9 +76,9 @@ def test_a_bring_up_by_http_and_the_robot_is_back_afterwards(shared_stack: Stack
     assert not (stack.data / "firmware-away").exists()
 
 
-@pytest.mark.timeout(200)
-def test_a_bring_up_from_a_shell(tmp_path: Path) -> None:
-    """The emulated board in place of a real one, which a shell uploads to and talks to."""
+@pytest.fixture
+def bring_up(tmp_path: Path) -> Iterator[list[str]]:
+    """The command, for an emulated board in place of a real one, which a shell uploads to and talks to."""
     tty, socket = tmp_path / "tty", tmp_path / "board"
     config = tmp_path / "robot.toml"
     config.write_text(
@@ -86,19 +87,48 @@ def test_a_bring_up_from_a_shell(tmp_path: Path) -> None:
     options = ("--bootloader", str(OPTIBOOT), "--uncalibrated", "--mistake", "imu-strap")
     elf = ROOT / "build/firmware/robot.elf"
     with EmulatorProcess(PROGRAM, elf, tty, socket, *options):
-        command = [sys.executable, "-c", "from server.cli import main; raise SystemExit(main())", "bring-up"]
-        command += ["--config", str(config), "--data", str(tmp_path / "data")]
-        done = subprocess.run(
-            command,
-            # Look who answers; do not repeat; then end.
-            input="\nn\nq\n",
-            capture_output=True,
-            text=True,
-            timeout=SECONDS,
-            env=os.environ | {"PYTHONPATH": str(ROOT)},
-            check=False,
-        )
+        # A shell in the background starts its commands without Ctrl-C.
+        ctrl_c = "from signal import *; signal(SIGINT, default_int_handler)"
+        code = f"{ctrl_c}; from server.cli import main; raise SystemExit(main())"
+        command = [sys.executable, "-c", code, "bring-up"]
+        yield [*command, "--config", str(config), "--data", str(tmp_path / "data")]
+
+
+@pytest.mark.timeout(200)
+def test_a_bring_up_from_a_shell(bring_up: list[str], tmp_path: Path) -> None:
+    done = subprocess.run(
+        bring_up,
+        # Look who answers; do not repeat; then end.
+        input="\nn\nq\n",
+        capture_output=True,
+        text=True,
+        timeout=SECONDS,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        check=False,
+    )
     assert "BAD  IMU at 0x69: silent  An IMU answers at 0x68" in done.stdout, done.stdout + done.stderr
     assert done.returncode == 1
     assert "Not calibrated" in (tmp_path / "data/bring-up.html").read_text(encoding="utf-8")
+    assert not (tmp_path / "data/firmware-away").exists()
+
+
+@pytest.mark.timeout(200)
+def test_ctrl_c_at_a_prompt_ends_a_bring_up_and_the_firmware_comes_back(
+    bring_up: list[str], tmp_path: Path
+) -> None:
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(
+        bring_up, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
+    ) as process:
+        assert process.stdout is not None
+        said = b""
+        while b"q: end" not in said:
+            more = os.read(process.stdout.fileno(), 4096)
+            assert more, said
+            said += more
+        process.send_signal(signal.SIGINT)
+        # Its input stays open, and nothing comes from it.
+        assert process.wait(SECONDS) == 130
+        assert process.stderr is not None
+        assert b"The robot's firmware is back on its board" in process.stderr.read()
     assert not (tmp_path / "data/firmware-away").exists()
