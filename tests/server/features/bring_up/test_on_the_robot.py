@@ -76,6 +76,14 @@ def test_a_bring_up_by_http_and_the_robot_is_back_afterwards(shared_stack: Stack
     assert not (stack.data / "firmware-away").exists()
 
 
+def awaits_input(process: int) -> bool:
+    """True while it is blocked in a call whose first argument is file 0.
+
+    Python would notice a signal just before such a call only after it.
+    """
+    return Path(f"/proc/{process}/syscall").read_text(encoding="ascii").split()[1:2] == ["0x0"]
+
+
 @pytest.fixture
 def bring_up(tmp_path: Path) -> Iterator[list[str]]:
     """The command, for an emulated board in place of a real one, which a shell uploads to and talks to."""
@@ -126,6 +134,7 @@ def test_ctrl_c_at_a_prompt_ends_a_bring_up_and_the_firmware_comes_back(
             more = os.read(process.stdout.fileno(), 4096)
             assert more, said
             said += more
+        wait(lambda: awaits_input(process.pid), "the prompt")
         process.send_signal(signal.SIGINT)
         # Its input stays open, and nothing comes from it.
         assert process.wait(SECONDS) == 130
