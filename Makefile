@@ -76,9 +76,8 @@ test-page: frontend/node_modules/.ready
 test-rest:
 	@$(BESIDE) $(IN_LANES) --jobs 4 $(PARTS:%=test-in-%)
 
-# Tests of pages first: robot and browser compute for as long as a page is open.
 $(PARTS:%=test-in-%): test-in-%:
-	@nice -n $(if $(filter tests/pages,$*),0,5) $(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))
+	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))
 
 check: check-code ## style, types, imports, faults of C and C++, and whether generated files are current
 	cd frontend && npm run --silent check
