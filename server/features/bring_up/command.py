@@ -86,7 +86,7 @@ def _perform(settings: Settings, sketch: Path) -> int:
 
 @contextmanager
 def _reserved(runner: asyncio.Runner, board: "RobotBoard") -> Iterator[list[str]]:
-    """`RobotBoard.reserve`, between which no loop runs: Ctrl-C ends a prompt only in the main thread."""
+    """Reserves the board from the main thread: a prompt in any other one would not end at Ctrl-C."""
     reservation = board.reserve("The bring-up")
     arguments = runner.run(reservation.__aenter__())
     try:
