@@ -13,6 +13,8 @@ QUESTIONS ?= 300
 WORDS ?= 500
 HOURS ?= 8
 PYTHON := .venv/bin/python
+# Debian's own comes before one that was built here: robots have it, too, and it is faster than most others.
+SYSTEM_PYTHON := $(firstword $(wildcard /usr/bin/python3) python3)
 # Where it is set, each process compiles at every start what it imports: pytest its tests, at 8 seconds a time.
 unexport PYTHONDONTWRITEBYTECODE
 # Compiled once, also for a robot that is started without make.
@@ -35,7 +37,7 @@ PARTS := $(addprefix tests/,runtime/experiments proofs server proofs/test_guards
 
 # With a number of jobs of its own, not what another make leaves over. A failure does not hide those of what comes after it.
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
-BESIDE := nice python3 -m tests.beside
+BESIDE := nice $(SYSTEM_PYTHON) -m tests.beside
 
 .DEFAULT_GOAL := help
 .PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
@@ -179,10 +181,10 @@ missions: setup-test host-firmware ## end each leaf of a mission in each way, an
 chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
 	@nice $(PYTHON) -m tests.proofs.chaos $(CHAOS_SECONDS)
 
-firmware: build/.packages-run ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
+firmware: build/.packages-run .venv/.ready ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
 	@$(MAKE) --silent -C firmware robot
-	@python3 -m robot_runtime.simulation.boards.firmware
+	@$(PYTHON) -m robot_runtime.simulation.boards.firmware
 	@$(MAKE) --silent -C firmware/bootloader
 	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
 	@$(MAKE) --silent -C firmware/emulator
@@ -202,12 +204,12 @@ build/.packages-test: build/.packages-run
 build/.packages-packages: build/.packages-run
 
 build/.packages-%: setup.sh
-	@./setup.sh $*
+	@./setup.sh $* $(SYSTEM_PYTHON)
 	@mkdir -p build && touch $@
 
 .venv/.ready: pyproject.toml constraints.txt | build/.packages-run
 	@echo "Python packages ..."
-	@python3 -m venv .venv
+	@$(SYSTEM_PYTHON) -m venv --clear .venv
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check "$$(grep ^uv== constraints.txt)"
 	@.venv/bin/uv pip install $(INSTALL) --editable . --group dev --group help
 	@.venv/bin/uv pip install $(INSTALL) --no-build mujoco || \

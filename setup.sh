@@ -1,12 +1,13 @@
 #!/bin/sh
 # Says what this machine lacks to build and run the robot, and installs Debian's part of it where it may.
-# usage: ./setup.sh run|test|packages
+# usage: ./setup.sh run|test|packages [PYTHON]
 set -eu
 
 fail() { printf '%s\n' "$1" >&2; exit 1; }
 
-python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null ||
-    fail "Python 3.11 or newer is needed. On Debian: apt install python3 python3-venv"
+python=${2:-python3}
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null ||
+    fail "Python 3.11 or newer is needed, and $python is not. On Debian: apt install python3 python3-venv; for another one: make SYSTEM_PYTHON=python3.12"
 command -v node >/dev/null && command -v npm >/dev/null ||
     fail "Node 20 or newer, with npm, is needed to build the page. See https://nodejs.org"
 [ "$(node -p 'process.versions.node.split(".")[0]')" -ge 20 ] ||
@@ -19,7 +20,7 @@ need() { # package, then a file or command that shows it to be there
         *) command -v "$2" >/dev/null || missing="$missing $1" ;;
     esac
 }
-python3 -c 'import ensurepip' 2>/dev/null || missing="$missing python3-venv"
+"$python" -c 'import ensurepip' 2>/dev/null || missing="$missing python3-venv"
 need gcc gcc
 need gcc-avr avr-gcc
 need avr-libc /usr/lib/avr/include/avr/io.h

@@ -11,9 +11,10 @@ from typing import Any
 BYTES_MAX = 60_000
 PARTS_MAX = 8
 """Parts of one dotted key or of one table's name."""
-_MULTILINE = r'"""(?:\\.|(?!""")[^\\])*+(?:"{3,5}|\Z)' + "|" + r"'''(?:(?!''').)*+(?:'{3,5}|\Z)"
-_PART = r"""[A-Za-z0-9_-]++|"(?:\\.|[^"\\\n])*+(?:"|$)|'[^'\n]*+(?:'|$)"""
-_LONG_KEY = rf"(?:{_PART})(?:[ \t]*+\.[ \t]*+(?:{_PART})){{{PARTS_MAX},}}+"
+# Only characters are repeated possessively: with groups, Python before 3.11.5 goes wrong (its issue 106052).
+_MULTILINE = r"""\"{3}(?:[^"\\]++|\\(?:.|\Z)|"(?!""))*(?:"{3,5}|\Z)|'{3}(?:[^']++|'(?!''))*(?:'{3,5}|\Z)"""
+_PART = r"""[A-Za-z0-9_-]++|"(?:[^"\\\n]++|\\(?:.|\Z))*(?:"|$)|'[^'\n]*+(?:'|$)"""
+_LONG_KEY = rf"(?:{_PART})(?:[ \t]*+\.[ \t]*+(?:{_PART})){{{PARTS_MAX},}}"
 # A text that is not closed runs to the end of its line or of the document, where tomllib stops.
 _TOKENS = re.compile(
     rf"#[^\n]*+|{_MULTILINE}|(?P<long_key>{_LONG_KEY})|(?:{_PART})", re.DOTALL | re.MULTILINE
