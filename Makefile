@@ -30,10 +30,11 @@ WAITING := $(addprefix tests/,board/test_bootloader.py packages/test_32_bits.py 
 	server/features/comm_tests/test_reserved_board.py server/features/comm_tests/test_thesis_example.py \
 	browser/test_bring_up.py browser/test_firmware_upload.py)
 REAL_TIME = $(filter-out $(WAITING),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
-# All other tests, each part by a process of its own, the longest first. A part lacks what is a part by itself.
-PARTS := $(addprefix tests/,runtime/experiments proofs server proofs/test_guards.py server/features pages documents \
-	proofs/test_memory.py server/features/exports server/features/comparison server/features/identification \
-	runtime server/features/doors) tests
+# All other tests, each part by a process of its own, the longest first, also those that mostly wait. A part lacks what is
+# a part by itself.
+PARTS := $(addprefix tests/,runtime/experiments proofs server proofs/test_guards.py server/features pages \
+	proofs/test_memory.py server/features/doors) tests $(addprefix tests/,runtime documents server/features/exports \
+	server/features/comparison server/features/identification)
 
 # With a number of jobs of its own, not what another make leaves over. A failure does not hide those of what comes after it.
 IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-sync=line
