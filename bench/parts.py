@@ -22,10 +22,10 @@ PARTS = {
     part.name: part
     for part in (
         # The longest first, so that no core waits for one at the end.
+        Part("heap", is_emulated=True, is_long=True, prefix="page.heap_growth"),
         Part("firmware", is_emulated=True, is_long=True, prefix="firmware.missed_ticks"),
         Part("comm_test", is_emulated=True, is_long=True, prefix="link.table6"),
         Part("identify", is_emulated=True),
-        Part("heap", is_emulated=True),
         Part("hostile", is_emulated=True),
         Part("control", is_emulated=True),
         Part("fault", is_emulated=True),
