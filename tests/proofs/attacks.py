@@ -159,11 +159,14 @@ def attack_while_pressing(stack: Stack, words: str) -> tuple[dict[str, str], lis
 
 
 def test(path: str) -> str:
-    """The last line of a row's tests where one fails; else empty."""
+    """The last line of a row's tests where one fails, all lines of which are printed; else empty."""
     chosen = [] if path.startswith("tests/browser") else ["-m", "not stack"]
     command = [sys.executable, "-m", "pytest", "-q", *chosen, "-p", "no:cacheprovider", *path.split()]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    return "" if done.returncode == 0 else done.stdout.strip().splitlines()[-1]
+    if done.returncode == 0:
+        return ""
+    print(done.stdout, flush=True)
+    return done.stdout.strip().splitlines()[-1]
 
 
 def main() -> int:

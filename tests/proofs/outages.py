@@ -24,7 +24,7 @@ from robot_runtime.transport.zenoh_transport import join
 from server.platform.settings import DataFolder
 from server.processes.supervisor import HEARTBEAT_SECONDS
 from tests.proofs.pool import processes
-from tests.proofs.watching import Fins, Viewer, wait
+from tests.proofs.watching import Fins, Viewer, find_silence, wait
 from tests.stack import Stack
 
 Blow = Literal["kill", "stop", "hang"]
@@ -175,7 +175,7 @@ class World:
             outcome.told = wait(lambda: self.viewer.tells(alarm), f"the alarm {alarm}") - since
         if outcome.armed and outage.off is not None:
             wait(lambda: self.fins.seen[-1].time > since and not self.fins.seen[-1].powered, "no power")
-            begun = self.fins.silence(since) if outage.victim == "runtime" else since
+            begun = find_silence(self.fins.seen, since) if outage.victim == "runtime" else since
             outcome.rest, outcome.off = self.fins.moved_for(begun), self.fins.powered_for(begun)
 
     def _judge(self, outcome: Outcome) -> None:

@@ -4,7 +4,7 @@ import json
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from math import remainder, tau
 from pathlib import Path
@@ -68,6 +68,19 @@ class Motion:
         return any(abs(remainder(now - then, tau)) > MOVING * SPAN for now, then in pairs)
 
 
+def find_silence(seen: Sequence[Seen], since: float) -> float:
+    """Time at which the chip had received the last byte under way at `since` (both s, steady clock).
+
+    `since` itself where the next runtime's bytes came within `SILENCE`: the board's time may pass slowly.
+    """
+    later = [one for one in seen if one.time >= since]
+    for index, one in enumerate(later):
+        after = next((other for other in later[index:] if other.board >= one.board + SILENCE), None)
+        if after is not None and after.heard == one.heard:
+            return one.time
+    return since
+
+
 class Fins:
     """Reads the fins continuously, whatever happens to other processes; no board, no motion."""
 
@@ -90,15 +103,6 @@ class Fins:
     def powered_for(self, since: float) -> float:
         """s of the board's time that the motors had power since then."""
         return self._last(since, lambda one: one.powered)
-
-    def silence(self, since: float) -> float:
-        """Time at which the chip had received the last byte then under way (s, steady clock)."""
-        seen = [one for one in self.seen if one.time >= since]
-        for index, one in enumerate(seen):
-            later = next((other for other in seen[index:] if other.board >= one.board + SILENCE), None)
-            if later is not None and later.heard == one.heard:
-                return one.time
-        raise AssertionError("the chip was never without a byte")
 
     def _last(self, since: float, wanted: Callable[[Seen], bool]) -> float:
         seen = [one for one in self.seen if one.time >= since]
