@@ -1,4 +1,4 @@
-"""What the proofs of faults see at the emulated board."""
+"""The silence of a line, found in what was seen at the emulated board."""
 
 from tests.proofs.watching import SILENCE, Seen, find_silence
 
