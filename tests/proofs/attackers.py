@@ -290,9 +290,9 @@ ATTACKS: dict[str, Callable[[Field], None]] = {
 }
 
 
-def repeat(attack: Callable[[Field], None], field: Field, end: Event) -> str:
-    """Repeats an attack, once at least, until the end; returns what went wrong."""
-    ended = False
+def repeat(attack: Callable[[Field], None], field: Field, end: Event) -> tuple[str, int]:
+    """Repeats an attack, once at least, until the end; returns what went wrong, and how often it was made."""
+    made, ended = 0, False
     while not ended:
         try:
             attack(field)
@@ -304,9 +304,10 @@ def repeat(attack: Callable[[Field], None], field: Field, end: Event) -> str:
             TimeoutError,
             zlib.error,
         ) as problem:
-            return f"{type(problem).__name__}: {problem}"[:300]
+            return f"{type(problem).__name__}: {problem}"[:300], made
+        made += 1
         ended = end.is_set()
-    return ""
+    return "", made
 
 
 def choose(words: str) -> dict[str, Callable[[Field], None]]:

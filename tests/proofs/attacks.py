@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -129,33 +130,49 @@ def kill_the_runtime(stack: Stack) -> str:
     return "" if statuses <= {204, 503} and not armed else f"answers {statuses}, armed: {armed}"
 
 
-def attack(stack: Stack, words: str) -> tuple[dict[str, str], list[float], dict[str, float]]:
-    """The problems by attack, the delays of STOP, and the jitter without and with attacks."""
-    problems, delays, jitter = attack_while_pressing(stack, words) if choose(words) else ({}, [], {})
+@dataclass
+class Outcome:
+    """The result of the attacks on a whole robot."""
+
+    problems: dict[str, str] = field(default_factory=dict)
+    delays: list[float] = field(default_factory=list)
+    """s from each press of STOP to its answer."""
+    quiet_jitter: float = 0.0
+    """s; `read_jitter` before the attacks."""
+    jitter: float = 0.0
+    made: int = 0
+    """Attacks that were made while STOP was pressed."""
+
+
+def attack(stack: Stack, words: str) -> Outcome:
+    """Make the attacks that have these words in their names."""
+    outcome = attack_while_pressing(stack, words) if choose(words) else Outcome()
     nobody, killed = AFTERWARDS
     if words in nobody and os.geteuid() == 0:
-        problems[nobody] = look_as_nobody(stack.data)
+        outcome.problems[nobody] = look_as_nobody(stack.data)
     if words in killed:
-        problems[killed] = kill_the_runtime(stack)
-    return problems, delays, jitter
+        outcome.problems[killed] = kill_the_runtime(stack)
+    return outcome
 
 
-def attack_while_pressing(stack: Stack, words: str) -> tuple[dict[str, str], list[float], dict[str, float]]:
-    """The same for the attacks that the attackers repeat meanwhile."""
+def attack_while_pressing(stack: Stack, words: str) -> Outcome:
+    """Make those that the attackers repeat meanwhile."""
     record(stack)
     began = time.monotonic()
     press(stack, QUIET_PRESSES)
-    quiet = read_jitter(stack, began, time.monotonic())
+    outcome = Outcome(quiet_jitter=read_jitter(stack, began, time.monotonic()))
     tokens = [make_token(stack, scope) for scope in ("read", "administer")]
     command = [sys.executable, "-m", "tests.proofs.attackers", stack.url, *tokens, words]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, cwd=ROOT, stdin=pipe, stdout=pipe, text=True) as attackers:
         began = time.monotonic()
-        delays = press(stack, PRESSES)
-        jitter = {"without": quiet, "with": read_jitter(stack, began, time.monotonic())}
+        outcome.delays = press(stack, PRESSES)
+        outcome.jitter = read_jitter(stack, began, time.monotonic())
         output, _ = attackers.communicate()
-    problems: dict[str, str] = json.loads(output)
-    return problems, delays, jitter
+    for name, (problem, made) in json.loads(output).items():
+        outcome.problems[name] = problem
+        outcome.made += made
+    return outcome
 
 
 def test(path: str) -> str:
@@ -173,25 +190,27 @@ def main() -> int:
     """Exit status: 1 where a row did not hold or STOP was late."""
     words = " ".join(sys.argv[1:])
     rows = {name: test(path) for name, path in TESTS.items() if words in name}
-    delays: list[float] = []
-    jitter: dict[str, float] = {}
+    outcome = Outcome()
     if any(words in name for name in LIVE):
         with tempfile.TemporaryDirectory(prefix="mucat-") as folder, Stack(Path(folder) / "data") as stack:
-            problems, delays, jitter = attack(stack, words)
-        rows |= problems
+            outcome = attack(stack, words)
+        rows |= outcome.problems
     if not rows:
         print(f"No attack has “{words}” in its name.")
         return 1
     width = max(map(len, rows))
     for name, problem in rows.items():
-        outcome, where = "NOT HELD" if problem else "held", TESTS.get(name, "whole robot")
-        print(f"{name:<{width}}  {outcome:<8}  {where}  {problem}")
-    if not delays:
+        verdict, where = "NOT HELD" if problem else "held", TESTS.get(name, "whole robot")
+        print(f"{name:<{width}}  {verdict:<8}  {where}  {problem}")
+    if not outcome.delays:
         return 1 if any(rows.values()) else 0
-    late = percentile(delays, 0.99)
-    print(f"\nSTOP, {len(delays)} presses: median {percentile(delays, 0.5):.3f} s, p99 {late:.3f} s")
-    print(f"jitter of the control loop, p99: without {jitter['without']:.4f} s, with {jitter['with']:.4f} s")
-    worse = jitter["with"] - jitter["without"]
+    late, presses = percentile(outcome.delays, 0.99), len(outcome.delays)
+    print(f"\n{outcome.made} attacks on the whole robot")
+    print(f"STOP, {presses} presses: median {percentile(outcome.delays, 0.5):.3f} s, p99 {late:.3f} s")
+    print(
+        f"jitter of the control loop, p99: without {outcome.quiet_jitter:.4f} s, with {outcome.jitter:.4f} s"
+    )
+    worse = outcome.jitter - outcome.quiet_jitter
     return 1 if any(rows.values()) or late > STOP_MAX or worse > JITTER_MAX else 0
 
 
