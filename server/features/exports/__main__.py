@@ -15,14 +15,6 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.transport.lifetime import end_with_parent, give_way, limit_process
-from server.features.exports.archive_reader import examine
-from server.features.exports.files import write_part
-from server.features.exports.formats import check
-from server.features.exports.schemas import ExportOptions
-from server.features.exports.selection import ExportSelection
-from server.features.sessions.session import find_row
-from server.platform.errors import ApiError
-from server.platform.store import Reader
 
 NICENESS = 15
 """Control and recording go first."""
@@ -37,14 +29,15 @@ def main() -> int:
     end_with_parent()
     give_way(NICENESS)
     limit_process(BYTES_MAX, SECONDS_MAX)
+    # Here and below, so that others go first while the libraries are loaded, too.
+    from server.platform.errors import ApiError
+
     try:
         match sys.argv[1:]:
             case ["write", database, session, options, path]:
-                choice = ExportOptions.model_validate_json(options)
-                _write(Path(database), int(session), choice, Path(path))
+                _write(Path(database), int(session), options, Path(path))
             case ["examine", path, rows]:
-                examine(Path(path), Path(rows), _Progress().tell)
-                _report({"examined": True})
+                _examine(Path(path), Path(rows))
             case _:
                 sys.exit(__doc__)
     except ApiError as problem:
@@ -56,11 +49,25 @@ def main() -> int:
     return 0
 
 
-def _write(database: Path, session: int, options: ExportOptions, path: Path) -> None:
-    store = Reader(database)
+def _write(database: Path, session: int, asked: str, path: Path) -> None:
+    from server.features.exports.files import write_part
+    from server.features.exports.formats import check
+    from server.features.exports.schemas import ExportOptions
+    from server.features.exports.selection import ExportSelection
+    from server.features.sessions.session import find_row
+    from server.platform.store import Reader
+
+    store, options = Reader(database), ExportOptions.model_validate_json(asked)
     source = ExportSelection(store, find_row(store, session), options, _Progress().tell)
     written = write_part(path, lambda output: check(options).write(store, source, output))
     _report(written._asdict())
+
+
+def _examine(path: Path, rows: Path) -> None:
+    from server.features.exports.archive_reader import examine
+
+    examine(path, rows, _Progress().tell)
+    _report({"examined": True})
 
 
 class _Progress:

@@ -43,13 +43,13 @@ def python(tmp_path: Path) -> Python:
         script.write_text(
             f"""#!{sys.executable}
 import sys, time
-from server.features.comparison import __main__ as process
+from server.features.comparison import __main__ as process, tasks
 
 def work(comparer, query):
     {work}
     return b"{{}}"
 
-process.TASKS = {{**process.TASKS, "compare": work, "report": work}}
+tasks.TASKS = {{**tasks.TASKS, "compare": work, "report": work}}
 process.NICENESS = 0
 del sys.argv[:2]
 sys.exit(process.main())

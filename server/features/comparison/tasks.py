@@ -1,0 +1,71 @@
+"""The tasks of the process that compares, and their answers."""
+
+import json
+import sys
+import traceback
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+from pydantic import TypeAdapter
+
+from server.features.comparison.comparer import Comparer
+from server.features.comparison.report import write_report
+from server.features.comparison.schemas import ComparisonQuery, LinesQuery, ReportQuery
+from server.features.comparison.signals import Signal
+from server.platform.errors import ApiError, UnavailableError
+from server.platform.store import Reader
+
+TOO_LARGE = "This takes more memory than it may. Choose fewer sessions, or fewer signals."
+
+Task = Callable[[Comparer, str], bytes]
+
+
+def compare(comparer: Comparer, query: str) -> bytes:
+    """A comparison, as JSON."""
+    return comparer.compare(ComparisonQuery.model_validate_json(query)).model_dump_json().encode()
+
+
+def lines(comparer: Comparer, query: str) -> bytes:
+    """The lines of a part, as JSON."""
+    return comparer.lines(LinesQuery.model_validate_json(query)).model_dump_json().encode()
+
+
+def signals(comparer: Comparer, query: str) -> bytes:
+    """The signals of the session of this number, as JSON."""
+    return TypeAdapter(list[Signal]).dump_json(comparer.signals(json.loads(query)))
+
+
+def report(comparer: Comparer, query: str) -> bytes:
+    """A report, as HTML."""
+    asked = ReportQuery.model_validate_json(query)
+    return write_report(comparer.compare(asked.parse()), asked.shown).encode()
+
+
+TASKS: Mapping[str, Task] = {"compare": compare, "lines": lines, "signals": signals, "report": report}
+
+
+def answer_all(database: Path, tasks: Iterable[bytes]) -> None:
+    """Answers each task, a line of JSON, on the standard output."""
+    reader = Reader(database)
+    comparer = Comparer(reader)
+    for line in tasks:
+        asked = json.loads(line)
+        try:
+            _answer(200, TASKS[asked["task"]](comparer, asked["query"]))
+        except ApiError as problem:
+            _answer(problem.status, problem.detail.encode())
+        except MemoryError:
+            # What the caches hold would be in the way of all that follows.
+            comparer = Comparer(reader)
+            _answer(422, TOO_LARGE.encode())
+        except Exception as problem:
+            # Whatever it is, the server says it, and the next task is answered.
+            traceback.print_exc()
+            why = f"The sessions cannot be compared: {type(problem).__name__}: {problem}"
+            _answer(UnavailableError.status, why.encode(errors="replace"))
+
+
+def _answer(status: int, body: bytes) -> None:
+    head = json.dumps({"status": status, "bytes": len(body)}).encode()
+    sys.stdout.buffer.write(head + b"\n" + body)
+    sys.stdout.buffer.flush()
