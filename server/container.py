@@ -3,9 +3,10 @@
 import asyncio
 import json
 import logging
-from collections.abc import AsyncIterator, Coroutine, Sequence
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Sequence
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from dataclasses import asdict
+from functools import partial
 from typing import Any
 
 from robot_runtime.clock import Clock, SteadyClock
@@ -254,27 +255,34 @@ class Container:
             await self.ros2.open()
             yield
         finally:
-            await self.ros2.close()
-            for task in tasks:
-                task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
-            await self.tuning.close()
-            await self.scenarios.close()
-            await self.comm_tests.close()
-            await self.bring_up.close()
-            await self.firmware_upload.close()
-            await self.comparison.close()
-            await self.identification.close()
-            await self.mission_trials.close()
-            await self.processes.stop()
-            await self.arming.close()
-            await self.mission_marks.close()
-            await self._end_session()
-            await self.events.close()
-            await self.bridge.close()
-            await self.access.devices.close()
-            await asyncio.to_thread(self.audit.close)
-            await asyncio.to_thread(self.store.close)
+            # Also where one of them fails: what is left open keeps the process.
+            async with AsyncExitStack() as ending:
+                for close in reversed(self._closes(tasks)):
+                    ending.push_async_callback(close)
+
+    def _closes(self, tasks: Sequence[asyncio.Task[None]]) -> Sequence[Callable[[], Awaitable[object]]]:
+        """The calls that end everything, in their order."""
+        return (
+            self.ros2.close,
+            partial(_cancel, tasks),
+            self.tuning.close,
+            self.scenarios.close,
+            self.comm_tests.close,
+            self.bring_up.close,
+            self.firmware_upload.close,
+            self.comparison.close,
+            self.identification.close,
+            self.mission_trials.close,
+            self.processes.stop,
+            self.arming.close,
+            self.mission_marks.close,
+            self._end_session,
+            self.events.close,
+            self.bridge.close,
+            self.access.devices.close,
+            partial(asyncio.to_thread, self.audit.close),
+            partial(asyncio.to_thread, self.store.close),
+        )
 
     def _begin(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         """Begin a background task, whose failure is logged and an alarm."""
@@ -397,3 +405,9 @@ class Container:
             # Where even its end cannot be stored, the next start marks it as interrupted.
             with suppress(StoreError, RecordingRefusedError):
                 await self.recorder.stop(self.recorder.session.id)
+
+
+async def _cancel(tasks: Sequence[asyncio.Task[None]]) -> None:
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)

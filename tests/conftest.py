@@ -1,5 +1,6 @@
-"""Hypothesis settings of all tests, what the garbage collector passes over, and the robot they share."""
+"""Hypothesis settings, garbage collection, the end of a process of tests, and the robot they share."""
 
+import faulthandler
 import gc
 import tempfile
 from collections.abc import Iterator
@@ -15,6 +16,9 @@ settings.register_profile("mucat", deadline=None, suppress_health_check=[HealthC
 settings.load_profile("mucat")
 
 
+END_SECONDS = 60.0
+"""Time that a process of tests has for its end."""
+
 # While modules are loaded there is next to no garbage.
 gc.disable()
 
@@ -29,6 +33,11 @@ def pytest_collection_finish() -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Move tests of the shared robot to the end, so that it does not run beside another one."""
     items.sort(key=lambda item: "shared_stack" in getattr(item, "fixturenames", ()))
+
+
+def pytest_unconfigure() -> None:
+    """A thread that never ends would keep this process: it then fails, and says where its threads are."""
+    faulthandler.dump_traceback_later(END_SECONDS, exit=True, file=2)
 
 
 @pytest.fixture(scope="session")

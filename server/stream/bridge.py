@@ -101,6 +101,7 @@ class Bridge:
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
         self._leases = ThreadPoolExecutor(1, "lease")
         self._asking = 0
+        self._opened = False
 
     async def open(self) -> None:
         """Open the Zenoh session; the other processes may start and end at any time. Raises SetupError."""
@@ -115,6 +116,7 @@ class Bridge:
             )
         except OSError as problem:
             raise SetupError(f"The server cannot listen for the robot's runtime: {problem}") from problem
+        self._opened = True
         for stream in STREAMS:
             self._messages.subscribe_runs(stream, self._receive)
 
@@ -204,7 +206,8 @@ class Bridge:
         self._stops.shutdown(wait=False, cancel_futures=True)
         self._commands.shutdown(wait=False, cancel_futures=True)
         self._leases.shutdown(wait=False, cancel_futures=True)
-        await asyncio.to_thread(self._messages.close)
+        if self._opened:
+            await asyncio.to_thread(self._messages.close)
 
     async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:
         if self.reserved_reason is not None and not stop:

@@ -99,6 +99,7 @@ async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> 
             finally:
                 server.should_exit = True
                 await running
+            assert not server.lifespan.should_exit, "the server failed to end; its log says why"
 
 
 def play(

@@ -1,14 +1,19 @@
-"""The start of the server: the libraries of its runner, signals, and a disk that takes nothing."""
+"""Start and end of the server: the libraries of its runner, signals, a full disk, and a part that fails."""
 
+import asyncio
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
 
 from robot_runtime.durable_files import PART
+from server.app import create_app
 from server.platform.running_server import announce
-from server.platform.settings import Settings
+from server.platform.settings import Settings, SetupError
+from server.processes.supervisor import ProcessSupervisor
+from tests.server.new_database import place_empty
 from tests.server.waiting import SECONDS
 
 LIBRARIES = ("fastapi", "sqlalchemy", "pydantic", "uvicorn", "asyncio")
@@ -73,3 +78,32 @@ def test_a_server_whose_address_cannot_be_written_keeps_that_of_the_one_before(s
     settings.data.address.with_name(settings.data.address.name + PART).mkdir()
     announce(settings)
     assert settings.data.address.read_text() == before
+
+
+async def live_once(settings: Settings) -> None:
+    """Start a server and end it."""
+    app = create_app(settings)
+    async with app.router.lifespan_context(app):
+        pass
+
+
+def test_a_server_that_cannot_hear_the_runtime_says_so(settings: Settings) -> None:
+    place_empty(settings.data)
+    settings.data.server_socket.mkdir()
+    with pytest.raises(SetupError, match="cannot listen for the robot's runtime"):
+        asyncio.run(live_once(settings))
+
+
+def test_a_part_that_cannot_be_closed_keeps_nothing_else_open(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def fail(_: ProcessSupervisor) -> None:
+        raise ChildProcessError("a process that nobody can end")
+
+    place_empty(settings.data)
+    monkeypatch.setattr(ProcessSupervisor, "stop", fail)
+    before = set(threading.enumerate())
+    with pytest.raises(ChildProcessError, match="nobody can end"):
+        asyncio.run(live_once(settings))
+    # A thread of Zenoh, or of a writer, would keep the process from ending.
+    assert set(threading.enumerate()) <= before
