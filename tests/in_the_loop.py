@@ -59,6 +59,8 @@ def main() -> None:
         TwoHosts(delay=0.02, jitter=0.01, loss=0.01) as hosts,
         Stack(data / "data", "--config", str(data / "robot.toml")) as stack,
     ):
+        silent = "The board sends no status. Wait a moment, or reset it."
+        wait(lambda: silent not in refusals(stack), "the board's first status", stack)
         told["alone"] = refusals(stack)
         simulator = subprocess.Popen(
             [mucat, "simulator", *there],
