@@ -229,6 +229,9 @@ class Container:
             self._notify_alarms()
             if self._ended:
                 self.alarms.begin("server_restarted", f"{self._ended} It was started again.")
+            with suppress(StoreError):
+                # Killed again at once, it has stored its restart. The watchdog tells of a failure.
+                await self.recorder.flush()
             if self.settings.hil.simulator == "elsewhere":
                 for name in SIMULATION:
                     await self.processes.pause(name, SIMULATION_ELSEWHERE)

@@ -82,6 +82,11 @@ class RuntimeEnd:
     def __exit__(self, *_: object) -> None:
         self._messages.close()
 
+    @property
+    def run(self) -> str:
+        """The run by which a recording knows this runtime."""
+        return self._messages.run
+
     def publish(self, *blocks: Block) -> None:
         """Publish blocks, each on its own."""
         for block in blocks:
