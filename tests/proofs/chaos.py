@@ -122,8 +122,9 @@ class Storm:
                 self._rest(0.0)
                 print(f"{time.monotonic() - began:7.1f} s {what}", file=sys.stderr, flush=True)
                 self._require_recording(session)
-                if what == "runtime killed":
-                    # A server killed before it has stored anything of the new one ends the session rightly.
+                if what.removesuffix(" killed") in PARTS:
+                    # Before the server is killed next, it must have stored the alarm, and something of a new
+                    # runtime, without which the session rightly ends. Its own restart it stores at once.
                     self._wait_stored(session)
         self._world.calm()
         for page in self._pages:
@@ -146,7 +147,7 @@ class Storm:
             return samples
 
         before = stored()
-        wait(lambda: stored() > before, "what the new runtime sends to be stored")
+        wait(lambda: stored() > before, "what came since to be stored")
 
     # Faults; each returns its name
 
