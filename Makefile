@@ -75,9 +75,9 @@ test-page: frontend/node_modules/.ready
 	$(BESIDE) npm --prefix frontend test --silent || status=1; \
 	exit $$status
 
-# Four at once: many of them wait for a process.
+# Three at once: many of them wait for a process, and more than three slow each other down.
 test-rest:
-	@$(BESIDE) $(IN_LANES) --jobs 4 $(PARTS:%=test-in-%)
+	@$(BESIDE) $(IN_LANES) --jobs 3 $(PARTS:%=test-in-%)
 
 $(PARTS:%=test-in-%): test-in-%:
 	@$(PYTHON) -m pytest -m "not stack" --durations 10 $* $(addprefix --ignore=,$(filter $*/%,$(PARTS) tests/browser))
