@@ -75,7 +75,7 @@ test-page: frontend/node_modules/.ready
 	$(BESIDE) npm --prefix frontend test --silent || status=1; \
 	exit $$status
 
-# Three at once: many of them wait for a process, and more than three slow each other down.
+# Three at once, since many of them wait for a process; four are no quicker.
 test-rest:
 	@$(BESIDE) $(IN_LANES) --jobs 3 $(PARTS:%=test-in-%)
 
