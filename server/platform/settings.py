@@ -1,9 +1,11 @@
 """The server's settings from `robot.toml`, the environment and the command line."""
 
+import fcntl
 import os
 import re
 import socket
 import stat
+import struct
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -41,6 +43,9 @@ OTHERS = stat.S_IRWXG | stat.S_IRWXO
 
 NOWHERE = "192.0.2.1"
 """An address of documentation's own network (RFC 5737)."""
+
+SIOCGIFADDR = 0x8915
+"""Linux's request for the IPv4 address of a network interface (netdevice(7))."""
 
 ROBOT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,31}")
 
@@ -171,14 +176,26 @@ class Settings:
         return is_loopback(self.host) and not self.public_url
 
     def base_url(self, called: str = "") -> str:
-        """The server's address for a browser; `called` is the name by which somebody has just called it.
+        """The server's address for a browser; `called` is the name by which one has just called it.
 
         Where others can reach the server, it is a name that works for them too.
         """
         if self.public_url:
             return self.public_url
-        names = [name for name in self.allowed_hosts if self.only_here or not is_loopback(name)]
-        name = called if called in names else (names or [self.host])[0]
+        usable = called in self._names or (_is_address(called) and not is_loopback(called))
+        return self._url(called) if usable else self.base_urls()[0]
+
+    def base_urls(self) -> list[str]:
+        """Every address by which a browser elsewhere may reach the server; here alone if nobody else can."""
+        if self.public_url:
+            return [self.public_url]
+        return [self._url(name) for name in self._names or [self.host]]
+
+    @property
+    def _names(self) -> list[str]:
+        return [name for name in self.allowed_hosts if self.only_here or not is_loopback(name)]
+
+    def _url(self, name: str) -> str:
         return f"{self.scheme}://{name}:{self.port}"
 
     @property
@@ -322,17 +339,35 @@ def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
 
 
 def _own_names() -> list[str]:
-    """This computer's address in the network that its packets leave by, and its
+    """This computer's addresses, first the one in the network that its packets leave by, and its
     names. No foreign page can make a browser take such an address for the page's own.
     """
     name = socket.gethostname().lower()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        addresses = [_interface_address(probe, interface) for _, interface in socket.if_nameindex()]
         try:
             probe.connect((NOWHERE, 9))  # which sends nothing
-            address = [probe.getsockname()[0]]
+            addresses.insert(0, probe.getsockname()[0])
         except OSError:
-            address = []
-    return [*address, f"{name}.local", name]
+            pass  # no network beyond its own
+    return [*(one for one in addresses if one and not is_loopback(one)), f"{name}.local", name]
+
+
+def _interface_address(probe: socket.socket, interface: str) -> str:
+    """The IPv4 address of a network interface; empty where it has none."""
+    try:
+        request = fcntl.ioctl(probe, SIOCGIFADDR, struct.pack("256s", interface.encode()[:15]))
+    except OSError:
+        return ""
+    return socket.inet_ntoa(request[20:24])
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ip_address(name.strip("[]"))
+    except ValueError:
+        return False
+    return True
 
 
 def is_loopback(name: str) -> bool:

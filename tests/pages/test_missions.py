@@ -235,7 +235,7 @@ def test_toml_changes_the_cards_and_cards_write_toml(page: Page, site: Site) -> 
 def test_an_emptied_text_is_checked_and_can_be_undone(page: Page, site: Site) -> None:
     page.goto(f"{site.url}/#/missions")
     page.get_by_role("button", name="New mission").click()
-    expect(page.get_by_text("Not saved")).to_be_visible()
+    expect(page.get_by_text("Add the first step.")).to_be_visible()
     toml = show_toml(page)
     text = toml.input_value()
     assert text
@@ -245,6 +245,19 @@ def test_an_emptied_text_is_checked_and_can_be_undone(page: Page, site: Site) ->
     expect(toml).to_have_value("")
     page.get_by_role("button", name="Undo").click()
     expect(toml).to_have_value(text)
+
+
+def test_a_new_mission_left_untouched_blocks_no_other(page: Page, site: Site) -> None:
+    page.goto(f"{site.url}/#/missions")
+    page.get_by_role("button", name="New mission").click()
+    expect(page.get_by_text("Add the first step.")).to_be_visible()
+    expect(page.locator(".problem:not(:empty)")).to_have_count(0)
+    page.reload()
+    expect(page.get_by_text("Add the first step.")).to_be_visible()
+    page.goto(f"{site.url}/#/missions/edit/two_depths")
+    expect(page.get_by_role("heading", level=1, name="Two depths")).to_be_visible()
+    expect(card(page, "1")).to_be_visible()
+    expect(page.get_by_role("alert").filter(has_text="unsaved")).to_have_count(0)
 
 
 def test_an_address_of_no_mission_says_so(page: Page, site: Site) -> None:

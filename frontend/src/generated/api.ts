@@ -4398,6 +4398,8 @@ export interface components {
         /**
          * MadeCode
          * @description A code for one pairing; `expires` in s since 1970, `qr_svg` is a picture of the link.
+         *
+         *     `other_links` do the same at the server's other addresses; `only_here`: no other computer reaches any.
          */
         MadeCode: {
             /** Code */
@@ -4406,6 +4408,10 @@ export interface components {
             expires: number;
             /** Link */
             link: string;
+            /** Only Here */
+            only_here: boolean;
+            /** Other Links */
+            other_links: string[];
             /** Qr Svg */
             qr_svg: string;
             /**

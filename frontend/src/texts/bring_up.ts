@@ -6,7 +6,7 @@ const later = 'A fault here shows up later, where it is harder to find.';
 
 export const bringUp = {
   title: pages['bring-up'],
-  back: 'System',
+  back: '← System',
   about: 'Checks a robot that was just built, part by part, and measures its calibration. It takes about half an hour.',
   needs: 'Have ready:',
   tools: ['the hull, open, on a bench', 'a charged battery and a multimeter', 'a bucket of water and a ruler', 'a lamp of the beacons’ kind'],

@@ -30,6 +30,7 @@ export const missions = {
   },
   editor: {
     back: '← All missions',
+    begin: 'Add the first step.',
     untitled: 'New mission',
     save: 'Save',
     saved: 'Saved',

@@ -13,8 +13,9 @@ export const shell = {
   },
   alarms: {
     active: 'active',
-    over: 'over',
-    since: (time: string, acknowledged: boolean) => `since ${time}${acknowledged ? ', acknowledged' : ''}`,
+    over: 'over,',
+    when: (began: string, { active, acknowledged }: { active: boolean; acknowledged: boolean }) =>
+      `${active ? 'since' : 'began'} ${began}${acknowledged ? ', acknowledged' : ''}`,
     cause: 'Likely cause:',
     remedy: 'What to do:',
     none: 'No alarms. Faults of the robot, its link and its computer appear here, with their likely causes and what to do.',

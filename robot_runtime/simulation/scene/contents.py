@@ -60,12 +60,12 @@ class Targets:
 START_BEACONS = SimulationParameters().beacons
 START_BASIN = Basin(SimulationParameters().floor)
 START_TARGETS = (
-    Target(colour="yellow", position=(2.2, 0.5, 1.1), size=0.3),
+    Target(colour="green", position=(2.2, 0.5, 1.1), size=0.3),
     Target(colour="red", position=(2.8, -0.9, 0.8), size=0.26, shape="box"),
     Target(colour="green", position=(4.2, 0.4, 1.6), size=0.3, shape="box"),
     Target(colour="blue", position=(3.4, 1.4, 0.7), size=0.28),
 )
-"""The targets at the start. Chosen: one of each colour, ahead."""
+"""The targets at the start. Chosen: ahead, in colours that the water between does not change into others."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

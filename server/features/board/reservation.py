@@ -161,7 +161,8 @@ class BoardReservation:
         reason = self._bridge.reserved_reason or self._occupied()
         if reason:
             raise RefusedError(reason)
-        why = f"{work} uses the robot's board. To free the board, end it."
+        # True also while the robot's firmware comes back, when there is nothing left to end.
+        why = f"{work} has the robot's board. Some seconds after its end the board is the robot's again."
         with self._nobody_commands(why):
             await self._disarm()
             # A session may have been about to start when the board was asked for.

@@ -61,11 +61,12 @@ class Progress:
     run: int | None = None
     done: int = 0
     done_weight: float = 0.0
+    first: tuple[float, float] | None = None
+    """When the first cell had ended (s), and its weight; the time before it, of a compiler, tells nothing."""
     phases: dict[int, Phase] = field(default_factory=dict)
 
     def describe(self, now: float) -> dict[str, Any]:
         """The progress as sent to the pages; `remaining` is for the whole document, null while unknown."""
-        elapsed = now - self.began
         remaining = sum(map(sum, self.weights)) - self.done_weight
         return {
             "run": self.run,
@@ -75,10 +76,26 @@ class Progress:
             "tests": len(self.tests),
             "cells": len(self.weights[self.test]),
             "done": self.done,
-            "elapsed": elapsed,
-            "remaining": elapsed * remaining / self.done_weight if self.done_weight else None,
+            "elapsed": now - self.began,
+            "remaining": self._seconds_for(remaining, now),
             "phase": {str(number): phase for number, phase in self.phases.items()},
         }
+
+    def count(self, number: int, now: float) -> None:
+        """Count a cell of the test that runs as done."""
+        weight = self.weights[self.test][number]
+        self.first = self.first or (now, weight)
+        self.done += 1
+        self.done_weight += weight
+
+    def _seconds_for(self, weight: float, now: float) -> float | None:
+        if self.first is None:
+            return None
+        began, first = self.first
+        done = self.done_weight - first
+        if done <= 0:
+            return None if weight > 0 else 0.0
+        return (now - began) * weight / done
 
 
 class CommTestRunner:
@@ -244,8 +261,7 @@ class CommTestRunner:
             case "cell" if progress.run is not None:
                 number = int(event["number"])
                 cell = await self.runs.add(progress.run, number, event["values"])
-                progress.done += 1
-                progress.done_weight += progress.weights[progress.test][number]
+                progress.count(number, self._clock.now())
                 progress.phases.pop(number, None)
                 return cell
             case "ended" if progress.run is not None:

@@ -69,7 +69,9 @@ class _Progress:
             echo(f"{words}, {active['cells']} cells")
         if active and cell:
             where = f"{cell['baud']:>6} baud, Arduino {cell['arduino_delay']:g} s, Pi {cell['pi_delay']:g} s"
-            times = f"{_clock(active['elapsed'])} elapsed, {_clock(active['remaining'] or 0)} remaining"
+            times = f"{_clock(active['elapsed'])} elapsed"
+            if active["remaining"] is not None:
+                times += f", {_clock(active['remaining'])} remaining"
             causes = ", ".join(cell["causes"])
             line = (
                 f"[{active['done']:>3}/{active['cells']}] {where:<42} {cell['rate']:.2f}  {times}  {causes}"

@@ -27,7 +27,7 @@ def pair(settings: Settings, role: str | None) -> None:
 
     role = role or ("viewer" if _has_operator(settings.data) else "operator")
     made = ask(settings.data, "POST", "/access/codes", {"role": role})
-    lines = invitation(made["link"], picture=shows_pictures(sys.stdout))
+    lines = invitation(made["link"], made["other_links"], picture=shows_pictures(sys.stdout))
     click.echo("\n".join([*lines, f"It makes the browser {_named(role)}."]))
 
 

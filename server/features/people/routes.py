@@ -108,9 +108,18 @@ async def make_code(
 ) -> MadeCode:
     """Make a pairing code for one browser, valid for ten minutes."""
     code = access.codes.make(body.role, caller.device)
-    link = pairing_link(settings.base_url(_called(request)), code)
-    expires = time.time() + CODE_SECONDS
-    return MadeCode(code=code, link=link, role=body.role, expires=expires, qr_svg=qr_svg(link))
+    # A shell's own address is no browser's: at another name than the start's a sign-in would not be found.
+    base = settings.base_url("" if caller.kind == "shell" else _called(request))
+    link = pairing_link(base, code)
+    return MadeCode(
+        code=code,
+        link=link,
+        other_links=[pairing_link(other, code) for other in settings.base_urls() if other != base],
+        only_here=settings.only_here,
+        role=body.role,
+        expires=time.time() + CODE_SECONDS,
+        qr_svg=qr_svg(link),
+    )
 
 
 @router.operation("GET /devices", Need.OPERATOR)

@@ -53,10 +53,15 @@ class NewCode(RequestBody):
 
 
 class MadeCode(BaseModel):
-    """A code for one pairing; `expires` in s since 1970, `qr_svg` is a picture of the link."""
+    """A code for one pairing; `expires` in s since 1970, `qr_svg` is a picture of the link.
+
+    `other_links` do the same at the server's other addresses; `only_here`: no other computer reaches any.
+    """
 
     code: str
     link: str
+    other_links: list[str]
+    only_here: bool
     role: Role
     expires: float
     qr_svg: str

@@ -31,14 +31,23 @@ def welcome(
             f"  {certificate.fingerprint}",
         ]
     if settings.only_here or not access.devices.operators:
-        lines += invitation(pairing_link(base, access.codes.make("operator")), picture=picture)
+        code = access.codes.make("operator")
+        links = [pairing_link(url, code) for url in settings.base_urls()]
+        lines += invitation(links[0], links[1:], picture=picture)
     return lines
 
 
-def invitation(link: str, *, picture: bool) -> list[str]:
-    """A pairing link for a person; as a picture too, where another device could follow it."""
+def invitation(link: str, others: list[str], *, picture: bool) -> list[str]:
+    """A pairing link for a person; as a picture too, where another device could follow it.
+
+    The `others` are the same at other addresses of the server, where the first may not work.
+    """
     lines = ["To sign a browser in, open this link. It works once, for ten minutes:", f"  {link}"]
-    if picture and not is_loopback(urlsplit(link).hostname or ""):
+    if is_loopback(urlsplit(link).hostname or ""):
+        return lines
+    if others:
+        lines += ["If it does not open on the other device:", *(f"  {other}" for other in others)]
+    if picture:
         lines.append(qr_text(link))
     return lines
 

@@ -35,7 +35,7 @@ def test_pages_shell_and_sockets_use_tls_only(encrypted: Settings) -> None:
         async with served.connect() as socket:
             assert (await next_text(socket, "hello"))["robot"] == "tested"
         code = (await served.api.post("/access/codes", json={})).json()
-        assert code["link"].startswith(f"https://127.0.0.1:{port}/#pair=")
+        assert code["link"].startswith(f"https://localhost:{port}/#pair=")
         paired = await served.api.post("/access/pair", json={"code": code["code"], "name": "tablet"})
         assert "secure" in paired.headers["set-cookie"].lower()
         announce(served.settings)

@@ -63,7 +63,7 @@ export class MissionEditing {
   /** the last dry run; null where there was none */
   trial = $state.raw<TriedText | null>(null);
   readonly #heads: Record<symbol, HTMLElement> = {};
-  readonly problems = $derived(placeProblems(this.written.check?.problems ?? []));
+  readonly problems = $derived(placeProblems(this.untouched ? [] : (this.written.check?.problems ?? [])));
 
   /** in words, of each step by its place, where the text is valid */
   readonly longest = $derived<Readonly<Record<string, string>>>(
@@ -100,7 +100,12 @@ export class MissionEditing {
 
   /** whether there is something that the library does not have */
   get unsaved(): boolean {
-    return this.opened && (this.#source.name === '' || this.written.text !== this.#source.text);
+    return this.opened && this.written.text !== this.#source.text;
+  }
+
+  /** whether it is a new mission to which nothing was added yet: nothing is lost with it, and nothing is wrong */
+  get untouched(): boolean {
+    return this.#source.name === '' && this.opened && !this.unsaved;
   }
 
   /** null where there are none, as of a text that is no TOML */
@@ -138,7 +143,7 @@ export class MissionEditing {
   create(): void {
     const cards = newDocument(this.names);
     const text = writeMission(tableOf(cards));
-    this.load({ name: '', text: '' }, text);
+    this.load({ name: '', text });
     this.#cards = { text, cards };
     this.#history = begin<Entry>(this.#cards);
     this.open = cards.root.id;

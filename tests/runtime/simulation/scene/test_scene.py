@@ -10,7 +10,7 @@ from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS, WHITE
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.simulation.scene import model as modelling
-from robot_runtime.simulation.scene.contents import Contents, SceneWater, Target
+from robot_runtime.simulation.scene.contents import START_TARGETS, Contents, SceneWater, Target
 from robot_runtime.simulation.scene.view import ObserverView
 from robot_runtime.simulation.scene.water import Kind
 from robot_runtime.simulation.water.surroundings import Basin
@@ -117,6 +117,14 @@ def test_a_card_is_detected_as_its_own_colour(scene: Make, contents: Contents) -
         assert (patch.box.x + patch.box.width / 2, patch.box.y + patch.box.height / 2) == pytest.approx(
             (0.5, 0.5), abs=0.02
         )
+
+
+@pytest.mark.parametrize("target", START_TARGETS, ids=lambda target: f"{target.colour} {target.shape}")
+def test_from_the_start_each_target_is_called_by_its_own_colour(scene: Make, target: Target) -> None:
+    one = scene(Contents(targets=(target,)))
+    for depth in (0.05, 0.5, 1.0):
+        found = find(one.render_camera(1.0, truth((0.0, 0.0, depth)), *SIZE), "yellow")
+        assert found is None or found.colour == target.colour
 
 
 @pytest.mark.parametrize("size", [(320, 240), (640, 480)])

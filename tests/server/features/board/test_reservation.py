@@ -58,7 +58,7 @@ def test_the_board_is_reserved_and_released(robot: Robot) -> None:
             processes = await health(served)
             for name in ("runtime", "link", "board"):
                 assert processes[name][0] == "absent"
-                assert "The communication test “grid” uses the robot's board" in processes[name][1]
+                assert "The communication test “grid” has the robot's board" in processes[name][1]
             for path, body in (("robot/commands/arm", None), ("sessions", {})):
                 answer = await served.api.post(f"/{path}", json=body)
                 assert (answer.status_code, "“grid”" in answer.json()["detail"]) == (409, True)

@@ -17,6 +17,8 @@ import pytest
 from websockets.asyncio.client import ClientConnection
 
 from robot_runtime.config import EventsConfig
+from robot_runtime.experiments.comm_test.document import read_document
+from server.features.comm_tests.runner import Progress
 from server.platform.settings import Settings
 from tests.board.rig import ROOT, build
 from tests.server.features.events.rig import Receiver
@@ -84,6 +86,18 @@ async def get(served: Served, path: str) -> Any:
     answer = await served.api.get(f"/comm-tests/{path}")
     assert answer.status_code == 200, answer.text
     return answer.json()
+
+
+def test_the_remaining_time_is_that_of_cells_and_not_of_the_start() -> None:
+    progress = Progress(read_document(text(QUICK)), "emulated", 0.0, [[1.0, 1.0, 2.0]])
+    assert progress.describe(60.0)["remaining"] is None
+    # A minute until the first cell has ended, most of it for a compiler.
+    progress.count(0, 60.0)
+    assert progress.describe(60.0)["remaining"] is None
+    progress.count(1, 62.0)
+    assert progress.describe(62.0)["remaining"] == pytest.approx(4.0)
+    progress.count(2, 66.0)
+    assert progress.describe(66.0)["remaining"] == 0
 
 
 def test_a_document_is_run_test_by_test_and_every_page_sees_it(settings: Settings) -> None:

@@ -37,6 +37,7 @@ def test_shell_commands_pair_and_revoke_people_and_programs(settings: Settings, 
             assert "Nobody is paired yet" in await say("access", "list")
             for name, role in (("first", "operator"), ("second", "viewer")):
                 told = await say("pair")
+                assert f"http://localhost:{served.settings.port}/#pair=" in told  # as the start says it
                 assert f"makes the browser {'an' if role == 'operator' else 'a'} {role}" in told
                 async with browser(served, None, name) as one:
                     code = told.partition("/#pair=")[2].split()[0]

@@ -19,7 +19,7 @@ def lines(served: Served, settings: Settings, *, picture: bool = False) -> list[
 
 
 def code_in(lines: list[str]) -> str:
-    (link,) = (line for line in lines if "/#pair=" in line)
+    link = next(line for line in lines if "/#pair=" in line)
     return link.partition("/#pair=")[2]
 
 
@@ -45,6 +45,7 @@ def test_on_a_network_address_a_link_is_printed_only_while_there_is_no_operator(
                 told = lines(served, public, picture=True)
             link = f"http://turtle.local:{public.port}/#pair={code_in(told[:-1])}"
             assert told[-1] == qr_text(link)
+            assert f"  http://192.168.0.7:{public.port}/#pair={code_in(told)}" in told
             assert any("every computer in all networks" in line for line in told)
             async with browser(served, "operator"):
                 told = lines(served, public, picture=True)
@@ -70,6 +71,9 @@ def test_no_qr_code_for_the_loopback_address(settings: Settings) -> None:
         ("0.0.0.0", ("localhost", "turtle.local", "192.168.0.7"), "", "http://turtle.local:8000"),
         ("0.0.0.0", ("localhost", "turtle.local", "192.168.0.7"), "192.168.0.7", "http://192.168.0.7:8000"),
         ("0.0.0.0", ("localhost", "turtle.local"), "localhost", "http://turtle.local:8000"),
+        ("0.0.0.0", ("localhost", "turtle.local"), "10.78.0.1", "http://10.78.0.1:8000"),
+        ("0.0.0.0", ("localhost", "turtle.local"), "127.0.0.1", "http://turtle.local:8000"),
+        ("::", ("localhost", "turtle.local"), "[fd00::7]", "http://[fd00::7]:8000"),
         ("::1", ("[::1]",), "", "http://[::1]:8000"),
         ("192.168.0.7", ("localhost", "192.168.0.7"), "localhost", "http://192.168.0.7:8000"),
     ],
