@@ -241,6 +241,24 @@ describe('Live', () => {
     expect(depths().map((depth) => depth?.toFixed(1))).toEqual(['0.7', '0.8']);
   });
 
+  it('gives up a connection that died while its computer slept within a second of being looked at again', () => {
+    server().greet();
+    // The page's own clock stood still meanwhile, so that the last message seems to be of a moment ago.
+    document.dispatchEvent(new Event('visibilitychange'));
+    expect(JSON.parse(server().sent.at(-1) ?? '')).toMatchObject({ op: 'ping' });
+    vi.advanceTimersByTime(2000);
+    expect(live.connection).toBe('lost');
+  });
+
+  it('keeps a connection that answers when it is looked at again', () => {
+    server().greet();
+    document.dispatchEvent(new Event('visibilitychange'));
+    server().tell({ op: 'pong', id: 1 });
+    vi.advanceTimersByTime(3000);
+    expect(live.connection).toBe('open');
+    expect(ServerEnd.opened).toHaveLength(1);
+  });
+
   it('keeps its rows where a server that was just started has fewer of them', () => {
     server().greet();
     server().give(depthBlock(99, [0.1], 0));

@@ -67,14 +67,21 @@ export class LiveFeed {
     this.#socket.start();
     const rest = this.live.beat();
     const land = this.pilot.start();
-    const wake = () => this.#socket.retryNow();
+    const retry = () => this.#socket.retryNow();
+    const wake = () => {
+      if (!document.hidden) this.#socket.woke();
+    };
     const { consider } = this.#control;
-    window.addEventListener('online', wake);
+    window.addEventListener('online', retry);
+    window.addEventListener('pageshow', wake);
+    document.addEventListener('visibilitychange', wake);
     document.addEventListener('visibilitychange', consider);
     return () => {
       rest();
       land();
-      window.removeEventListener('online', wake);
+      window.removeEventListener('online', retry);
+      window.removeEventListener('pageshow', wake);
+      document.removeEventListener('visibilitychange', wake);
       document.removeEventListener('visibilitychange', consider);
       this.#socket.end();
       this.live.stop.end();

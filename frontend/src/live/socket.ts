@@ -4,6 +4,8 @@ import { socketProtocols } from '../pageSecret';
 
 const PING_EVERY = 1000;
 const SILENT_AFTER = 4000;
+/** ms that a connection has to show that it lives, after its computer may have slept */
+const WOKEN_AFTER = 1000;
 const RETRY_FIRST = 250;
 const RETRY_MOST = 3000;
 /** close code of a server that will not serve this page (RFC 6455, 7.4.1) */
@@ -70,6 +72,13 @@ export class LiveSocket {
     if (this.#socket !== null || this.#ended) return;
     clearTimeout(this.#timer);
     this.#open();
+  }
+
+  /** The page is looked at again, perhaps after a sleep in which the connection died, and its clock stood still. */
+  woke(): void {
+    this.retryNow();
+    this.#heard = Math.min(this.#heard, performance.now() - SILENT_AFTER + WOKEN_AFTER);
+    this.#beat();
   }
 
   #open(): void {
