@@ -9,6 +9,7 @@ from typing import Any
 
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Motor
+from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.transport.blocks import Block, read_rows
 from server.features.sessions.chunks import unpack
 
@@ -84,4 +85,12 @@ class SampleBuffer:
             place = TURNING.index(self._loop)
             for time, tick in read_rows(block):
                 turning: Any = tick
-                self.curve.add(time, turning.set_point[place], turning.measured[place], turning.output[place])
+                self._add_angle(
+                    time, turning.set_point[place], turning.measured[place], turning.output[place]
+                )
+
+    def _add_angle(self, time: float, set_point: float, value: float, output: float) -> None:
+        """Add a tick of an angle without the jump at ±π: each set point the short way from the one before."""
+        before = self.curve.set_points[-1] if self.curve.set_points else set_point
+        near = before + wrap_angle(set_point - before)
+        self.curve.add(time, near, near + wrap_angle(value - set_point), output)

@@ -1,12 +1,15 @@
 """Figures of step responses and relay cycles, against systems with closed-form solutions."""
 
-from math import acos, degrees, exp, pi, sqrt
+from math import acos, degrees, exp, nan, pi, radians, sqrt
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robot_runtime.contract.documents import Turning
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block, row
 from server.features.tuning.curve import SampleBuffer, TuningCurve
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.figures import measure_response
@@ -76,6 +79,21 @@ def test_angles_are_reported_in_degrees() -> None:
     assert found["settling_near"] == pytest.approx(1.0)
     units = {one.name: one.unit for one in meanings("heading")}
     assert (units["steady_error"], units["iae"]) == ("°", "° s")
+
+
+def test_a_step_across_south_is_as_small_as_it_is() -> None:
+    """From 170° to -170° are 20°, also where the value swings over the edge and back."""
+    samples = SampleBuffer("heading")
+    for tick in range(60):
+        set_point = radians(170.0 if tick < 20 else -170.0)
+        value = radians(170.0 if tick < 30 else -168.0 if tick < 40 else -171.0)
+        columns = {"set_point": set_point, "measured": value, "output": 0.1}
+        turning = Turning(**{name: (one, nan, nan) for name, one in columns.items()})
+        samples.see(Block.of(BY_NAME["turning"], 1, tick, row(100.0 + tick / 10, turning.to_bytes())))
+    found = figures(samples.curve.between(100.0, 107.0, 102.0), "heading")
+    assert found["overshoot"] == pytest.approx(10.0, abs=0.01)
+    assert found["steady_error"] == pytest.approx(1.0, abs=0.001)
+    assert found["iae"] == pytest.approx(20.0 * 1.0 + 2.0 * 1.0 + 1.0 * 2.0, abs=1.5)
 
 
 @pytest.mark.parametrize("loop", ["depth", "roll"])
