@@ -7,12 +7,13 @@ from dataclasses import replace
 from math import inf
 from pathlib import Path
 
-from robot_runtime.config import Config, craft_in, craft_path, load
+from robot_runtime.config import Config, craft_in, craft_path, load_with_text
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.control.controllers import check_control
 from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.durable_files import keep_private
 from robot_runtime.profile import fit_to_this_computer
+from robot_runtime.provenance import hash_software
 from robot_runtime.robot import Robot
 from robot_runtime.transport.lifetime import (
     add_server_options,
@@ -38,7 +39,8 @@ def main() -> int:
     if options.with_parent:
         end_with_parent()
     try:
-        config = fit_to_this_computer(load(options.config))
+        config, text = load_with_text(options.config)
+        config = fit_to_this_computer(config)
         check_control(config.control)
         craft = craft_in(craft_path(config, options.config, options.data))
         config = replace(config, control=tune_to_craft(config.control, craft))
@@ -47,6 +49,7 @@ def main() -> int:
             vision_file = VisionSettingsFile(options.data / "vision.json")
             robot = Robot(config, port, messages, heartbeat=options.heartbeat, vision_file=vision_file)
             robot.serve()
+            messages.serve("query/provenance", lambda _: {"configuration": text, "software": hash_software()})
             end_on_request(options, robot.close)
             robot.run()
     except (ConfigError, OSError) as problem:

@@ -262,13 +262,19 @@ class Config:
 
 def load(path: Path) -> Config:
     """Reads the configuration from this file. Raises ConfigError if it cannot be read or used."""
+    return load_with_text(path)[0]
+
+
+def load_with_text(path: Path) -> tuple[Config, str]:
+    """Reads the configuration and its text, which the file may not hold later. Raises as `load`."""
     try:
-        table = read_toml(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        table = read_toml(text)
     except (OSError, UnicodeDecodeError) as problem:
         raise ConfigError(f"{path} cannot be read: {problem}") from problem
     except TomlError as problem:
         raise ConfigError(f"{path} cannot be read: it {problem}") from problem
-    return parse(Config, table, DocumentEntry(path.name))
+    return parse(Config, table, DocumentEntry(path.name)), text
 
 
 def craft_path(config: Config, path: Path, data: Path) -> Path:

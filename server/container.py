@@ -47,6 +47,7 @@ from server.features.sessions.auto_recording import AutoRecorder
 from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.clock_correction import ClockCorrection
+from server.features.sessions.provenance import ProvenanceWatch
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.resume import InterruptedSession, find_missing
 from server.features.sessions.retention import RetentionWorker
@@ -141,19 +142,24 @@ class Container:
         )
 
     def _add_sessions(self) -> None:
-        self.recorder = Recorder(self.store, self.clock, self.notices, self._notify_session)
+        self.provenance = ProvenanceWatch(
+            self.settings, lambda: self.bridge.query("provenance"), self.notices
+        )
+        self.recorder = Recorder(self.store, self.clock, self.notices, self._notify_session, self.provenance)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.bookmarks = Bookmarks(self.store, self.clock, self.recorder)
         self.mission_marks = MissionMarks(self.recorder, self.bookmarks, self.catalogue)
-        self.retention = RetentionWorker(self.store, self.settings, self.notices, self.clock)
         self.clock_correction = ClockCorrection(self.store, self.notices, self.clock, self.catalogue.notify)
         self.arming = AutoRecorder(self.recorder, self.clock, self.notices, self._armed_row)
         self.jobs = Jobs(self.settings.data, self.store, self.clock)
+        self.retention = RetentionWorker(
+            self.store, self.settings, self.notices, self.clock, self.jobs.see_purged
+        )
         self.imports = Imports(self.settings.data, self.store)
         self.comparison = ComparisonWorker(self.settings.data.database)
 
     def _add_comm_tests(self) -> None:
-        board = RobotBoard(self.settings, self.notices.notify)
+        board = RobotBoard(self.settings, self.notices.notify, self.provenance.read_firmware)
         self.board_reservation = BoardReservation(
             board, self.bridge, self.monitor, self.processes, self.clock, self._board_occupied
         )
@@ -249,6 +255,7 @@ class Container:
                     self.clock_correction.run(),
                     self.arbiter.run(),
                     self.lease_sync.run(),
+                    self.provenance.run(),
                     self.watchdog.run(),
                     self.examination.at_start(),
                     self.tuning.run(),
@@ -327,6 +334,7 @@ class Container:
                 states.append(block)
         if states:
             self.lease_sync.see_run(self.bridge.run)
+            self.provenance.see_run(self.bridge.run)
             if self.settings.sessions.record_at_arming:
                 self.arming.see(states)
 
@@ -392,6 +400,8 @@ class Container:
     async def _notify_health(self) -> None:
         while True:
             self.arming.tick()
+            board = self.processes.get("board")
+            await self.provenance.see_board(None if board is None else board.pid)
             health = self.monitor.health()
             parts = [part.model_dump() for part in health.parts]
             self.hub.notify({"op": "health", "parts": parts})

@@ -58,7 +58,7 @@ def keep_configuration(settings: Settings) -> None:
         return
     path = settings.data.last_config
     try:
-        text = settings.config.read_bytes()
+        text = settings.config_text.encode()
         if not path.exists() or path.read_bytes() != text:
             write_whole(path, text)
     except OSError as problem:

@@ -6,6 +6,8 @@ from sqlmodel import Field, Index, SQLModel, UniqueConstraint
 
 IDENTIFIER_MAX = 2**63 - 1
 """SQLite's largest number."""
+NEVER_AGAIN = {"sqlite_autoincrement": True}
+"""A number is never given again: pages, links, caches, exports that wait and the audit log hold on to it."""
 
 
 class SessionRow(SQLModel, table=True):
@@ -19,7 +21,7 @@ class SessionRow(SQLModel, table=True):
     """
 
     __tablename__ = "session"
-    __table_args__ = (Index("session_identifier", "identifier", unique=True),)
+    __table_args__ = (Index("session_identifier", "identifier", unique=True), NEVER_AGAIN)
 
     id: int | None = Field(default=None, primary_key=True)
     identifier: str = Field(default_factory=lambda: uuid4().hex)
@@ -64,6 +66,7 @@ class BookmarkRow(SQLModel, table=True):
     """A bookmark: a moment (s, steady clock) with a text, and when it was made (UTC, s since 1970)."""
 
     __tablename__ = "marker"
+    __table_args__ = (NEVER_AGAIN,)
 
     id: int | None = Field(default=None, primary_key=True)
     session_id: int = Field(foreign_key="session.id", index=True)
@@ -122,6 +125,7 @@ class CommTestRun(SQLModel, table=True):
     """
 
     __tablename__ = "comm_test_run"
+    __table_args__ = (NEVER_AGAIN,)
 
     id: int | None = Field(default=None, primary_key=True)
     name: str
@@ -178,12 +182,11 @@ class DeviceRow(SQLModel, table=True):
     `secret` is the SHA-256 of what it proves itself with. Kinds: "browser" (a cookie), "program" (a bearer
     token). `page_secret` is the SHA-256 of a browser's second secret, which its page keeps; a browser that
     was paired before there was one has None, and signs in again.
-    A number is never given again, so that old events do not speak of somebody new.
     `limited` is a token that may not administer, in any role; it never ends where `ends` is None.
     """
 
     __tablename__ = "device"
-    __table_args__ = (Index("device_secret", "secret", unique=True), {"sqlite_autoincrement": True})
+    __table_args__ = (Index("device_secret", "secret", unique=True), NEVER_AGAIN)
 
     id: int | None = Field(default=None, primary_key=True)
     name: str
@@ -198,16 +201,20 @@ class DeviceRow(SQLModel, table=True):
 
 
 class ProfileRow(SQLModel, table=True):
-    """Parameters stored under a name; `parameters` as JSON. Time is UTC (s since 1970)."""
+    """Parameters stored under a name; `parameters` as JSON. Time is UTC (s since 1970).
+
+    `author` is who stored them; empty where an older version did.
+    """
 
     __tablename__ = "profile"
-    __table_args__ = (UniqueConstraint("name", name="profile_name"),)
+    __table_args__ = (UniqueConstraint("name", name="profile_name"), NEVER_AGAIN)
 
     id: int | None = Field(default=None, primary_key=True)
     name: str
     note: str = ""
     saved: float
     parameters: str
+    author: str = ""
 
 
 class ParameterChangeRow(SQLModel, table=True):
@@ -217,6 +224,7 @@ class ParameterChangeRow(SQLModel, table=True):
     """
 
     __tablename__ = "parameter_change"
+    __table_args__ = (NEVER_AGAIN,)
 
     id: int | None = Field(default=None, primary_key=True)
     time: float
@@ -232,11 +240,11 @@ class TuningRunRow(SQLModel, table=True):
 
     Kinds: "step", "relay". States: "running", "complete", "stopped", "failed", "interrupted". `settings`
     (what was asked), `parameters` (the controller in force, and what a PID's gains may be) and `figures` are
-    JSON; `curve` is what was measured, in zlib. A number is never given again: pages hold on to them.
+    JSON; `curve` is what was measured, in zlib.
     """
 
     __tablename__ = "tuning_run"
-    __table_args__ = ({"sqlite_autoincrement": True},)
+    __table_args__ = (NEVER_AGAIN,)
 
     id: int | None = Field(default=None, primary_key=True)
     name: str
@@ -252,12 +260,17 @@ class TuningRunRow(SQLModel, table=True):
 
 
 class LayoutRow(SQLModel, table=True):
-    """A named arrangement of the panels of Operate; `document` as JSON. Time is UTC (s since 1970)."""
+    """A named arrangement of the panels of Operate; `document` as JSON. Time is UTC (s since 1970).
+
+    `version` counts its changes from 1; `author` is who made the last one, empty where an older version did.
+    """
 
     __tablename__ = "layout"
-    __table_args__ = (UniqueConstraint("name", name="layout_name"),)
+    __table_args__ = (UniqueConstraint("name", name="layout_name"), NEVER_AGAIN)
 
     id: int | None = Field(default=None, primary_key=True)
     name: str
     saved: float
     document: str
+    author: str = ""
+    version: int = 1

@@ -23,7 +23,7 @@ from robot_runtime.config import (
     ZenohConfig,
     craft_in,
     craft_path,
-    load,
+    load_with_text,
 )
 from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
@@ -133,6 +133,8 @@ class Settings:
 
     data: DataFolder
     config: Path
+    config_text: str = ""
+    """The text of `config` as it was read; the file may have changed since."""
     robot: str = "turtle"
     mode: Mode = "emulated"
     profile: Profile = "full"
@@ -232,7 +234,7 @@ def read_settings(
     folder = data_folder(data, environment)
     config = config or find_config(folder)
     try:
-        loaded = load(config)
+        loaded, text = load_with_text(config)
         check_control(loaded.control)
     except ConfigError as problem:
         raise SetupError(f"{problem}. Correct the file, or name another with --config.") from problem
@@ -256,6 +258,7 @@ def read_settings(
     return Settings(
         data=folder,
         config=config.absolute(),
+        config_text=text,
         robot=loaded.robot.name,
         mode=loaded.robot.mode,
         profile=profile_here(loaded),

@@ -149,7 +149,7 @@ class Work:
         jobs.open()
         working = asyncio.create_task(jobs.run())
         found = find_row(store, session)
-        job = jobs.add(found, NewExport(session=session, format="archive"))
+        job = await jobs.add(found, NewExport(session=session, format="archive"))
         while job.state in ("waiting", "running"):
             await asyncio.sleep(0.01)
             job = jobs.find(job.id)

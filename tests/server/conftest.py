@@ -17,8 +17,10 @@ def settings() -> Iterator[Settings]:
         folder = DataFolder(Path(name) / "data")
         make_folders(folder)
         config = Path(name) / "robot.toml"
-        config.write_text('[robot]\nname = "tested"\n', encoding="utf-8")
-        yield Settings(data=folder, config=config, robot="tested", page=Path(name) / "page")
+        text = '[robot]\nname = "tested"\n'
+        config.write_text(text, encoding="utf-8")
+        page = Path(name) / "page"
+        yield Settings(data=folder, config=config, config_text=text, robot="tested", page=page)
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+from collections.abc import Collection
 from typing import Any
 
 from alembic import command
@@ -50,11 +51,12 @@ def make_session(database: sqlite3.Connection) -> None:
     database.commit()
 
 
-def fill_tables(database: sqlite3.Connection) -> None:
-    """Add a row to every empty table, with a value in each of its columns; committed."""
+def fill_tables(database: sqlite3.Connection, skip: Collection[str] = ()) -> None:
+    """Add a row to every empty table, with a value in each of its columns but `skip`; committed."""
     for table, rows in read_tables(database).items():
         if not rows:
-            columns = [(name, kind) for _, name, kind, *_ in database.execute(f"PRAGMA table_info({table})")]
+            described = database.execute(f"PRAGMA table_info({table})")
+            columns = [(name, kind) for _, name, kind, *_ in described if name not in skip]
             names, marks = ", ".join(name for name, _ in columns), ", ".join("?" * len(columns))
             values = [SOMETHING[kind] for _, kind in columns]
             database.execute(f"INSERT INTO {table} ({names}) VALUES ({marks})", values)

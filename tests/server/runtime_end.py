@@ -66,6 +66,8 @@ class RuntimeEnd:
         self._messages.serve("query/state", lambda _: self.state)
         self.parameters: dict[str, Any] = {"time": 1.0, "parameters": []}
         self._messages.serve("query/parameters", lambda _: self.parameters)
+        self.provenance = {"configuration": '[robot]\nname = "tested"\n', "software": "0123456789abcdef"}
+        self._messages.serve("query/provenance", lambda _: self.provenance)
         self.answer: dict[str, Any] = {}
         """What every command is answered with."""
         self._cache = ReplayCache(self._messages.run, SteadyClock())

@@ -2135,6 +2135,8 @@ export interface paths {
         /**
          * Return the first small camera picture from this time on
          * @description Return the first small camera picture from this time on.
+         *
+         *     With the ETag of an earlier answer in If-None-Match it is 304.
          */
         get: operations["getThumbnail"];
         put?: never;
@@ -4203,6 +4205,12 @@ export interface components {
             file: string;
             /** Id */
             id: string;
+            /**
+             * Identifier
+             * @description the session's identifier; empty for a file of an older version
+             * @default
+             */
+            identifier: string;
             /**
              * Made
              * Format: date-time
@@ -8728,6 +8736,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -6,7 +6,7 @@ upload and removed after the robot's firmware is back. So a killed server restor
 
 import asyncio
 import sys
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
@@ -36,13 +36,20 @@ LINES_SHOWN = 2
 class RobotBoard:
     """The robot's board, whose port nobody else has open. `notify` reports the state of its firmware.
 
-    `problem` says why the firmware could not be restored, and what to do; None if it is in place.
+    `problem` says why the firmware could not be restored, and what to do; None if it is in place. `restored`
+    is awaited once it is.
     """
 
-    def __init__(self, settings: Settings, notify: Notify) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        notify: Notify,
+        restored: Callable[[], Awaitable[None]] = lambda: asyncio.sleep(0),
+    ) -> None:
         self.problem: str | None = None
         self._settings = settings
         self._notify = notify
+        self._restored = restored
         link, folder = settings.link, settings.data
         self._port, reset = link.port, link.reset
         if settings.emulated_board:
@@ -93,6 +100,7 @@ class RobotBoard:
             return
         await asyncio.to_thread(_remove_note, self._settings.data.firmware_away)
         self.problem = None
+        await self._restored()
         self._notify("firmware", "info", "The robot's firmware is back on its board.")
 
     async def upload(self, program: Path) -> str:

@@ -8,6 +8,7 @@ from typing import Generic, TypeVar
 from server.platform.models import SessionRow
 
 T = TypeVar("T")
+_Place = tuple[int | None, str, object]
 
 
 class ResultCache(Generic[T]):
@@ -17,12 +18,12 @@ class ResultCache(Generic[T]):
         self._most = most
         self._size = size
         self._total = 0
-        self._results: OrderedDict[tuple[str, object], T] = OrderedDict()
+        self._results: OrderedDict[_Place, T] = OrderedDict()
         self._lock = Lock()
 
     def get(self, row: SessionRow, key: object) -> T | None:
         """The stored result about a session; None if there is none or it was dropped."""
-        place = row.identifier, key
+        place = _place(row, key)
         with self._lock:
             if place in self._results:
                 self._results.move_to_end(place)
@@ -32,7 +33,7 @@ class ResultCache(Generic[T]):
         """Store a result, in place of the oldest ones; none about a session that is still recording."""
         if row.state == "recording" or self._size(result) > self._most:
             return
-        place = row.identifier, key
+        place = _place(row, key)
         with self._lock:
             if place in self._results:
                 self._total -= self._size(self._results.pop(place))
@@ -48,3 +49,8 @@ class ResultCache(Generic[T]):
             result = function()
             self.put(row, key, result)
         return result
+
+
+def _place(row: SessionRow, key: object) -> _Place:
+    # A session that is imported once more has its identifier, and perhaps other samples.
+    return row.id, row.identifier, key

@@ -1,11 +1,11 @@
 """Writes one export, or checks one archive, in a process beside the server.
 
-    python -m server.features.exports write DATABASE SESSION OPTIONS PATH
+    python -m server.features.exports write DATABASE IDENTIFIER OPTIONS PATH
     python -m server.features.exports examine PATH ROWS
 
-ROWS is the file to which `examine` writes the rows of the session. OPTIONS are ExportOptions as JSON. It
-prints lines of JSON: {"progress": 0..1}, and last {"bytes", "sha256"}, {"examined": true} or
-{"problem": text}.
+IDENTIFIER is the session's. ROWS is the file to which `examine` writes the rows of the session. OPTIONS are
+ExportOptions as JSON. It prints lines of JSON: {"progress": 0..1}, and last {"bytes", "sha256"},
+{"examined": true} or {"problem": text}.
 """
 
 import json
@@ -35,7 +35,7 @@ def main() -> int:
     try:
         match sys.argv[1:]:
             case ["write", database, session, options, path]:
-                _write(Path(database), int(session), options, Path(path))
+                _write(Path(database), session, options, Path(path))
             case ["examine", path, rows]:
                 _examine(Path(path), Path(rows))
             case _:
@@ -49,18 +49,17 @@ def main() -> int:
     return 0
 
 
-def _write(database: Path, session: int, asked: str, path: Path) -> None:
+def _write(database: Path, identifier: str, asked: str, path: Path) -> None:
     from server.features.exports.files import write_part
     from server.features.exports.formats import check
     from server.features.exports.schemas import ExportOptions
-    from server.features.exports.selection import ExportSelection
-    from server.features.sessions.session import find_row
+    from server.features.exports.selection import ExportSelection, find_identified
     from server.platform.store import Reader
 
     store, options = Reader(database), ExportOptions.model_validate_json(asked)
-    source = ExportSelection(store, find_row(store, session), options, _Progress().tell)
-    written = write_part(path, lambda output: check(options).write(store, source, output))
-    _report(written._asdict())
+    source = ExportSelection(store, find_identified(store, identifier), options, _Progress().tell)
+    kind = check(options)
+    _report(write_part(path, lambda output: kind.write_unpurged(store, source, output))._asdict())
 
 
 def _examine(path: Path, rows: Path) -> None:

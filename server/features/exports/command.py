@@ -55,7 +55,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
             source = ExportSelection(store, find_row(store, session), options, _Progress().tell)
             path = output or Path(file_name(source, kind.ending))
             part = path.with_name(path.name + PART)
-            written = write_part(part, lambda file: kind.write(store, source, file))
+            written = write_part(part, lambda file: kind.write_unpurged(store, source, file))
             put_in_place(part, path)
     except ValidationError as problem:
         raise SetupError("; ".join(name_error(error) for error in problem.errors())) from problem

@@ -1,9 +1,10 @@
 """Runs `python -m server.features.exports` and reads its reports."""
 
+import asyncio
 import json
 import sys
 from collections.abc import Callable
-from signal import SIGTERM
+from signal import SIGKILL, SIGTERM
 from typing import Any
 
 from server.processes.exit_status import describe_status
@@ -11,6 +12,10 @@ from server.processes.process import PipedProcess
 
 ERROR_BYTES = 2_000
 """Length of the stored end of the output that is no JSON, which explains a failure."""
+CANCEL_SECONDS = 3.0
+"""Time that a cancelled process has to end by itself."""
+SILENT_SECONDS = 600.0
+"""Time without a report after which a process counts as hung: it reports several times a second."""
 
 
 class ExportProcessError(Exception):
@@ -24,7 +29,9 @@ class ExportProcess:
         self._arguments = arguments
         self._progress = progress
         self._process: PipedProcess | None = None
-        self._cancelled = False
+        self._loop = asyncio.get_running_loop()
+        self._watch: asyncio.TimerHandle | None = None
+        self._ended_because = ""
         self._partial = b""
         self._errors = b""
         self._last: dict[str, Any] = {}
@@ -37,12 +44,17 @@ class ExportProcess:
             )
         except OSError as problem:
             raise ExportProcessError(f"A process for it cannot be started: {problem.strerror}.") from problem
+        if self._ended_because:
+            self._process.signal(SIGKILL)
+        self._see_alive()
         try:
             status = await self._process.wait()
         finally:
             self._process.close()
-        if self._cancelled:
-            raise ExportProcessError("It was cancelled.")
+            if self._watch is not None:
+                self._watch.cancel()
+        if self._ended_because:
+            raise ExportProcessError(self._ended_because)
         if "problem" in self._last:
             raise ExportProcessError(str(self._last["problem"]))
         if status != 0:
@@ -51,13 +63,23 @@ class ExportProcess:
             raise ExportProcessError(f"The process for it {describe_status(status)}.{end}")
         return self._last
 
-    def cancel(self) -> None:
-        """Terminate the process."""
-        self._cancelled = True
+    def cancel(self, reason: str = "It was cancelled.") -> None:
+        """End the process, by force where it does not end by itself; `run` raises the reason."""
+        self._ended_because = reason
         if self._process is not None:
             self._process.signal(SIGTERM)
+            self._loop.call_later(CANCEL_SECONDS, self._process.signal, SIGKILL)
+
+    def _see_alive(self) -> None:
+        if self._watch is not None:
+            self._watch.cancel()
+        self._watch = self._loop.call_later(SILENT_SECONDS, self._end_hung)
+
+    def _end_hung(self) -> None:
+        self.cancel(f"The process for it made no progress for {SILENT_SECONDS / 60:.0f} minutes.")
 
     def _read_output(self, data: bytes) -> None:
+        self._see_alive()
         *lines, self._partial = (self._partial + data).split(b"\n")
         for line in lines:
             try:

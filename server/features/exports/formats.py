@@ -26,6 +26,11 @@ class ExportFormat(NamedTuple):
     check: Callable[[], None] = lambda: None
     """Raises ExportRequestError if a package for it is missing."""
 
+    def write_unpurged(self, store: Reader, source: ExportSelection, output: BinaryIO) -> None:
+        """Write the session. Raises ExportRequestError where it was purged meanwhile."""
+        self.write(store, source, output)
+        source.refuse_purged()
+
 
 def write_report(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Write the figures and charts of a whole session as HTML. Raises StoreError, RecordingError."""

@@ -1,8 +1,8 @@
 """Export jobs: they run one after the other, each in its own process; their files are stored for some days.
 
-The folder holds `<id>` and its description `<id>.json` for each file. The description is written first, and
-the file gets its name last: a killed server leaves no half file under that name, and the next start removes
-the rest.
+The folder holds the description `<id>.json` of each job, and the file `<id>` of one that is done. A job names
+its session by the identifier. The description is written first, and the file gets its name last: a killed
+server leaves no half file under that name, and the next start lists the job as failed and removes the rest.
 """
 
 import asyncio
@@ -37,6 +37,10 @@ JOBS_MAX = 200
 """Waiting, running and stored."""
 CLEAN_SECONDS = 3600.0
 DESCRIBED = ".json"
+ENDED = "The server ended before the file was complete. Export the session again."
+GONE = "The file is no longer there. Export the session again."
+PURGED_WAITING = "The session was purged before its export began."
+PURGED_RUNNING = "The session was purged before the file was complete, so there is none."
 
 
 class UnknownExportError(NotFoundError):
@@ -65,8 +69,10 @@ class Jobs:
             for path in self._folder.iterdir():
                 if path.suffix == DESCRIBED:
                     self._find(path)
+            done = [job.id for job in self._jobs.values() if job.state == "done"]
             for path in self._folder.iterdir():
-                if path.name.removesuffix(DESCRIBED) not in self._jobs:
+                name = path.name.removesuffix(DESCRIBED)
+                if name not in self._jobs or (path.name == name and name not in done):
                     path.unlink()
         except OSError as problem:
             log.warning("the exports in %s cannot be read: %s", self._folder, problem)
@@ -85,19 +91,21 @@ class Jobs:
         """The path of a job's file."""
         return self._folder / job.id
 
-    def add(self, row: SessionRow, options: NewExport) -> Job:
+    async def add(self, row: SessionRow, options: NewExport) -> Job:
         """Queue an export.
 
-        Raises ExportRequestError for options that do not fit, RefusedError if there are too many jobs.
+        Raises ExportRequestError for options that do not fit, RefusedError if there are too many jobs, and
+        FileWriteError if the disk is full.
         """
-        if len(self._jobs) >= JOBS_MAX:
-            raise RefusedError(f"There are {JOBS_MAX} exports already. Delete some first.")
         plain = ExportOptions.model_validate(options.model_dump(exclude={"session"}))
         kind = check(plain)
-        source = ExportSelection(self._store, row, plain)
+        source = await asyncio.to_thread(ExportSelection, self._store, row, plain)
+        if len(self._jobs) >= JOBS_MAX:
+            raise RefusedError(f"There are {JOBS_MAX} exports already. Delete some first.")
         job = Job(
             id=token_hex(8),
             session=options.session,
+            identifier=row.identifier,
             session_name=row.name,
             wanted=plain,
             state="waiting",
@@ -106,8 +114,21 @@ class Jobs:
             file=file_name(source, kind.ending),
         )
         self._jobs[job.id] = job
+        try:
+            await asyncio.to_thread(self._describe, job)
+        except BaseException:
+            self._jobs.pop(job.id, None)
+            raise
         self._wake.set()
         return job
+
+    def see_purged(self, session: int) -> None:
+        """End the exports of a session that is being purged; finished files stay."""
+        for job in [job for job in self._jobs.values() if job.session == session]:
+            if job.state == "waiting":
+                self._change(job.id, state="failed", problem=PURGED_WAITING)
+            elif self._running is not None and self._running[0] == job.id:
+                self._running[1].cancel(PURGED_RUNNING)
 
     def remove(self, job: Job) -> None:
         """Cancel a job, or delete its file. Raises RefusedError if that fails."""
@@ -139,7 +160,7 @@ class Jobs:
     async def _make(self, number: str) -> None:
         job = self._jobs[number]
         part = self._folder / (number + PART)
-        place = str(self._database), str(job.session)
+        place = str(self._database), job.identifier
         arguments = ["write", *place, job.wanted.model_dump_json(), str(part)]
         child = ExportProcess(arguments, lambda share: self._change(number, progress=share))
         self._running = number, child
@@ -147,7 +168,8 @@ class Jobs:
         try:
             written = await child.run()
             done = job.model_copy(update={"state": "done", "progress": 1.0, **written})
-            await asyncio.to_thread(self._keep, done, part)
+            await asyncio.to_thread(self._describe, done)
+            await asyncio.to_thread(put_in_place, part, self.path(done))
             if number in self._jobs:
                 self._jobs[number] = done
             else:
@@ -161,14 +183,18 @@ class Jobs:
             # What cannot be deleted now is deleted at the next start; the jobs that wait go on.
             with suppress(OSError):
                 await asyncio.to_thread(part.unlink, missing_ok=True)
+            if number in self._jobs and self._jobs[number].state == "failed":
+                # Where it cannot be written, the next server tells another reason.
+                with suppress(FileWriteError):
+                    await asyncio.to_thread(self._describe, self._jobs[number])
 
-    def _keep(self, done: Job, part: Path) -> None:
-        described = self._description(done)
+    def _describe(self, job: Job) -> None:
+        described = self._description(job)
         try:
-            write_whole(described, done.model_dump_json().encode())
+            make_folder(self._folder)
+            write_whole(described, job.model_dump_json().encode())
         except OSError as problem:
             raise FileWriteError(explain_write_error(problem, described)) from problem
-        put_in_place(part, self.path(done))
 
     def _unlink(self, job: Job) -> None:
         self.path(job).unlink(missing_ok=True)
@@ -183,8 +209,13 @@ class Jobs:
             job = Job.model_validate_json(described.read_bytes())
         except (ValidationError, OSError):
             return
-        if job.state == "done" and job.id == described.stem and self.path(job).is_file():
-            self._jobs[job.id] = job
+        if job.id != described.stem:
+            return
+        if job.state in ("waiting", "running"):
+            job = job.model_copy(update={"state": "failed", "problem": ENDED})
+        elif job.state == "done" and not self.path(job).is_file():
+            job = job.model_copy(update={"state": "failed", "problem": GONE})
+        self._jobs[job.id] = job
 
     def delete_old(self, now: datetime) -> None:
         """Delete expired files."""

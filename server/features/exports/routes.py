@@ -36,11 +36,17 @@ async def list_exports(jobs: Provided[Jobs]) -> list[Job]:
 
 
 @router.operation(
-    "POST /exports", Need.VIEWER, UnknownSessionError, ConflictError, ExportRequestError, status_code=201
+    "POST /exports",
+    Need.VIEWER,
+    UnknownSessionError,
+    ConflictError,
+    ExportRequestError,
+    FileWriteError,
+    status_code=201,
 )
 async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewExport) -> Job:
     """Export a session to a file, in a process beside the server; GET returns the progress."""
-    return jobs.add(await run_in_threadpool(find_row, store, body.session), body)
+    return await jobs.add(await run_in_threadpool(find_row, store, body.session), body)
 
 
 @router.operation("GET /exports/{export}", Need.VIEWER, UnknownExportError)

@@ -53,6 +53,9 @@ class Job(BaseModel):
 
     id: str
     session: int
+    identifier: str = Field(
+        default="", description="the session's identifier; empty for a file of an older version"
+    )
     session_name: str
     wanted: ExportOptions
     state: State

@@ -4,9 +4,12 @@ from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
 from math import inf
 
+from sqlmodel import col, select
+
 from robot_runtime.contract.topics import TIME
 from server.features.exports.schemas import ExportOptions
 from server.features.sessions.recording import Recording
+from server.features.sessions.session import HIDDEN
 from server.platform.errors import InvalidError
 from server.platform.models import Chunk, SessionRow
 from server.platform.store import Reader
@@ -14,12 +17,25 @@ from server.platform.store import Reader
 BATCH_BYTES = 64_000
 """Approximate size of a batch of rows: larger ones are no faster, and cost memory."""
 
+PURGED = "The session was purged before the file was complete, so there is none."
 ReportProgress = Callable[[float], None]
 """Called with the share done, 0 to 1."""
 
 
 class ExportRequestError(InvalidError):
     """The export cannot be made"""
+
+
+def find_identified(store: Reader, identifier: str) -> SessionRow:
+    """The row of the session with this identifier. Raises ExportRequestError without one, StoreError."""
+    query = select(SessionRow).where(
+        SessionRow.identifier == identifier, col(SessionRow.state).not_in(HIDDEN)
+    )
+    with store.read() as database:
+        row = database.exec(query).first()
+    if row is None:
+        raise ExportRequestError(PURGED)
+    return row
 
 
 class ExportSelection(Recording):
@@ -58,6 +74,10 @@ class ExportSelection(Recording):
     def is_whole(self) -> bool:
         """True where the range is the whole session."""
         return self.start == -inf and self.end == inf
+
+    def refuse_purged(self) -> None:
+        """Raise ExportRequestError where the session was purged meanwhile: what was read may lack samples."""
+        find_identified(self._store, self.row.identifier)
 
     def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
         """The chunks of a topic; reading them reports progress."""

@@ -7,7 +7,6 @@ from sqlalchemy import insert
 from sqlmodel import col, desc, select
 
 from robot_runtime.clock import Clock
-from robot_runtime.errors import RefusedError
 from server.features.scenarios.run import RunRecord
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
@@ -17,12 +16,9 @@ from server.platform.store import Store
 
 
 def describe_session(settings: Settings, clock: Clock, run: RunRecord, robot_state: str) -> SessionRow:
-    """The session of a run that begins now. Raises RefusedError if the configuration cannot be read."""
+    """The session of a run that begins now."""
     scenario = run.scenario
-    try:
-        row = new_row(settings, clock, scenario.title, scenario.description, robot_state)
-    except OSError as problem:
-        raise RefusedError(f"The configuration {settings.config} cannot be read: {problem}") from problem
+    row = new_row(settings, clock, scenario.title, scenario.description, robot_state)
     row.origin = "scenario" if run.place == "live" else "simulated"
     row.scenario = run.text
     row.scenario_name = scenario.name

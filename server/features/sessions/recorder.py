@@ -12,7 +12,7 @@ import logging
 import zlib
 from collections import Counter
 from collections.abc import Callable, Coroutine, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from time import time
 from typing import Any, TypeVar
@@ -24,6 +24,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import BY_NAME, Topic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from server.features.sessions.chunks import encode
+from server.features.sessions.provenance import ProvenanceWatch
 from server.features.sessions.resume import InterruptedSession, MissingSamples, find_interrupted
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import from_row
@@ -98,10 +99,21 @@ class _Batch:
 
 
 class Recorder:
-    """Starts, feeds and stops the one session that records; `changed` is called at every change of it."""
+    """Starts, feeds and stops the one session that records; `changed` is called at every change of it.
 
-    def __init__(self, store: Store, clock: Clock, notices: Notices, changed: Callable[[], None]) -> None:
+    With a `provenance` a session gets the configuration, firmware and software in force as it begins.
+    """
+
+    def __init__(
+        self,
+        store: Store,
+        clock: Clock,
+        notices: Notices,
+        changed: Callable[[], None],
+        provenance: ProvenanceWatch | None = None,
+    ) -> None:
         self.session: Session | None = None
+        self._provenance = provenance
         self._store = store
         self._clock = clock
         self._notices = notices
@@ -189,9 +201,10 @@ class Recorder:
         async with self._busy:
             if self.session is not None:
                 raise RecordingRefusedError(f"“{self.session.name}” is being recorded; stop it first.")
-            values = row.model_dump(exclude={"id"})
+            in_force = asdict(await self._provenance.now()) if self._provenance is not None else {}
+            values = row.model_dump(exclude={"id"}) | in_force
             row.id = await self._store.write(lambda connection: insert_row(connection, SessionRow, values))
-            self.session = from_row(row)
+            self.session = from_row(row).model_copy(update=in_force)
             self._started_steady = row.started_steady
             self._reset()
             self._accepts = True
@@ -201,6 +214,8 @@ class Recorder:
                 if now - arrived < STANDING_SECONDS:
                     self._record(_as_of(block, now))
         self._notices.notify("recording", "info", f"Recording of “{row.name}” has begun.")
+        if self._provenance is not None:
+            await self._provenance.compare_file()
         self._changed()
         return self.session
 

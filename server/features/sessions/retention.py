@@ -7,7 +7,7 @@ the disk, a few at a time as well (the database's auto_vacuum is incremental).
 
 import asyncio
 import logging
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from math import inf
 from time import time
@@ -50,15 +50,23 @@ class _Candidate(NamedTuple):
 
 
 class RetentionWorker:
-    """The only task that removes sessions; `wake` starts it at once.
+    """The only task that removes sessions; `wake` starts it at once, `purged` is called before each goes.
 
     For a day after a jump of the wall clock no session is deleted for its age, since that is unknown.
     """
 
-    def __init__(self, store: Store, settings: Settings, notices: Notices, clock: Clock) -> None:
+    def __init__(
+        self,
+        store: Store,
+        settings: Settings,
+        notices: Notices,
+        clock: Clock,
+        purged: Callable[[int], None] = lambda _: None,
+    ) -> None:
         self._store = store
         self._settings = settings
         self._notices = notices
+        self._purged = purged
         self._wall_clock = WallClock(clock)
         self._requested = asyncio.Event()
         self._out_of_candidates = False
@@ -91,6 +99,7 @@ class RetentionWorker:
         if rules.keep_free > 0:
             await self._make_room(now, now - BIN_SECONDS if ages_known else -inf)
         for session in await self._find_removed():
+            self._purged(session)
             await self._remove(session)
         await self._free_pages()
 
@@ -178,14 +187,15 @@ class RetentionWorker:
         chosen = col(SessionRow.id).in_([one.id for one in sessions]), col(SessionRow.state) != "recording"
         await self._store.execute(update(SessionRow).where(*chosen).values(values))
 
-    async def _find_removed(self) -> Sequence[int | None]:
-        def read() -> Sequence[int | None]:
+    async def _find_removed(self) -> Sequence[int]:
+        def read() -> Sequence[int]:
             with self._store.read() as database:
-                return database.exec(select(SessionRow.id).where(SessionRow.state == REMOVING)).all()
+                found = database.exec(select(SessionRow.id).where(SessionRow.state == REMOVING)).all()
+                return [one for one in found if one is not None]
 
         return await asyncio.to_thread(read)
 
-    async def _remove(self, session: int | None) -> None:
+    async def _remove(self, session: int) -> None:
         some = select(Chunk.id).where(Chunk.session_id == session).limit(CHUNKS_AT_ONCE)
         while await self._store.execute(delete(Chunk).where(col(Chunk.id).in_(some))) > 0:
             await asyncio.sleep(PAUSE)

@@ -3,7 +3,7 @@
 import json
 from typing import Annotated
 
-from fastapi import Depends, Query
+from fastapi import Depends, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 
@@ -84,12 +84,7 @@ async def start_session(
     if bridge.reserved_reason is not None:
         raise RecordingRefusedError(bridge.reserved_reason)
     state = json.dumps(monitor.state())
-    try:
-        row = await run_in_threadpool(new_row, settings, clock, body.name, body.note, state)
-    except OSError as problem:
-        raise RecordingRefusedError(
-            f"The configuration {settings.config} cannot be read: {problem}"
-        ) from problem
+    row = await run_in_threadpool(new_row, settings, clock, body.name, body.note, state)
     return await recorder.start(row)
 
 
@@ -145,14 +140,23 @@ async def purge_session(
     linked=True,
 )
 def get_thumbnail(
+    request: Request,
     recording: OpenRecording,
     time: Annotated[
         float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False, description="s since the start")
     ],
 ) -> Response:
-    """Return the first small camera picture from this time on."""
+    """Return the first small camera picture from this time on.
+
+    With the ETag of an earlier answer in If-None-Match it is 304.
+    """
+    # A browser asks each time: in another database the number is another session's.
+    tag = f'"{recording.row.identifier}-{time!r}"'
+    headers = {"cache-control": "private, no-cache", "etag": tag}
+    if request.headers.get("if-none-match") == tag:
+        return Response(status_code=304, headers=headers)
     for _, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):
-        return Response(jpeg, media_type="image/jpeg", headers={"cache-control": "max-age=86400"})
+        return Response(jpeg, media_type="image/jpeg", headers=headers)
     raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")
 
 

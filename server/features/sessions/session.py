@@ -9,10 +9,9 @@ from sqlmodel import col, select
 
 from robot_runtime.clock import Clock, boot
 from robot_runtime.contract.packets import DEFINITIONS_HASH
-from robot_runtime.provenance import hash_firmware, hash_software
-from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
 from server.features.sessions.chunks import describe_topics
+from server.features.sessions.provenance import read_provenance
 from server.features.sessions.schemas import Origin, Session
 from server.platform.errors import ConflictError, NotFoundError
 from server.platform.models import SessionRow
@@ -50,11 +49,13 @@ def new_row(
     *,
     origin: Origin = "operator",
 ) -> SessionRow:
-    """A session that begins now; its default name is its date and time. Raises OSError.
+    """A session that begins now; its default name is its date and time.
 
-    It reads files: not for the event loop.
+    Its provenance is that of this process; `Recorder.start` puts that of the robot in its place. It reads
+    files: not for the event loop.
     """
     now = datetime.now(UTC)
+    provenance = read_provenance(settings)
     return SessionRow(
         name=name or f"{now:%Y-%m-%d %H:%M} UTC",
         note=note,
@@ -64,15 +65,13 @@ def new_row(
         definitions=f"{DEFINITIONS_HASH:08x}",
         started=now.timestamp(),
         started_steady=clock.now(),
-        configuration=settings.config.read_text(encoding="utf-8", errors="replace"),
+        configuration=provenance.configuration,
         robot_state=robot_state,
         topics=json.dumps(describe_topics(), ensure_ascii=False),
         boot=boot(),
         origin=origin,
-        firmware=hash_firmware(
-            firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
-        ),
-        software=hash_software(),
+        firmware=provenance.firmware,
+        software=provenance.software,
     )
 
 

@@ -219,3 +219,37 @@ def test_a_session_s_contents_are_read_from_an_index_alone(store: Store) -> None
         query = "EXPLAIN QUERY PLAN SELECT topic, sum(count), min(first_time), max(last_time) FROM chunk "
         plan = database.connection().exec_driver_sql(f"{query} WHERE session_id = 1 GROUP BY topic").all()
     assert "USING COVERING INDEX chunk_time" in str(plan)
+
+
+INNER = {"chunk", "gap", "session_tag", "comm_test_cell", "alembic_version"}
+"""Tables whose numbers nobody outside the database knows."""
+
+
+def test_no_table_gives_a_number_twice(settings: Settings) -> None:
+    schema.prepare(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        made = database.execute(
+            "SELECT name, sql FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite_%'"
+        ).fetchall()
+    assert {name for name, text in made if "AUTOINCREMENT" not in text} == INNER
+
+
+@pytest.mark.parametrize("revision", OLDER)
+def test_the_number_of_a_removed_session_is_not_given_again_after_an_upgrade(
+    settings: Settings, revision: str
+) -> None:
+    upgrade_to(settings, revision)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        make_session(database)
+        fill_tables(database)
+        before = read_tables(database)
+    schema.prepare(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        assert database.execute("PRAGMA foreign_key_check").fetchall() == []
+        (session,) = read_tables(database)["session"]
+        assert session.items() >= before["session"][0].items()
+        tables = set(before) - INNER
+        for table in before:
+            database.execute(f"DELETE FROM {table}")
+        fill_tables(database, skip=("id",))
+        assert {table: read_tables(database)[table][0]["id"] for table in tables} == dict.fromkeys(tables, 2)

@@ -2,6 +2,7 @@
 
 import asyncio
 from contextlib import closing
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -196,8 +197,8 @@ def test_a_step_of_a_mission_is_a_moment_too(store: Store, settings: Settings, s
 
 
 def test_differences_between_sessions_are_listed(store: Store, settings: Settings, session: int) -> None:
-    settings.config.write_text('[robot]\nname = "tested"\n[control]\nrate = 20.0\n', encoding="utf-8")
-    other = record(store, settings, dive("pid", {"kp": 6.0}), name="other")
+    other_settings = replace(settings, config_text='[robot]\nname = "tested"\n[control]\nrate = 20.0\n')
+    other = record(store, other_settings, dive("pid", {"kp": 6.0}), name="other")
     differences = {(one.group, one.name): one.values for one in compare(store, session, other).differences}
     assert differences == {
         ("In force", "pid: kp"): ["3", "6"],

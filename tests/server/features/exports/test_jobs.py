@@ -1,6 +1,9 @@
+import asyncio
 import hashlib
 import os
+import signal
 import sys
+import time
 import zipfile
 from contextlib import closing
 from datetime import UTC, datetime, timedelta
@@ -9,13 +12,16 @@ from typing import Any
 
 import pytest
 from httpx import AsyncClient
+from sqlalchemy import update
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.durable_files import PART
 from server.features.exports import export_process as child_module
+from server.features.exports import jobs as jobs_module
 from server.features.exports.jobs import JOBS_MAX, RETENTION_DAYS, Jobs
 from server.features.exports.schemas import ExportOptions, Job, NewExport
 from server.features.sessions.session import find_row
+from server.platform.models import SessionRow
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -116,10 +122,12 @@ def test_exports_outlive_the_server_and_unfinished_files_are_deleted(settings: S
     (folder / ("d" * 16 + ".json")).write_text("{")
 
     async def scenario(served: Served) -> None:
-        assert (await served.api.get("/exports")).json() == [job.model_dump(mode="json")]
+        lost, done = sorted((await served.api.get("/exports")).json(), key=lambda one: one["id"])
+        assert done == job.model_dump(mode="json")
+        assert (lost["id"], lost["state"], lost["problem"]) == ("b" * 16, "failed", jobs_module.GONE)
         answer = await served.api.get(f"/exports/{job.id}/file")
         assert (answer.content, answer.headers["etag"]) == (b"e" * 16, f'"{job.sha256}"')
-        assert {path.name for path in folder.iterdir()} == {job.id, f"{job.id}.json"}
+        assert {path.name for path in folder.iterdir()} == {job.id, f"{job.id}.json", f"{'b' * 16}.json"}
 
     play(settings, scenario)
 
@@ -154,14 +162,15 @@ def test_a_jump_of_the_clock_deletes_no_export(settings: Settings, store: Store)
 
 
 def test_a_job_whose_files_cannot_be_written_or_deleted_fails_and_the_next_is_done(
-    settings: Settings, session: int
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario(served: Served) -> None:
         jobs, row = served.container.jobs, find_row(served.container.store, session)
-        # In the same turn of the event loop, in which the job cannot begin yet.
-        broken = jobs.add(row, NewExport(session=session, format="csv"))
-        (settings.data.exports / f"{broken.id}{PART}").mkdir()
-        following = jobs.add(row, NewExport(session=session, format="csv"))
+        ids = iter(["a" * 16, "b" * 16])
+        monkeypatch.setattr(jobs_module, "token_hex", lambda _: next(ids))
+        (settings.data.exports / f"{'a' * 16}{PART}").mkdir()
+        broken = await jobs.add(row, NewExport(session=session, format="csv"))
+        following = await jobs.add(row, NewExport(session=session, format="csv"))
         await until(lambda: jobs.find(following.id).state == "done", "the next export")
         assert jobs.find(broken.id).state == "failed"
 
@@ -225,7 +234,111 @@ def test_a_killed_export_process_leaves_no_file(
         os.kill(process.pid, 9)
         job = await ended(served, job)
         assert (job["state"], job["problem"]) == ("failed", "The process for it was ended by signal SIGKILL.")
-        await until(lambda: not list(settings.data.exports.iterdir()), "the half file to go")
+        await until(lambda: only_described(settings, job), "the half file to go")
+
+    play(settings, scenario)
+
+
+def only_described(settings: Settings, job: dict[str, Any]) -> bool:
+    return [path.name for path in settings.data.exports.iterdir()] == [f"{job['id']}.json"]
+
+
+def test_a_cancelled_process_that_does_not_end_is_ended_by_force(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    slow(monkeypatch, tmp_path)
+    monkeypatch.setattr(child_module, "CANCEL_SECONDS", 0.01)
+
+    async def scenario(served: Served) -> None:
+        jobs = served.container.jobs
+        first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
+        await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
+        assert jobs._running is not None
+        process = jobs._running[1]._process
+        assert process is not None
+        process.signal(signal.SIGSTOP)
+        monkeypatch.setattr(child_module, "sys", sys)
+        assert (await served.api.delete(f"/exports/{first['id']}")).status_code == 204
+        assert (await ended(served, second))["state"] == "done"
+
+    play(settings, scenario)
+
+
+def test_a_process_without_progress_is_ended(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    slow(monkeypatch, tmp_path)
+    monkeypatch.setattr(child_module, "SILENT_SECONDS", 0.3)
+    monkeypatch.setattr(child_module, "CANCEL_SECONDS", 0.01)
+
+    async def scenario(served: Served) -> None:
+        job = await ended(served, await start(served.api, session))
+        assert (job["state"], "made no progress" in job["problem"]) == ("failed", True)
+
+    play(settings, scenario)
+
+
+def test_exports_of_a_killed_server_are_listed_as_failed(settings: Settings, store: Store) -> None:
+    job = finished(settings, "a" * 16, datetime.now(UTC))
+    for name, state in (("b", "waiting"), ("c", "running")):
+        other = job.model_copy(update={"id": name * 16, "state": state})
+        (settings.data.exports / f"{other.id}.json").write_text(other.model_dump_json())
+    (settings.data.exports / ("c" * 16 + PART)).write_bytes(b"half")
+    (settings.data.exports / ("b" * 16)).write_bytes(b"not finished")
+    jobs = Jobs(settings.data, store, SimulatedClock())
+    jobs.open()
+    assert {one.id[0]: (one.state, one.problem) for one in jobs.list()} == {
+        "a": ("done", ""),
+        "b": ("failed", jobs_module.ENDED),
+        "c": ("failed", jobs_module.ENDED),
+    }
+    assert {path.name for path in settings.data.exports.iterdir()} == {
+        "a" * 16,
+        *(f"{name * 16}.json" for name in "abc"),
+    }
+    jobs.remove(jobs.find("b" * 16))
+    assert not (settings.data.exports / ("b" * 16 + ".json")).exists()
+
+
+async def purge(served: Served, session: int) -> None:
+    """Remove a session for good, and wait until it is gone."""
+    assert (await served.api.delete(f"/sessions/{session}")).status_code == 200
+    assert (await served.api.post(f"/sessions/{session}/purge")).status_code == 204
+    await served.container.retention.apply(time.time())
+
+
+def test_exports_of_a_purged_session_fail_and_the_next_session_has_another_number(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    slow(monkeypatch, tmp_path)
+
+    async def scenario(served: Served) -> None:
+        jobs = served.container.jobs
+        running, waiting = await start(served.api, session), await start(served.api, session, format="jsonl")
+        await until(lambda: jobs.find(running["id"]).progress == 0.25, "progress")
+        await purge(served, session)
+        following = await asyncio.to_thread(record, served.container.store, settings, [depth_block(0, 10)])
+        assert following > session
+        texts = [(await ended(served, job))["problem"] for job in (running, waiting)]
+        assert texts == [jobs_module.PURGED_RUNNING, jobs_module.PURGED_WAITING]
+
+    play(settings, scenario)
+
+
+def test_a_waiting_export_reads_the_session_of_its_identifier_alone(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    slow(monkeypatch, tmp_path)
+
+    async def scenario(served: Served) -> None:
+        jobs, store = served.container.jobs, served.container.store
+        first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
+        await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
+        # As a restored database might: the number is another session's.
+        await store.execute(update(SessionRow).values(identifier="another"))
+        monkeypatch.setattr(child_module, "sys", sys)
+        await served.api.delete(f"/exports/{first['id']}")
+        assert "was purged" in (await ended(served, second))["problem"]
 
     play(settings, scenario)
 
@@ -256,7 +369,7 @@ def test_a_full_disk_is_reported_and_no_data_is_lost(
         job = await ended(served, await start(served.api, session, format="jsonl"))
         assert job["state"] == "failed"
         assert job["problem"].endswith("is full. Free some space, and try again.")
-        await until(lambda: not list(settings.data.exports.iterdir()), "the half file to go")
+        await until(lambda: only_described(settings, job), "the half file to go")
         assert (await served.api.get(f"/exports/{job['id']}/file")).status_code == 409
         assert (await served.api.get(f"/sessions/{session}")).json()["samples"] == 5002
 

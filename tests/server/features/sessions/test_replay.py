@@ -24,7 +24,7 @@ from server.features.sessions.replay import LISTED_CHUNKS, RANGE_MAX, read_block
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import StateSilence, read_timeline
 from server.platform.errors import InvalidError
-from server.platform.models import BookmarkRow, Chunk
+from server.platform.models import BookmarkRow, Chunk, SessionRow
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -320,6 +320,25 @@ def test_thumbnails_come_as_pictures(store: Store, settings: Settings) -> None:
         ("picture", 1, row(102.0, b"jpeg 2")),
         ("picture", 1, row(102.4, b"jpeg 3")),
     ]
+
+
+def test_a_picture_s_address_does_not_show_that_of_another_session(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        session = record(store, settings, thumbnails(0, 100.0))
+
+    async def scenario(served: Served) -> None:
+        url = f"/sessions/{session}/thumbnail?time=0"
+        first = await served.api.get(url)
+        assert (first.content, first.headers["cache-control"]) == (b"jpeg 0", "private, no-cache")
+        seen = {"if-none-match": first.headers["etag"]}
+        again = await served.api.get(url, headers=seen)
+        assert (again.status_code, again.content) == (304, b"")
+        # As in a restored database: the number is another session's.
+        await served.container.store.execute(update(SessionRow).values(identifier="another"))
+        assert (await served.api.get(url, headers=seen)).status_code == 200
+
+    over_http(settings, scenario)
 
 
 def test_samples_of_an_unknown_topic_are_counted(store: Store, dive: Recording) -> None:

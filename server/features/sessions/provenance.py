@@ -1,0 +1,129 @@
+"""Provenance of what the robot runs by: configuration, firmware and software as they were read."""
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from robot_runtime.errors import RefusedError
+from robot_runtime.provenance import hash_firmware, hash_software
+from robot_runtime.simulation.boards.firmware import firmware_path
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.stream.bridge import RuntimeSilentError
+
+log = logging.getLogger(__name__)
+
+TRY_AGAIN_SECONDS = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """The text of robot.toml, and the hashes of firmware and software; empty where they are not known."""
+
+    configuration: str
+    firmware: str
+    software: str
+
+
+def read_provenance(settings: Settings) -> Provenance:
+    """The provenance of what starts now. It reads files: not for the event loop."""
+    try:
+        software = hash_software()
+    except OSError as problem:
+        log.warning("the software's hash is not known: %s", problem)
+        software = ""
+    return Provenance(settings.config_text, _read_firmware(settings), software)
+
+
+class ProvenanceWatch:
+    """Follows what is in force: asks each run of the runtime, and reads the firmware as it is loaded.
+
+    Until the runtime has answered, it is what the server itself has read at its start.
+    """
+
+    def __init__(
+        self, settings: Settings, ask: Callable[[], Awaitable[Mapping[str, Any]]], notices: Notices
+    ) -> None:
+        self._now = Provenance(settings.config_text, "", "")
+        self._opened = asyncio.Event()
+        self._settings = settings
+        self._ask = ask
+        self._notices = notices
+        self._run = ""
+        self._board: int | None = None
+        self._news = asyncio.Event()
+
+    async def open(self) -> None:
+        """Read what this server starts with."""
+        self._now = await asyncio.to_thread(read_provenance, self._settings)
+        self._opened.set()
+
+    async def now(self) -> Provenance:
+        """The provenance in force; waits until it was opened."""
+        await self._opened.wait()
+        return self._now
+
+    def see_run(self, run: str) -> None:
+        """Note the run of the runtime that is heard now."""
+        if run != self._run:
+            self._run = run
+            self._news.set()
+
+    async def see_board(self, pid: int | None) -> None:
+        """Note the process of the emulated board, which has loaded the firmware at its start."""
+        if pid is not None and pid != self._board:
+            if self._board is not None:
+                await self.read_firmware()
+            self._board = pid
+
+    async def read_firmware(self) -> None:
+        """Read the firmware that was just brought onto the board."""
+        firmware = await asyncio.to_thread(_read_firmware, self._settings)
+        self._now = replace(self._now, firmware=firmware)
+
+    async def run(self) -> None:
+        """Background task: open it, and ask each run of the runtime."""
+        # Not before the server serves: it takes a slow computer a second.
+        await self.open()
+        while True:
+            await self._news.wait()
+            self._news.clear()
+            try:
+                answer = await self._ask()
+            except (RuntimeSilentError, RefusedError):
+                await asyncio.sleep(TRY_AGAIN_SECONDS)
+                self._news.set()
+                continue
+            self._take(str(answer["configuration"]), str(answer["software"]))
+
+    def _take(self, configuration: str, software: str) -> None:
+        if configuration != self._now.configuration:
+            self._notices.notify(
+                "configuration",
+                "caution",
+                f"The robot's runtime has read another {self._settings.config.name} than was in force. "
+                "A recording that runs keeps the earlier one.",
+            )
+        self._now = replace(self._now, configuration=configuration, software=software)
+
+    async def compare_file(self) -> None:
+        """Report a configuration file that is no longer the one in force."""
+        try:
+            text = await asyncio.to_thread(self._settings.config.read_text, "utf-8", "replace")
+            problem = "was edited" if text != self._now.configuration else ""
+        except OSError as cause:
+            problem = f"cannot be read now ({cause.strerror})"
+        if problem:
+            self._notices.notify(
+                "configuration",
+                "caution",
+                f"{self._settings.config.name} {problem} since the robot has started. The recording holds "
+                "what is in force. Start the server again to apply the file.",
+            )
+
+
+def _read_firmware(settings: Settings) -> str:
+    program = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
+    return hash_firmware(program)
