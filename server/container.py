@@ -70,6 +70,7 @@ from server.platform.store import Store, StoreError
 from server.processes.managed_process import ProcessCommand
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
+from server.stream.budget import Budgets
 from server.stream.hub import Hub
 
 log = logging.getLogger(__name__)
@@ -106,7 +107,8 @@ class Container:
         self._add_tuning()
         self._add_scenarios()
         self._add_identification()
-        self.doors = Doors(settings, self.clock, self.hub)
+        self.budgets = Budgets(self.clock)
+        self.doors = Doors(settings, self.clock, self.hub, self.budgets)
         self.commands = CheckedCommands(self.changes, settings, self.alarms)
         self._add_ros2()
         self.heavy_requests = HeavyRequests()

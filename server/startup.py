@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import traceback
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -98,7 +99,7 @@ def _serve(settings: Settings) -> int:
         # computer has them once, and loads them again where its server was killed.
         loaded = None if settings.profile == "lean" else _load(settings, certificate)
 
-        def serve(ended: str) -> int:
+        def serve(ended: str, note_serving: Callable[[], None]) -> int:
             """Serve in a process of its own; `ended` describes the end of the server before it, if any."""
             from server.platform.running_server import announce
 
@@ -110,7 +111,7 @@ def _serve(settings: Settings) -> int:
             # The server ends in order at these, and then sends them to itself once more; once is enough.
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, lambda *_: None)
-            app.state.ended = ended
+            app.state.ended, app.state.note_serving = ended, note_serving
             server.run(sockets=[listener])
             return 0
 
@@ -166,6 +167,7 @@ def _load(settings: Settings, certificate: "Certificate | None") -> tuple["FastA
 
     def started(container: "Container") -> None:
         container.comparison.prepare()
+        app.state.note_serving()
         ServiceManager().ready()
         if not app.state.ended:
             _greet(settings, container.access, certificate)

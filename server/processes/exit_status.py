@@ -14,3 +14,8 @@ def describe_status(status: int | None) -> str:
     except ValueError:
         name = str(-status)
     return f"was ended by signal {name}"
+
+
+def describe_end(status: int | None, last: str) -> str:
+    """The same with its last words, if there are any."""
+    return describe_status(status) + (f". Its last words: {last}" if last else "")

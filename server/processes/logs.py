@@ -7,6 +7,8 @@ from typing import IO
 FILE_BYTES_MAX = 1_000_000
 LAST_BYTES = 8_000
 LINE_BYTES_MAX = 2_000
+LINES_SHOWN = 3
+"""Of a process that has ended."""
 
 
 class ProcessLog:
@@ -47,8 +49,13 @@ class ProcessLog:
             with self._path.open("rb") as file:
                 size = file.seek(0, os.SEEK_END)
                 file.seek(max(since if since <= size else 0, size - LAST_BYTES))
-                lines = [line.strip() for line in file.read().splitlines()]
+                return last_lines(file.read(), count)
         except OSError:
             return ""
-        chosen = [line[-LINE_BYTES_MAX:] for line in lines if line][-count:]
-        return " / ".join(line.decode(errors="replace") for line in chosen)
+
+
+def last_lines(data: bytes, count: int) -> str:
+    """The last `count` lines, on one line; empty ones are left out."""
+    lines = [line.strip() for line in data.splitlines()]
+    chosen = [line[-LINE_BYTES_MAX:] for line in lines if line][-count:]
+    return " / ".join(line.decode(errors="replace") for line in chosen)

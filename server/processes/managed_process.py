@@ -17,15 +17,14 @@ from robot_runtime.places import EMULATOR_REMEDY
 from server import VERSION
 from server.platform.pidfile import pid_file
 from server.processes.backoff import Backoff, describe_pause, is_killed
-from server.processes.exit_status import describe_status
-from server.processes.logs import ProcessLog
+from server.processes.exit_status import describe_end
+from server.processes.logs import LINES_SHOWN, ProcessLog
 from server.processes.process import AdoptedProcess, Process, ProcessGroup
 
 log = logging.getLogger(__name__)
 
 TERM_SECONDS = 3.0
 NEED_POLL_SECONDS = 0.05
-LINES_SHOWN = 3
 TRIM_SECONDS = 1.0
 
 State = Literal["waiting", "running", "failed", "ended", "paused"]
@@ -142,8 +141,7 @@ class ManagedProcess:
             words, self._hung = self._hung, ""
             return words, True
         last = self._log.last(LINES_SHOWN, self._logged_before)
-        words = describe_status(status) + (f". Its last words: {last}" if last else "")
-        return words, is_killed(status)
+        return describe_end(status, last), is_killed(status)
 
     def _start(self) -> Process:
         self._logged_before = self._log.size()

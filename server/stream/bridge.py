@@ -27,6 +27,7 @@ from robot_runtime.transport.zenoh_transport import Subscription, ZenohTransport
 from server.platform.errors import ApiError
 from server.platform.settings import Settings, SetupError
 from server.stream.gap_filler import GapFiller
+from server.stream.shared_stop import AT_ONCE, SharedStop
 
 log = logging.getLogger(__name__)
 
@@ -97,7 +98,8 @@ class Bridge:
         """Time of the last emptying, by the event loop's clock."""
         self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
-        self._stops = ThreadPoolExecutor(2, "stop")
+        self._stops = ThreadPoolExecutor(AT_ONCE, "stop")
+        self._shared_stop = SharedStop(lambda: self._ask("command/stop", {}, stop=True))
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
         self._leases = ThreadPoolExecutor(1, "lease")
         self._asking = 0
@@ -174,13 +176,15 @@ class Bridge:
 
         Commands that change parameters go through `Changes`, which records them.
         """
-        if name == "stop" and self.on_stop is not None:
+        if name != "stop":
+            return await self._ask(f"command/{name}", payload, stop=False)
+        if self.on_stop is not None:
             self.on_stop()
-        return await self._ask(f"command/{name}", payload, stop=name == "stop")
+        return await self._shared_stop.ask()
 
     async def disarm(self) -> None:
         """Send a STOP as a step of a scenario, without ending the scenario. Raises RuntimeSilentError."""
-        await self._ask("command/stop", {}, stop=True)
+        await self._shared_stop.ask()
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
         """The simulator's answer. Raises RefusedError, RuntimeSilentError."""

@@ -10,7 +10,7 @@ from math import isfinite
 from typing import Any
 
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import TIME, Kind
+from robot_runtime.contract.topics import TIME, TOPICS, Kind
 from robot_runtime.transport.blocks import Block, read_rows
 from server.features.doors.cbor import encode_cbor
 from server.features.doors.png import encode_png
@@ -24,6 +24,7 @@ Fields = dict[str, Any]
 HEALTH = "health"
 """The source of the parts' health, which is no topic."""
 JPEG_START = TIME.size
+_PICTURES = frozenset(topic.name for topic in TOPICS if topic.kind is Kind.PICTURE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,11 @@ class DoorChannel:
     latched: bool = False
     lossless: bool = False
     hidden: bool = False
+
+    @property
+    def of_pictures(self) -> bool:
+        """True where its messages hold a picture."""
+        return any(source in _PICTURES for source in self.sources)
 
 
 class ChannelMessage:

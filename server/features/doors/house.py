@@ -17,12 +17,15 @@ from server.features.doors.subscriptions import DoorClient
 from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.identity import SHELL, Identity
 from server.platform.settings import Settings
+from server.stream.budget import Budgets
 from server.stream.hub import DEVICE_MAX, EvictedError, Hub, Send
 
 DoorName = Literal["rosbridge", "foxglove", "ros2"]
 ROS2: DoorName = "ros2"
-CLIENTS_MAX = 20
-"""Programs at one door."""
+CLIENTS_MAX, OPERATORS_ONLY = 20, 5
+"""Programs at one door; of these, so many are for operators alone."""
+CHANGE_SECONDS = 0.1
+"""From a change of topics or clients to telling it."""
 
 
 class Door:
@@ -50,7 +53,7 @@ class Door:
 class Doors:
     """All doors; `see` takes every block that the server delivers."""
 
-    def __init__(self, settings: Settings, clock: Clock, hub: Hub) -> None:
+    def __init__(self, settings: Settings, clock: Clock, hub: Hub, budgets: Budgets) -> None:
         simulated = settings.mode != "robot"
         self.doors: dict[str, Door] = {
             "rosbridge": Door("rosbridge", settings.doors.rosbridge, ros_channels()),
@@ -64,8 +67,10 @@ class Doors:
         """Called when topics or clients of a door change."""
         self._clock = clock
         self._hub = hub
+        self._budgets = budgets
         self._open = any(door.open for door in self.doors.values())
         self._newest: dict[str, Sample] = {}
+        self._telling: asyncio.TimerHandle | None = None
         self._number = 0
 
     def see(self, block: Block) -> None:
@@ -115,7 +120,12 @@ class Doors:
         self.note_change()
 
     def note_change(self) -> None:
-        """Tell those who watch the connections between programs and topics."""
+        """Tell those who watch the connections between programs and topics, soon: many changes are one."""
+        if self.changed and self._telling is None:
+            self._telling = asyncio.get_running_loop().call_later(CHANGE_SECONDS, self._tell)
+
+    def _tell(self) -> None:
+        self._telling = None
         for changed in [*self.changed]:
             # A program that reads too little of it is disconnected by its own messages.
             with suppress(EvictedError):
@@ -139,7 +149,8 @@ class Doors:
         """Serve a program until `receive` returns. Raises EvictedError where it is disconnected."""
         self._check_room(door, identity)
         self._number += 1
-        client = DoorClient(self._number, identity, address, send, self._clock)
+        budget = self._budgets.of(identity)
+        client = DoorClient(self._number, identity, address, send, self._clock, budget)
         sender = asyncio.create_task(client.run())
         receiver = asyncio.ensure_future(receive(client))
         door.clients[client] = sender
@@ -164,8 +175,9 @@ class Doors:
         own = sum(one.identity.device == identity.device for one in door.clients)
         if identity != SHELL and own >= DEVICE_MAX:
             raise EvictedError(f"This token has {DEVICE_MAX} connections open already; close one.")
-        if len(door.clients) >= CLIENTS_MAX:
-            raise EvictedError(f"{CLIENTS_MAX} programs are connected already; close one.")
+        limit = CLIENTS_MAX if identity.role == "operator" else CLIENTS_MAX - OPERATORS_ONLY
+        if len(door.clients) >= limit:
+            raise EvictedError(f"{limit} programs are connected already; close one.")
 
     def _publish(self, source: str, samples: list[Sample], doors: Iterable[Door]) -> None:
         for door in doors:

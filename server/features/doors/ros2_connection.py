@@ -6,11 +6,13 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from robot_runtime.clock import SteadyClock
 from server.features.doors.commands import DoorCommands, DoorPilot
 from server.features.doors.house import Doors
 from server.features.doors.ros2_node import Ros2Node
 from server.features.doors.ros2_session import Ros2Session
 from server.features.doors.subscriptions import DoorClient
+from server.stream.budget import Allowance
 
 CHUNK_BYTES = 65_536
 BURST_BYTES, BYTES_PER_SECOND = 524_288, 65_536
@@ -108,14 +110,9 @@ async def _pump(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> N
 
 async def _pump_in(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
     """The same from a program, with a limit of bytes per second."""
-    loop = asyncio.get_running_loop()
-    allowed, last = float(BURST_BYTES), loop.time()
+    allowance = Allowance(SteadyClock(), BYTES_PER_SECOND, BURST_BYTES)
     with suppress(OSError):
         while data := await reader.read(CHUNK_BYTES):
             writer.write(data)
             await writer.drain()
-            now = loop.time()
-            allowed = min(BURST_BYTES, allowed + (now - last) * BYTES_PER_SECOND) - len(data)
-            last = now
-            if allowed < 0:
-                await asyncio.sleep(-allowed / BYTES_PER_SECOND)
+            await asyncio.sleep(allowance.spend(len(data)))

@@ -18,7 +18,7 @@ from server.features.doors.twist import STOP_TOPIC, TAKEN_IN, read_twist
 LINES_DEPTH = 1000
 """As ROS's own loggers publish /rosout."""
 WAITING_MAX = 64
-"""Messages and calls of a program that wait for this process."""
+"""Messages and calls of a program that wait for this process; STOPs may be as many besides."""
 FIELDS: dict[str, dict[str, Any]] = {
     **{name.rpartition("/")[2]: {} for name, kind in command_services().items() if kind == TRIGGER},
     TAKE: {},
@@ -71,6 +71,7 @@ class Ros2Session(DoorSession):
         try:
             while True:
                 self.act(await self._waiting.get(), node)
+                await self.pause()
         finally:
             calls = self.cancel_calls()
             await asyncio.gather(*calls, return_exceptions=True)
@@ -99,7 +100,8 @@ class Ros2Session(DoorSession):
 
     def _queue(self, incoming: Incoming) -> None:
         stop = incoming.endpoint.name == STOP_TOPIC
-        if self._waiting.qsize() >= WAITING_MAX and not stop:
+        # Where a STOP finds no place, others wait that begin after it.
+        if self._waiting.qsize() >= (2 * WAITING_MAX if stop else WAITING_MAX):
             self.client.refused += 1
             return
         self._waiting.put_nowait(incoming)

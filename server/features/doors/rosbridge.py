@@ -28,7 +28,8 @@ from server.features.doors.twist import CMD_VEL, STOP_TOPIC, TAKEN_IN, read_twis
 
 LEVELS = ("info", "warning", "error", "none")
 COMPRESSIONS = ("none", "png", "cbor")
-FRAGMENT_MIN = 256
+FRAGMENT_MIN = 4096
+"""Smaller ones would make hundreds of messages of each picture."""
 THROTTLE_MAX = 3_600_000
 """ms."""
 REFUSED_OPS = {

@@ -1,4 +1,8 @@
-"""The base of the doors' sessions: the limits of a program that sends nonsense or too much."""
+"""The base of the doors' sessions: the limits of a program that sends nonsense or too much.
+
+What never waits for its turn, STOP, has a limit too: one under way and one behind it. Until one of them is
+answered, nothing more is read, so that the program itself waits.
+"""
 
 import asyncio
 import json
@@ -13,6 +17,8 @@ INVALID_MAX = 20
 """Invalid messages in a row after which a program is disconnected."""
 CALLS_MAX = 8
 """Calls of one program that may wait for the robot at once."""
+STOPS_MAX = 2
+"""STOPs of one program at once: one under way, and one behind it, as the robot may be armed meanwhile."""
 NAME_MAX = 200
 
 
@@ -52,9 +58,16 @@ class DoorSession:
                             f"{invalid} messages in a row were not valid.", POLICY_VIOLATION
                         ) from problem
                     complain(str(problem))
+                await self.pause()
         finally:
             calls = self.cancel_calls()
             await asyncio.gather(*calls, return_exceptions=True)
+
+    async def pause(self) -> None:
+        """Wait before the next message: for the turn of a STOP, and where a viewer has sent too many."""
+        while len(self._stops) >= STOPS_MAX:
+            await asyncio.wait(self._stops, return_when=asyncio.FIRST_COMPLETED)
+        await self.client.budget.wait_to_receive()
 
     def cancel_calls(self) -> list[asyncio.Task[None]]:
         """Give up waiting for the answers of calls, but for STOP's; returns them."""
@@ -66,7 +79,7 @@ class DoorSession:
     def begin(self, call: Coroutine[Any, Any, None], *, always: bool = False) -> None:
         """Work on a call beside the messages that follow it.
 
-        STOP always may, and goes on where the program leaves before it is answered.
+        STOP always may, and goes on where the program leaves before it is answered. `pause` is its limit.
         """
         if not always and len(self._calls) >= CALLS_MAX:
             call.close()

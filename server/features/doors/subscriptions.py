@@ -12,12 +12,16 @@ from contextlib import suppress
 from robot_runtime.clock import Clock
 from server.features.doors.channels import ChannelMessage, DoorChannel
 from server.http.sign_in.identity import Identity
+from server.stream.budget import DeviceBudget
 from server.stream.hub import STALL_SECONDS, EvictedError, Send
 
 QUEUE_DEFAULT, QUEUE_MAX = 50, 500
 """Samples of one subscription that wait at most."""
 LINES_MAX = 1000
-ANSWERS_MAX = 256
+PICTURES_MAX = 4
+"""Pictures of one subscription that wait at most, whatever the program asks for: each is up to a megabyte."""
+ANSWERS_MAX, ANSWERS_BYTES_MAX = 256, 1_000_000
+"""Answers that may wait unread, and their size."""
 SUBSCRIPTIONS_MAX = 200
 
 Format = Callable[[ChannelMessage], list[bytes | str]]
@@ -40,7 +44,8 @@ class DoorSubscription:
         self.queue.append(message)
         if self.channel.lossless:
             return len(self.queue) <= LINES_MAX
-        while len(self.queue) > self.length:
+        most = min(self.length, PICTURES_MAX) if self.channel.of_pictures else self.length
+        while len(self.queue) > most:
             self.queue.popleft()
         return True
 
@@ -48,9 +53,18 @@ class DoorSubscription:
 class DoorClient:
     """One program's connection; `number` names it in lists."""
 
-    def __init__(self, number: int, identity: Identity, address: str, send: Send, clock: Clock) -> None:
+    def __init__(
+        self,
+        number: int,
+        identity: Identity,
+        address: str,
+        send: Send,
+        clock: Clock,
+        budget: DeviceBudget,
+    ) -> None:
         self.number = number
         self.identity = identity
+        self.budget = budget
         self.address = address
         self.since = clock.now()
         self.owner = 0
@@ -64,13 +78,15 @@ class DoorClient:
         self._send_raw = send
         self._clock = clock
         self._answers: deque[bytes | str] = deque()
+        self._answers_size = 0
         self._wake = asyncio.Event()
 
     def answer(self, message: bytes | str) -> None:
         """Queue an answer. Raises EvictedError where too many wait unread."""
-        if len(self._answers) >= ANSWERS_MAX:
+        if len(self._answers) >= ANSWERS_MAX or self._answers_size > ANSWERS_BYTES_MAX:
             raise EvictedError("Too many answers wait unread.")
         self._answers.append(message)
+        self._answers_size += len(message)
         self._wake.set()
 
     def offer(self, subscription: DoorSubscription, message: ChannelMessage) -> None:
@@ -99,6 +115,7 @@ class DoorClient:
             if left <= 0:
                 one.due = max(one.due, self._clock.now()) + one.period
                 for message in one.form(one.queue.popleft()):
+                    await self.budget.wait_to_send(len(message))
                     await self._send(message)
                 await self._send_answers()
                 left = one.period if one.queue else left
@@ -108,7 +125,9 @@ class DoorClient:
 
     async def _send_answers(self) -> None:
         while self._answers:
-            await self._send(self._answers.popleft())
+            message = self._answers.popleft()
+            self._answers_size -= len(message)
+            await self._send(message)
 
     async def _send(self, message: bytes | str) -> None:
         try:

@@ -30,6 +30,7 @@ from server.http.websocket_protocol import BINARY
 from server.platform.audit_file import Outcome
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
+from server.stream.budget import Budgets, DeviceBudget
 from server.stream.hub import Client, EvictedError, Hub, Send
 from server.stream.socket_ends import close_with_reason, end_after
 
@@ -62,6 +63,7 @@ class _LiveConnection:
         bridge: Bridge,
         audit: AuditLog,
         clock: Clock,
+        budget: DeviceBudget,
     ) -> None:
         self._socket = socket
         self._owner = owner
@@ -70,6 +72,7 @@ class _LiveConnection:
         self._bridge = bridge
         self._audit = audit
         self._clock = clock
+        self._budget = budget
         self._stopping: asyncio.Task[None] | None = None
         self._stop_again = False
 
@@ -90,6 +93,7 @@ class _LiveConnection:
                         f"{invalid} messages in a row were not valid.", POLICY_VIOLATION
                     ) from problem
                 client.answer({"op": "error", "text": str(problem)})
+            await self._budget.wait_to_receive()
 
     def _perform(self, client: Client, message: dict[str, Any]) -> None:
         op = message.get("op")
@@ -170,6 +174,7 @@ async def live(
     bridge: Provided[Bridge],
     audit: Provided[AuditLog],
     clock: Provided[Clock],
+    budgets: Provided[Budgets],
     greeting: Annotated[Greeting, Depends(greet)],
 ) -> None:
     """Serve one page until it leaves."""
@@ -182,7 +187,8 @@ async def live(
         if (changed := access.explain_change(caller)) is not None:
             raise EvictedError(changed, POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
-            listen = _LiveConnection(socket, owner, hub, arbiter, bridge, audit, clock).listen
+            budget = budgets.of(caller)
+            listen = _LiveConnection(socket, owner, hub, arbiter, bridge, audit, clock, budget).listen
             serving = hub.serve(send, greeting(owner), listen, caller)
             await end_after(access.devices.count_seconds(caller.device), serving)
     except WebSocketDisconnect:

@@ -137,6 +137,30 @@ def test_a_first_server_that_cannot_start_is_not_tried_again(tmp_path: Path) -> 
         assert family.started.wait(SECONDS) == 1
         assert (tmp_path / "broken").read_text() == "x"
         assert family.gone()
+    said = (tmp_path / "words").read_text()
+    assert "The server has ended with exit status 1 before it could serve" in said
+
+
+@pytest.mark.parametrize(
+    ("how", "described"),
+    [
+        ("1", "has ended with exit status 1"),
+        ("0", "has ended with exit status 0"),
+        ("abort", "signal SIGABRT"),
+    ],
+)
+def test_a_server_that_has_served_is_started_again_however_it_ended(
+    tmp_path: Path, how: str, described: str
+) -> None:
+    (tmp_path / "exit").write_text(how)
+    with ending(Family(tmp_path)) as family:
+        wait(lambda: family.whole() and len(family.servers) == 2, "the next server")
+        ended = family.servers[1][1]
+        assert described in ended
+        assert ended.endswith("Its last words: Memory allocation still failed, giving up.")
+        os.kill(family.started.pid, signal.SIGTERM)
+        assert family.started.wait(SECONDS) == 0
+    assert f"{ended} It is started again at once." in (tmp_path / "words").read_text()
 
 
 def test_a_later_one_that_cannot_start_is_tried_until_it_can(tmp_path: Path) -> None:

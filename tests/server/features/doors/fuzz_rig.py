@@ -5,7 +5,6 @@ from contextlib import contextmanager
 
 from hypothesis import HealthCheck
 
-from robot_runtime.clock import Clock
 from server.container import Container
 from server.features.doors.commands import DoorCommands, DoorPilot
 from server.features.doors.subscriptions import DoorClient
@@ -31,5 +30,6 @@ def join_door(container: Container, door: str) -> Iterator[tuple[DoorClient, Doo
         container.audit,
     )
     with container.arbiter.page(SHELL) as owner:
-        client = DoorClient(1, SHELL, "", send, container.services[Clock])  # type: ignore[arg-type]
+        budget = container.budgets.of(SHELL)
+        client = DoorClient(1, SHELL, "", send, container.clock, budget)
         yield client, DoorPilot(owner, ""), commands

@@ -11,6 +11,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 import server.stream.bridge as bridge_module
 from robot_runtime.contract.packets import Beacon, Depth
+from server.features.doors.rosbridge import FRAGMENT_MIN
 from server.features.doors.session import INVALID_MAX
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block, picture_block, state_block
@@ -199,14 +200,14 @@ def test_cbor_png_and_fragments_come_only_where_they_are_asked_for(settings: Set
             for socket, asked in (
                 (in_cbor, {"compression": "cbor"}),
                 (in_png, {"compression": "png"}),
-                (in_parts, {"fragment_size": 256}),
+                (in_parts, {"fragment_size": FRAGMENT_MIN}),
             ):
                 client = RosbridgeClient(socket)
                 await client.say(op="subscribe", topic="/camera/image/compressed", **asked)
                 await client.call("/rosapi/get_time")
             await served.heard("picture")
-            served.runtime.publish(picture_block(7, 900))
-            jpeg = bytes([7]) * 900
+            served.runtime.publish(picture_block(7, 9000))
+            jpeg = bytes([7]) * 9000
             data = await in_cbor.recv()
             assert isinstance(data, bytes)
             assert jpeg in data

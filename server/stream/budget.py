@@ -1,0 +1,68 @@
+"""The budget of a viewer: messages to and from the sockets of one device.
+
+A device has many sockets, and each message costs the event loop some time, which heartbeats and STOP need.
+Whoever asks for more waits; nothing is lost but what a slow client loses as well. Operators have none: a
+program that steers must not find its commands late.
+"""
+
+import asyncio
+
+from robot_runtime.clock import Clock
+from server.http.sign_in.identity import Identity
+
+RECEIVED_PER_SECOND, RECEIVED_BURST = 100.0, 500.0
+SENT_PER_SECOND, SENT_BURST = 2000.0, 4000.0
+"""Messages; a large one counts as one for each `SENT_BYTES`. Every topic at the robot's full rate is less."""
+SENT_BYTES = 2048
+
+
+class Allowance:
+    """An amount that comes back at `rate` per s, up to `most`."""
+
+    def __init__(self, clock: Clock, rate: float, most: float) -> None:
+        self._clock = clock
+        self._rate = rate
+        self._most = self._left = most
+        self._last = clock.now()
+
+    def spend(self, amount: float) -> float:
+        """Take this amount; returns the s to wait until it has come back, 0 where it was there."""
+        now = self._clock.now()
+        self._left = min(self._most, self._left + (now - self._last) * self._rate) - amount
+        self._last = now
+        return max(0.0, -self._left / self._rate)
+
+
+class DeviceBudget:
+    """The budget of one device."""
+
+    def __init__(self, clock: Clock, *, limited: bool) -> None:
+        self._limited = limited
+        self._received = Allowance(clock, RECEIVED_PER_SECOND, RECEIVED_BURST)
+        self._sent = Allowance(clock, SENT_PER_SECOND, SENT_BURST)
+
+    async def wait_to_receive(self) -> None:
+        """Wait after a message of the client until the next one may be read."""
+        if self._limited and (wait := self._received.spend(1.0)) > 0:
+            await asyncio.sleep(wait)
+
+    async def wait_to_send(self, size: int) -> None:
+        """Wait until a message of so many bytes may be sent."""
+        if self._limited and (wait := self._sent.spend(1.0 + size // SENT_BYTES)) > 0:
+            await asyncio.sleep(wait)
+
+
+class Budgets:
+    """The budgets of all devices."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._of: dict[tuple[int, bool], DeviceBudget] = {}
+
+    def of(self, caller: Identity) -> DeviceBudget:
+        """The budget of a caller's device."""
+        limited = caller.role != "operator"
+        key = caller.device, limited
+        if key not in self._of:
+            self._of[key] = DeviceBudget(self._clock, limited=limited)
+        return self._of[key]
