@@ -43,6 +43,7 @@ from server.http.proxies import RequestsOfAddress
 from server.http.security import SecurityMiddleware
 from server.http.sign_in.middleware import SignInMiddleware
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
+from server.http.turns import RequestTurns
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
 
@@ -88,6 +89,7 @@ def create_app(
     )
     app.state.ended = ""
     # The middleware added last runs first.
+    app.add_middleware(RequestTurns)
     app.add_middleware(SignInMiddleware)
     app.add_middleware(
         SecurityMiddleware,

@@ -62,6 +62,7 @@ from server.http.audit import ARMING, AuditLog
 from server.http.heavy_requests import HeavyRequests
 from server.http.page import Page
 from server.http.sign_in.access import Access
+from server.platform.memory_reserve import MemoryReserve
 from server.platform.models import SessionRow
 from server.platform.notices import Notices
 from server.platform.pidfile import running_parts
@@ -112,6 +113,7 @@ class Container:
         self.commands = CheckedCommands(self.changes, settings, self.alarms)
         self._add_ros2()
         self.heavy_requests = HeavyRequests()
+        self.memory_reserve = MemoryReserve(self.clock)
         self.downloads = DatabaseDownloads(settings.data)
         self.layouts = Layouts(self.store)
         self.updates = PageUpdates(self.settings.data, InstallPlaces())
@@ -218,6 +220,7 @@ class Container:
     async def run(self) -> AsyncIterator[None]:
         """Start everything; end everything. Raises SetupError, StoreError."""
         tasks: list[asyncio.Task[None]] = []
+        self.memory_reserve.watch(asyncio.get_running_loop())
         try:
             interrupted = await self.recorder.recover()
             await self.imports.recover()

@@ -10,7 +10,9 @@ from fastapi.responses import JSONResponse
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.problems import DocumentEntry, EntryProblem
 from robot_runtime.errors import RefusedError
+from server.http.dependencies import find_service
 from server.platform.errors import ApiError
+from server.platform.memory_reserve import SHORT, MemoryReserve
 
 
 def add_error_handlers(app: FastAPI) -> None:
@@ -20,6 +22,7 @@ def add_error_handlers(app: FastAPI) -> None:
     app.add_exception_handler(ConfigError, _answer_config_error)
     app.add_exception_handler(RequestValidationError, _answer_invalid_request)
     app.add_exception_handler(400, _answer_unreadable_body)
+    app.add_exception_handler(MemoryError, _answer_lack_of_memory)
 
 
 async def _answer_api_error(_: Request, problem: Exception) -> JSONResponse:
@@ -48,6 +51,11 @@ async def _answer_invalid_request(_: Request, problem: Exception) -> JSONRespons
 
 async def _answer_unreadable_body(_: Request, __: Exception) -> JSONResponse:
     return _answer(422, "The request is not valid. Its body is not JSON in UTF-8.")
+
+
+async def _answer_lack_of_memory(request: Request, _: Exception) -> JSONResponse:
+    find_service(request, MemoryReserve).open()
+    return _answer(503, SHORT)
 
 
 def _answer(

@@ -5,6 +5,8 @@ import errno
 import logging
 import socket
 import sys
+from asyncio.selector_events import _SelectorSocketTransport  # type: ignore[attr-defined]
+from asyncio.sslproto import SSLProtocol
 from collections.abc import Sequence
 from typing import Any
 
@@ -31,6 +33,7 @@ OUT_OF_FILES = frozenset({errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOME
 REPORT_SECONDS = 60.0
 TICK_SECONDS = 0.25
 """s between two looks at the connections, and at whether the server shall end."""
+READ_BYTES = 32_768
 MESSAGE_BYTES_MAX = 4096
 HEAD_BYTES_MAX = 16_384
 GRACE_SECONDS = 3
@@ -51,6 +54,7 @@ class WebServer(uvicorn.Server):
         """Start the application, then accept connections."""
         loop = asyncio.get_running_loop()
         loop.set_exception_handler(OutOfFiles(self.connections).report)
+        _limit_reads()
         await self.lifespan.startup()
         if self.lifespan.should_exit:
             sys.exit(STARTUP_FAILURE)
@@ -99,6 +103,16 @@ class OutOfFiles:
             log.error(
                 "No connection can be accepted: %s. %d are open.", problem.strerror, len(self._connections)
             )
+
+
+def _limit_reads() -> None:
+    """Have the event loop read less at once than asyncio's quarter of a megabyte.
+
+    Each connection may hold as much, TLS as much again from its beginning on. A piece of this size comes from
+    the memory that the process has already, so that a STOP is read also where the system gives it no more.
+    """
+    for kind in (_SelectorSocketTransport, SSLProtocol):
+        kind.max_size = READ_BYTES
 
 
 def make_server(

@@ -1,7 +1,7 @@
 """The WebSocket protocol of the server: binary messages are framed directly, which costs less CPU.
 
-A quarter of a megabyte is read from a socket at once, and holds forty thousand small messages. They are taken
-in pieces, each after the messages of the one before, with a turn for everybody else after each message.
+What is read from a socket at once holds thousands of small messages. They are taken in pieces, each after the
+messages of the one before, with a turn for everybody else after each message.
 """
 
 import asyncio

@@ -168,15 +168,18 @@ class TopicHistory:
                 room -= len(one.data)
         return groups
 
-    def rows(self, topics: Collection[str], until: float) -> bytes:
-        """The stored rows of these topics up to `until` (s, steady clock), and up to `CHUNK_SECONDS` more."""
-        return b"".join(
+    def rows(self, topics: Collection[str], until: float) -> list[bytes]:
+        """The stored rows of these topics up to `until` (s, steady clock), and up to `CHUNK_SECONDS` more.
+
+        They are the stored chunks themselves: however many ask, they are in memory once.
+        """
+        return [
             one.data
             for backlog in self._topics.values()
             if backlog.topic.name in topics
             for one in backlog.chunks()
             if one.since < until
-        )
+        ]
 
 
 def _join(blocks: Sequence[Block]) -> bytes:

@@ -2,13 +2,13 @@
 
 import asyncio
 import json
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from math import isfinite
 from time import time
 from typing import Annotated, Any
 
 from fastapi import Depends, Query, WebSocket, WebSocketDisconnect
-from fastapi.responses import Response
+from fastapi.responses import Response, StreamingResponse
 from pydantic import StringConstraints, ValidationError
 
 from robot_runtime.clock import Clock
@@ -38,6 +38,7 @@ ABNORMAL_CLOSURE = 1006
 """The code of a connection that ended without a closing frame (RFC 6455, 7.4.1)."""
 INVALID_MAX = 20
 """Invalid messages in a row after which the socket is closed."""
+PIECE_BYTES = 65_536
 WATCHABLE = frozenset({"picture", "observer", "mask", "balanced"})
 """Topics of pictures that a page can watch."""
 
@@ -227,7 +228,18 @@ async def get_past(
     All rows of these topics up to `until`, topic by topic, oldest first, as blocks.
     """
     rows = hub.history.rows(topic, until)
-    return Response(rows, media_type="application/octet-stream", headers={"Cache-Control": "no-store"})
+    headers = {"Cache-Control": "no-store", "Content-Length": str(sum(map(len, rows)))}
+    return StreamingResponse(_gather(rows), media_type="application/octet-stream", headers=headers)
+
+
+async def _gather(chunks: list[bytes]) -> AsyncIterator[bytes]:
+    """The chunks in pieces of about `PIECE_BYTES`; the next one is made when the client has read the last."""
+    first = size = 0
+    for place, chunk in enumerate(chunks):
+        size += len(chunk)
+        if size >= PIECE_BYTES or place == len(chunks) - 1:
+            yield b"".join(chunks[first : place + 1])
+            first, size = place + 1, 0
 
 
 def _read(text: str | None) -> dict[str, Any]:

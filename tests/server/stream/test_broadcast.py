@@ -140,7 +140,7 @@ def test_a_gap_in_the_numbers_stays_a_gap() -> None:
 def test_rows_before_a_time_are_selected_by_topic() -> None:
     history = filled(100)
     history.add(link_block(0, 1), tick=0, now=100.0)
-    data = history.rows({"depth"}, until=150.0)
+    data = b"".join(history.rows({"depth"}, until=150.0))
     assert 2500 <= len(numbers(data)) <= (50 + CHUNK_SECONDS) * 50
     assert numbers(data)[0] == 0
     assert {block.topic for block in read_blocks(data)} == {DEPTH}
