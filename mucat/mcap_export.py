@@ -70,14 +70,14 @@ def _read_topic(path: Path, name: str, described: Mapping[str, Any]) -> TopicTab
 def _number_columns(
     field: Mapping[str, Any], messages: list[dict[str, Any]]
 ) -> Iterator[tuple[str, str, list[float]]]:
-    """Name, unit and values of each column of a field; NaN where JSON has null."""
+    """Name, unit and values of each column of a field; NaN where JSON has null, or nothing."""
     name, unit, _ = si_column(field["name"], field["unit"], ())
-    values = [one[name] for one in messages]
+    values = [one.get(name) for one in messages]
     if field["count"] == 1:
         yield name, unit, [*map(_number, values)]
         return
     for place in range(field["count"]):
-        yield f"{name}_{place}", unit, [_number(one[place]) for one in values]
+        yield f"{name}_{place}", unit, [math.nan if one is None else _number(one[place]) for one in values]
 
 
 def _number(value: float | None) -> float:

@@ -6,6 +6,7 @@ A layout therefore fits both. Our own topics are in our own axes, and so are `/t
 
 import json
 from collections.abc import Mapping
+from math import isfinite
 from typing import Any
 
 from robot_runtime.contract.packets.layout import Record
@@ -15,6 +16,7 @@ from server.features.doors.pose_tracker import SOURCES, PoseTracker
 from server.features.doors.ros_channels import DIAGNOSTICS, LINES, diagnostics
 from server.features.exports.mcap_file import DEBUG_LEVEL_OFFSET, INFO, SEVERITIES
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
+from server.features.exports.plain_schema import without_null
 from server.features.exports.pose import BODY, LEVEL, WORLD, stamp
 from server.features.exports.values import MICRO
 from server.features.sessions.chunks import describe_topics
@@ -96,14 +98,18 @@ def _rows(sample: Sample) -> Fields:
         field = getattr(value, name)
         if wire.unit == "µs":
             field = field * MICRO
-        fields["board_time" if name == "time" else name] = list(field) if wire.count > 1 else field
+        if wire.count > 1:
+            fields[name] = list(field)
+        elif isfinite(field):
+            fields["board_time" if name == "time" else name] = field
     return fields
 
 
 def _document(sample: Sample) -> Fields:
     value = sample.value
     assert isinstance(value, Mapping)
-    return dict(value)
+    fields: Fields = without_null(value)
+    return fields
 
 
 def _tick(_: Sample) -> Fields:

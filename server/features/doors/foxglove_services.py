@@ -6,8 +6,8 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from server.features.doors.commands import COMMANDS, TAKE
-from server.features.doors.plain_schema import simplify
 from server.features.doors.rosapi import NODE, command_services
+from server.features.exports.plain_schema import simplify
 
 _TYPES = command_services()
 SERVICES: dict[int, str] = dict(enumerate((name.removeprefix(f"{NODE}/") for name in _TYPES), 1))

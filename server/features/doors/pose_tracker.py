@@ -1,6 +1,7 @@
 """The pose of the robot from several topics, ten times a second, in our own axes."""
 
 from collections.abc import Sequence
+from math import isfinite
 
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.packets import Depth, Imu
@@ -30,6 +31,8 @@ class PoseTracker:
         elif isinstance(value, Depth) and not self._true:
             self._position = (0.0, 0.0, value.depth)
         elif isinstance(value, Imu) and self._position is not None and self._is_due(sample.time):
+            if not all(map(isfinite, (*self._position, *value.attitude))):
+                return None
             self._last = sample.time
             return self._position, value.attitude
         return None

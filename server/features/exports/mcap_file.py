@@ -6,6 +6,7 @@ Not compressed unless asked for: a Raspberry Pi Zero lacks the packages for it. 
 import base64
 import heapq
 import json
+import re
 from collections.abc import Iterator
 from importlib import import_module
 from itertools import repeat
@@ -16,6 +17,7 @@ from sqlmodel import col, select
 from robot_runtime.contract.topics import LINES
 from server.features.exports.description import craft_files, describe_session, dump_readable
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
+from server.features.exports.plain_schema import without_null
 from server.features.exports.pose import Pose, dump, level, stamp
 from server.features.exports.schemas import Compression
 from server.features.exports.selection import ExportRequestError, ExportSelection
@@ -31,6 +33,8 @@ IMAGE = "foxglove.CompressedImage"
 SEVERITIES = {"info": 2, "caution": 3, "alarm": 4}
 INFO = 2
 PACKAGES = {"zstd": "zstandard", "lz4": "lz4"}
+ABSENT = re.compile(rb',"\w+":null')
+"""A member of a row that is NaN: schemas that Foxglove reads know no null."""
 DEBUG_LEVEL_OFFSET = 1
 """From DebugLevel to foxglove.LogLevel, which begins with UNKNOWN."""
 
@@ -173,14 +177,17 @@ def _rows(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
     rows = Rows(source, name)
     for times, columns in rows.batches():
         since = [source.since_start(time) for time in times]
-        lines = rows.lines('"time":%.6f', [since], columns)
+        lines = [
+            ABSENT.sub(b"", line) if b"null" in line else line
+            for line in rows.lines('"time":%.6f', [since], columns)
+        ]
         yield from zip(map(source.utc_ns, times), repeat(place), lines, repeat(None))
 
 
 def _documents(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
     for document in source.documents(name, source.start, source.end):
         time = source.utc_ns(document["time"])
-        data = dump({**document, "time": round(source.since_start(document["time"]), 6)})
+        data = dump({**without_null(document), "time": round(source.since_start(document["time"]), 6)})
         yield (time, place, data, {**document, "topic": name} if name in LINES else None)
 
 

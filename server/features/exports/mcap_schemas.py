@@ -1,22 +1,24 @@
 """JSON Schemas for MCAP files: of our own topics, and of the well-known ones of Foxglove's panels.
 
 Foxglove and Lichtblick read only a part of JSON Schema: every property needs one type of number, integer,
-boolean, string, array or object (with its properties), and nothing else.
+boolean, string, array or object (with its properties), and nothing else. So a message has no member that is
+null: a number that is NaN, or that nobody knows, is left out.
 """
 
-from dataclasses import fields, is_dataclass
-from types import NoneType, UnionType
-from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+from functools import cache
+from typing import Any
+
+from pydantic import TypeAdapter
 
 from robot_runtime.contract.topics import BY_NAME
+from server.features.exports.plain_schema import simplify
 from server.features.exports.values import fields_of
 
 Schema = dict[str, Any]
 
 NUMBER: Schema = {"type": "number"}
 TEXT: Schema = {"type": "string"}
-WHOLE: Schema = {"type": "integer"}
-PLAIN: dict[Any, Schema] = {float: NUMBER, int: WHOLE, str: TEXT, bool: {"type": "boolean"}}
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def _object(title: str = "", **members: Schema) -> Schema:
@@ -87,13 +89,14 @@ def topic_schema(name: str, topic: dict[str, Any]) -> Schema:
     if topic["kind"] == "rows":
         for field in fields_of(topic):
             unit = f" [{field.unit}]" if field.unit else ""
-            value: Schema = {"type": "array", "items": NUMBER} if field.count > 1 else NUMBER
+            value = _several(field.count) if field.count > 1 else NUMBER
             members[field.name] = {**value, "description": field.meaning + unit}
     else:
         there = {field["name"] for field in topic["fields"]} - {"time"}
-        known = _members(BY_NAME[name].record) if name in BY_NAME else {}
+        known = document_members(name)
         members |= {field: schema for field, schema in known.items() if field in there}
     return {
+        "$schema": DIALECT,
         "title": f"mucat.{name}",
         "description": topic["meaning"],
         "type": "object",
@@ -101,21 +104,16 @@ def topic_schema(name: str, topic: dict[str, Any]) -> Schema:
     }
 
 
-def _members(record: Any) -> dict[str, Schema]:
-    if not is_dataclass(record):
+@cache
+def document_members(name: str) -> dict[str, Schema]:
+    """The schemas of a document's fields, from its class in the contract; none for an unknown topic."""
+    record = BY_NAME[name].record if name in BY_NAME else None
+    if record is None:
         return {}
-    hints = get_type_hints(record)
-    return {field.name: _of(hints[field.name]) for field in fields(record)}
+    members: dict[str, Schema] = simplify(TypeAdapter(record).json_schema())["properties"]
+    return members
 
 
-def _of(hint: Any) -> Schema:
-    if hint in PLAIN:
-        return PLAIN[hint]
-    origin = get_origin(hint)
-    if origin in (Union, UnionType):
-        return _of(next(one for one in get_args(hint) if one is not NoneType))
-    if origin is list:
-        return {"type": "array", "items": _of(get_args(hint)[0])}
-    if origin is Literal:
-        return TEXT
-    return {"type": "object", "properties": _members(hint)}
+def _several(count: int) -> Schema:
+    """So many numbers, or null for NaN: Foxglove reads `items` alone, which hold for what is beyond them."""
+    return {"type": "array", "prefixItems": [{"type": ["number", "null"]}] * count, "items": NUMBER}

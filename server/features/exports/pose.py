@@ -55,7 +55,7 @@ class Pose:
         if self._position is None:
             return None
         seen = json.loads(self._position)
-        where = seen["position"] if self._position_topic == "truth" else [0.0, 0.0, seen["depth"]]
+        where = seen["position"] if self._position_topic == "truth" else [0.0, 0.0, seen.get("depth")]
         return None if None in where else where
 
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import jsonschema_rs
 import pytest
 
 from tests.server.features.doors.ros2_rig import start_peer
@@ -99,9 +100,11 @@ def test_foxgloves_own_client_shows_sets_drives_and_stops(robot: Stack) -> None:
         "node", "foxglove.mjs", address(robot, "foxglove", "operate"), address(robot, "foxglove", "read")
     )
     assert said["info"]["supportedEncodings"] == ["json"]
+    latest = said["latest"]
     for channel in said["channels"]:
         assert json.loads(channel["schema"])["type"] == "object", channel["topic"]
-    latest = said["latest"]
+        if channel["topic"] in latest:
+            jsonschema_rs.validate(json.loads(channel["schema"]), latest[channel["topic"]])
     assert latest["/imu"]["force"][2] == pytest.approx(-9.8, abs=1.5)
     assert latest["/tf"]["parent_frame_id"] == "ned"
     assert latest["/tf_static"]["rotation"] == {"w": 0.0, "x": 1.0, "y": 0.0, "z": 0.0}
