@@ -269,12 +269,18 @@ def load_with_text(path: Path) -> tuple[Config, str]:
     """Reads the configuration and its text, which the file may not hold later. Raises as `load`."""
     try:
         text = path.read_text(encoding="utf-8")
-        table = read_toml(text)
     except (OSError, UnicodeDecodeError) as problem:
         raise ConfigError(f"{path} cannot be read: {problem}") from problem
+    return parse_text(text, path), text
+
+
+def parse_text(text: str, path: Path) -> Config:
+    """Returns the configuration in this text of the file `path`. Raises ConfigError if it cannot be used."""
+    try:
+        table = read_toml(text)
     except TomlError as problem:
         raise ConfigError(f"{path} cannot be read: it {problem}") from problem
-    return parse(Config, table, DocumentEntry(path.name)), text
+    return parse(Config, table, DocumentEntry(path.name))
 
 
 def craft_path(config: Config, path: Path, data: Path) -> Path:

@@ -27,11 +27,12 @@ class Problem(BaseModel):
     """An error: what happened, why, and what to do.
 
     `problems` are those of a document or a request, by entry. `kind` is `confirmation` where a browser must
-    confirm first, by `POST /api/access/confirm`.
+    confirm first, by `POST /api/access/confirm`, and `changed` where somebody else has changed the thing
+    since the editing began.
     """
 
     detail: str
-    kind: Literal["", "confirmation"] = ""
+    kind: Literal["", "confirmation", "changed"] = ""
     problems: list[EntryProblem] = []
 
 
@@ -42,6 +43,7 @@ EVERYWHERE: dict[int | str, dict[str, Any]] = {
         "not valid (422)",
     },
     503: {"model": Problem, "description": "Something that the server needs does not work"},
+    507: {"model": Problem, "description": "The disk is full"},
 }
 """The answers that every operation may give."""
 

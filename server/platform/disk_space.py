@@ -4,7 +4,6 @@ import errno
 import shutil
 from pathlib import Path
 
-from robot_runtime.errors import RefusedError
 from server.platform.errors import InsufficientStorageError
 from server.platform.settings import DataFolder
 
@@ -24,10 +23,10 @@ def free_bytes(path: Path) -> int:
 
 
 def check_room(folder: DataFolder) -> None:
-    """Raises RefusedError where there is no room to record a dive."""
+    """Raises FileWriteError where there is no room to record a dive."""
     free = free_bytes(folder.path)
     if free < DIVE_BYTES:
-        raise RefusedError(
+        raise FileWriteError(
             f"The disk is full: {free / 1e6:.0f} MB are free, and a dive that is recorded needs "
             f"{DIVE_BYTES / 1e6:.0f} MB. Remove sessions or exports."
         )

@@ -56,6 +56,10 @@ class SetupError(Exception):
     """The server cannot start; the text is one line that says why and what to do."""
 
 
+RESERVE = "reserve"
+"""File of the data folder; see server.platform.disk_reserve."""
+
+
 class DataFolder:
     """The paths of everything that the server stores, and of the sockets that its processes share."""
 
@@ -115,6 +119,8 @@ class DataFolder:
         """Your own scenarios."""
         self.missions = path / "missions"
         """Your own missions: a folder each, with their versions."""
+        self.reserve = path / RESERVE
+        """Room on the disk that is given up for deletions (platform/disk_reserve.py)."""
         self.config = path / "robot.toml"
         """The robot's configuration, unless the present folder has one."""
         self.last_config = path / "robot.toml.last"

@@ -15,18 +15,26 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sqlalchemy import Connection, Engine, UpdateBase, create_engine, event, insert, pool
+from sqlalchemy import Connection, Delete, Engine, UpdateBase, create_engine, event, insert, pool
 from sqlalchemy.exc import DBAPIError
 from sqlmodel import Session, SQLModel
 
-from server.platform.errors import UnavailableError
+from server.platform.disk_reserve import DiskReserve
+from server.platform.errors import InsufficientStorageError, UnavailableError
+from server.platform.settings import RESERVE
 
 T = TypeVar("T")
 PAGE_CACHE_KIB = 1024
+FULL = "the disk is full: free some space on the computer that holds the data folder"
 
 
 class StoreError(UnavailableError):
     """The database does not work"""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        if text == FULL:
+            self.status = InsufficientStorageError.status
 
     @property
     def detail(self) -> str:
@@ -57,13 +65,15 @@ class Reader:
 class Store(Reader):
     """Read and write access to the database; `failing` is the reason of the last write's failure.
 
-    Raises StoreError where another program has the database open for writing.
+    On a full disk it gives up its `reserve` for changes that free room. Raises StoreError where another
+    program has the database open for writing.
     """
 
     def __init__(self, database: Path) -> None:
         self._folder = _hold(database.parent)
         super().__init__(database)
         self.failing: str | None = None
+        self.reserve = DiskReserve(database.with_name(RESERVE))
         # With psow=0 no two commits share a sector: a power cut that damages the sector being written damages
         # no earlier commit.
         self._writer = _engine(database, "psow=0", pool.StaticPool)
@@ -73,16 +83,24 @@ class Store(Reader):
         self._thread = ThreadPoolExecutor(1, "writer")
         self._thread.submit(self._open).result()
 
-    async def write(self, change: Callable[[Connection], T]) -> T:
+    async def write(self, change: Callable[[Connection], T], *, frees: bool = False) -> T:
         """Run `change` in one transaction in the writer's thread; committed when this returns.
 
-        Raises StoreError where it could not be committed; then nothing of it is stored.
+        `frees` is a change that leads to free room. Raises StoreError where it could not be committed; then
+        nothing of it is stored.
         """
-        return await asyncio.wrap_future(self._thread.submit(self._commit, change))
+        commit = self._commit_freeing if frees else self._commit
+        return await asyncio.wrap_future(self._thread.submit(commit, change))
 
     async def execute(self, change: UpdateBase, rows: Sequence[Mapping[str, Any]] | None = None) -> int:
         """Run one statement in a transaction, for each of `rows` if given; returns the rows changed."""
-        return await self.write(lambda connection: connection.execute(change, rows).rowcount)
+        return await self.write(
+            lambda connection: connection.execute(change, rows).rowcount, frees=isinstance(change, Delete)
+        )
+
+    async def make_reserve(self) -> None:
+        """Set room aside for deletions, where there is enough."""
+        await asyncio.wrap_future(self._thread.submit(self.reserve.make))
 
     async def probe(self) -> None:
         """Test writing with a minimal change. Raises StoreError where it does not."""
@@ -98,6 +116,14 @@ class Store(Reader):
 
     def _open(self) -> None:
         self._connection = self._writer.connect()
+
+    def _commit_freeing(self, change: Callable[[Connection], T]) -> T:
+        try:
+            return self._commit(change)
+        except StoreError:
+            if self.failing != FULL or not self.reserve.give_up():
+                raise
+        return self._commit(change)
 
     def _commit(self, change: Callable[[Connection], T]) -> T:
         try:
@@ -159,7 +185,7 @@ def _make_durable(connection: sqlite3.Connection, _record: object) -> None:
 def _explain(problem: DBAPIError) -> str:
     words = str(problem.orig)
     if "disk is full" in words:
-        return "the disk is full: free some space on the computer that holds the data folder"
+        return FULL
     if "disk I/O error" in words:
         return "the disk does not take or give data (input/output error): check the SD card or disk"
     if "readonly" in words:

@@ -1,6 +1,7 @@
-"""`python -m tests.server.full_disk FOLDER`: record on a disk that fills up and is freed again.
+"""`python -m tests.server.full_disk FOLDER ACT`: record on a disk that fills up and is freed again.
 
-FOLDER is on a disk of its own. Tells in JSON what came of it.
+FOLDER is on a disk of its own. ACT is "record", or "purge": then room comes from a session that is removed.
+Tells in JSON what came of it.
 """
 
 import asyncio
@@ -12,17 +13,23 @@ import sys
 from collections.abc import Awaitable, Callable
 from contextlib import closing
 from pathlib import Path
+from time import time
 from typing import Any
+
+from sqlalchemy import update
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import BY_NAME
-from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block, row
 from server.features.backup.command import back_up
 from server.features.comm_tests.runs import CommTestStore
 from server.features.scenarios.library import _shipped, keep_scenario
+from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder
+from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.session import new_row
+from server.platform.disk_space import FileWriteError
+from server.platform.models import SessionRow
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders
@@ -55,9 +62,7 @@ async def record(data: DataFolder, config: Path) -> dict[str, Any]:
     await runs.add(run, 0, LOST.values)
     session = await recorder.start(new_row(settings, clock, "full", "", "null"))
     ballast = data.path / "ballast"
-    with ballast.open("wb") as file:
-        free = os.statvfs(data.path)
-        file.write(bytes(free.f_bavail * free.f_frsize - LEFT_BYTES))
+    fill(ballast, LEFT_BYTES)
     first = 0
     refusals: list[str] = []
     while len(refusals) < FULL_TIMES:
@@ -103,9 +108,60 @@ async def refusal(work: Callable[[], Awaitable[object]]) -> str:
     """The text of the refusal; "" without one."""
     try:
         await work()
-    except (StoreError, RefusedError, SetupError) as problem:
+    except (StoreError, FileWriteError, SetupError) as problem:
         return str(problem)
     return ""
+
+
+async def purge(data: DataFolder, config: Path) -> dict[str, Any]:
+    """Record until not a byte is left, and remove the session."""
+    settings, clock, chance = Settings(data=data, config=config), SimulatedClock(), random.Random(1)
+    store = Store(data.database)
+    notices = Notices(clock, lambda _: None)
+    recorder, catalogue = Recorder(store, clock, notices, lambda: None), Catalogue(store)
+    retention = RetentionWorker(store, settings, notices, clock)
+    await retention.apply(time())
+    reserved = data.reserve.stat().st_size
+    sessions, first = [], 0
+    for name in ("old", "new"):
+        sessions.append((await recorder.start(new_row(settings, clock, name, "", "null"))).id)
+        for _ in range(20 if name == "old" else 10_000):
+            recorder.add(noisy_block(first, chance))
+            first += COUNT
+            try:
+                await recorder.flush()
+            except StoreError:
+                break
+        if name == "old":
+            await recorder.stop(sessions[0])
+    fill(data.path / "ballast", 0)
+    refused = await refusal(lambda: store.execute(update(SessionRow).values(note="x" * 100_000)))
+    await catalogue.delete(sessions[0])
+    await catalogue.purge(sessions[0])
+    await retention.apply(time())
+    given_up = not data.reserve.exists()
+    listed = [one.id for one in catalogue.list()]
+    (data.path / "ballast").unlink()
+    await recorder.stop(sessions[1])
+    await catalogue.delete(sessions[1])
+    await catalogue.purge(sessions[1])
+    await retention.apply(time())
+    store.close()
+    store.reserve.make()
+    return {
+        "reserved": reserved,
+        "refused": refused,
+        "given_up": given_up,
+        "listed": [sessions.index(one) for one in listed],
+        "reserved_again": data.reserve.exists() and data.reserve.stat().st_size,
+    }
+
+
+def fill(path: Path, left: int) -> None:
+    """Write a file that leaves this many bytes of the disk."""
+    free = os.statvfs(path.parent)
+    with path.open("wb") as file:
+        file.write(bytes(max(free.f_bavail * free.f_frsize - left, 0)))
 
 
 def main() -> None:
@@ -114,7 +170,7 @@ def main() -> None:
     prepare(data)
     config = data.path / "robot.toml"
     config.touch()
-    told = asyncio.run(record(data, config))
+    told = asyncio.run(record(data, config) if sys.argv[2] == "record" else purge(data, config))
     with closing(sqlite3.connect(data.database)) as database:
         (told["integrity"],) = database.execute("PRAGMA integrity_check").fetchone()
         told["gaps"] = database.execute("SELECT kind FROM gap").fetchall()

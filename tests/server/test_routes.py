@@ -232,7 +232,7 @@ def test_with_a_full_disk_nothing_is_armed(
         usage = shutil.disk_usage(settings.data.path)
         monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=19_999_999))
         answer = await served.api.post(path, json=body)
-        assert answer.status_code == 409
+        assert answer.status_code == 507
         assert "The disk is full: 20 MB are free" in answer.json()["detail"]
         assert served.runtime.asked == []
 

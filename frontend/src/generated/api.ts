@@ -4250,6 +4250,11 @@ export interface components {
          * @description A saved layout with its document, which may be of another version of the program.
          */
         LayoutDetails: {
+            /**
+             * Author
+             * @description the person who saved it; empty where it is not known
+             */
+            author: string;
             /** Document */
             document: {
                 [key: string]: unknown;
@@ -4263,6 +4268,11 @@ export interface components {
              * Format: date-time
              */
             saved: string;
+            /**
+             * Version
+             * @description counts its changes from 1
+             */
+            version: number;
         };
         /**
          * LayoutDocument
@@ -4723,6 +4733,11 @@ export interface components {
          * @description A mission; `shipped` ones are part of the program, the others are in the data folder.
          */
         MissionText: {
+            /**
+             * Mark
+             * @description tells this text from others
+             */
+            mark: string;
             /** Name */
             name: string;
             /** Shipped */
@@ -4805,6 +4820,11 @@ export interface components {
          * @description A version of a mission of one's own.
          */
         MissionVersion: {
+            /**
+             * Author
+             * @description empty where it is not known
+             */
+            author: string;
             /**
              * Made
              * @description s since 1970
@@ -4923,9 +4943,30 @@ export interface components {
          * @description A layout to be saved under a name.
          */
         NewLayout: {
+            /**
+             * Base
+             * @description the version that it replaces, 0 for a new layout: refused if somebody has saved another since. null replaces any
+             */
+            base?: number | null;
             document: components["schemas"]["LayoutDocument"];
             /** Name */
             name: string;
+        };
+        /**
+         * NewMission
+         * @description A mission to be stored.
+         */
+        NewMission: {
+            /**
+             * Base
+             * @description `mark` of the version that the editing began from, empty for a new mission: refused if somebody has changed it since. null replaces any
+             */
+            base?: string | null;
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
         };
         /**
          * NewProfile
@@ -4939,6 +4980,22 @@ export interface components {
              * @default
              */
             note: string;
+        };
+        /**
+         * NewScenario
+         * @description A scenario to be stored.
+         */
+        NewScenario: {
+            /**
+             * Base
+             * @description `mark` of the text that the editing began from, empty for a new scenario: refused if somebody has changed it since. null replaces any
+             */
+            base?: string | null;
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
         };
         /**
          * NewSession
@@ -5222,7 +5279,8 @@ export interface components {
          * @description An error: what happened, why, and what to do.
          *
          *     `problems` are those of a document or a request, by entry. `kind` is `confirmation` where a browser must
-         *     confirm first, by `POST /api/access/confirm`.
+         *     confirm first, by `POST /api/access/confirm`, and `changed` where somebody else has changed the thing
+         *     since the editing began.
          */
         Problem: {
             /** Detail */
@@ -5232,7 +5290,7 @@ export interface components {
              * @default
              * @enum {string}
              */
-            kind: "" | "confirmation";
+            kind: "" | "confirmation" | "changed";
             /**
              * Problems
              * @default []
@@ -5244,6 +5302,11 @@ export interface components {
          * @description Parameters saved under a name.
          */
         Profile: {
+            /**
+             * Author
+             * @description the person who saved it; empty where it is not known
+             */
+            author: string;
             /** Id */
             id: number;
             /** Name */
@@ -5528,6 +5591,11 @@ export interface components {
          * @description A layout by its name.
          */
         SavedLayout: {
+            /**
+             * Author
+             * @description the person who saved it; empty where it is not known
+             */
+            author: string;
             /** Id */
             id: number;
             /** Name */
@@ -5537,6 +5605,11 @@ export interface components {
              * Format: date-time
              */
             saved: string;
+            /**
+             * Version
+             * @description counts its changes from 1
+             */
+            version: number;
         };
         /**
          * ScenarioCheck
@@ -5651,6 +5724,11 @@ export interface components {
          * @description A scenario; `shipped` ones are part of the program, the others are in the data folder.
          */
         ScenarioText: {
+            /**
+             * Mark
+             * @description tells this text from others
+             */
+            mark: string;
             /** Name */
             name: string;
             /** Shipped */
@@ -6848,6 +6926,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -6906,6 +6993,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -6937,6 +7033,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7002,6 +7107,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7080,6 +7194,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7111,6 +7234,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7187,6 +7319,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7225,6 +7366,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7292,6 +7442,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7321,6 +7480,15 @@ export interface operations {
             };
             /** @description The database or the robot's runtime fails */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7373,6 +7541,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7411,6 +7588,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7521,6 +7707,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7577,6 +7772,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7608,6 +7812,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7675,6 +7888,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7735,6 +7957,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7782,6 +8013,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7811,6 +8051,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7860,6 +8109,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7898,6 +8156,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7929,6 +8196,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8005,6 +8281,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8047,6 +8332,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8103,6 +8397,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8152,6 +8455,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8183,6 +8495,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8250,6 +8571,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8303,6 +8633,15 @@ export interface operations {
             };
             /** @description The sessions cannot be compared */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8379,6 +8718,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8410,6 +8758,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8457,6 +8814,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8513,6 +8879,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8544,6 +8919,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8598,6 +8982,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8636,6 +9029,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8667,6 +9069,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8801,6 +9212,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8850,6 +9270,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8915,6 +9344,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8946,6 +9384,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9013,6 +9460,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9051,6 +9507,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9082,6 +9547,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9140,6 +9614,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9180,6 +9663,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9232,6 +9724,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9272,6 +9773,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9386,6 +9896,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9419,7 +9938,7 @@ export interface operations {
                     "application/json": components["schemas"]["SavedLayout"];
                 };
             };
-            /** @description There are too many */
+            /** @description There are too many, or it was changed meanwhile */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -9430,6 +9949,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9486,6 +10014,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9526,6 +10063,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9580,6 +10126,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9618,6 +10173,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9638,7 +10202,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["MissionBody"];
+                "application/json": components["schemas"]["NewMission"];
             };
         };
         responses: {
@@ -9671,6 +10235,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9729,6 +10302,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9760,6 +10342,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9845,6 +10436,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9883,6 +10483,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9914,6 +10523,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9981,6 +10599,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10019,6 +10646,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10068,6 +10704,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10131,6 +10776,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10169,6 +10823,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10200,6 +10863,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10249,6 +10921,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10312,6 +10993,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10343,6 +11033,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10419,6 +11118,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10462,6 +11170,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10493,6 +11210,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10553,6 +11279,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10629,6 +11364,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10669,6 +11413,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10718,6 +11471,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10801,6 +11563,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10832,6 +11603,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10906,6 +11686,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -10966,6 +11755,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -11040,6 +11838,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11107,6 +11914,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11167,6 +11983,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -11243,6 +12068,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11303,6 +12137,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -11377,6 +12220,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11437,6 +12289,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -11511,6 +12372,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11571,6 +12441,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -11647,6 +12526,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11709,6 +12597,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -11785,6 +12682,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11852,6 +12758,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11897,6 +12812,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11935,6 +12859,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -11955,7 +12888,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["ScenarioDocument"];
+                "application/json": components["schemas"]["NewScenario"];
             };
         };
         responses: {
@@ -11995,6 +12928,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12026,6 +12968,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12077,6 +13028,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12153,6 +13113,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12184,6 +13153,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12240,6 +13218,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12279,6 +13266,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12337,6 +13333,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12379,6 +13384,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12437,6 +13451,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12506,6 +13529,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12561,6 +13593,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12630,6 +13671,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12680,6 +13730,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12750,6 +13809,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12808,6 +13876,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12857,6 +13934,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -12922,6 +14008,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -12964,6 +14059,15 @@ export interface operations {
             };
             /** @description The sessions cannot be compared */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -13029,6 +14133,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13081,6 +14194,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13123,6 +14245,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -13188,6 +14319,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13219,6 +14359,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -13259,6 +14408,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -13335,6 +14493,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13393,6 +14560,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13442,6 +14618,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -13511,6 +14696,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13542,6 +14736,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -13612,6 +14815,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13643,6 +14855,15 @@ export interface operations {
             };
             /** @description Something that the server needs does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -13831,6 +15052,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13884,6 +15114,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -13951,6 +15190,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -13991,6 +15239,15 @@ export interface operations {
             };
             /** @description It did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };

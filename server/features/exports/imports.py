@@ -49,8 +49,7 @@ class Imports:
         if self._folder.is_dir():
             for file in self._folder.iterdir():
                 file.unlink(missing_ok=True)
-        unfinished = col(SessionRow.state) == IMPORTING
-        await self._store.execute(update(SessionRow).where(unfinished).values(state=REMOVING))
+        await self._drop_unfinished()
 
     async def receive(self, pieces: AsyncIterable[bytes], size: int | None) -> int:
         """Import the archive that arrives in pieces, of `size` bytes if known, and return its new number.
@@ -96,6 +95,8 @@ class Imports:
             await asyncio.to_thread(rows.unlink, missing_ok=True)
 
     async def _store_session(self, path: Path, rows: Path) -> int:
+        # An import whose end could not even be marked is one of these: they are one at a time.
+        await self._drop_unfinished()
         lines = _read_lines(rows)
         first = await asyncio.to_thread(next, lines)
         session: dict[str, Any] = first["session"]
@@ -108,9 +109,14 @@ class Imports:
             await self._change(number, {"state": session["state"], **done})
         except BaseException:
             # The retention worker removes the rest.
-            await asyncio.shield(self._change(number, {"state": REMOVING}))
+            await asyncio.shield(self._drop_unfinished())
             raise
         return number
+
+    async def _drop_unfinished(self) -> None:
+        """Mark unfinished imports for removal. Raises StoreError."""
+        unfinished = update(SessionRow).where(col(SessionRow.state) == IMPORTING).values(state=REMOVING)
+        await self._store.write(lambda connection: connection.execute(unfinished), frees=True)
 
     def _refuse_known(self, identifier: str) -> None:
         with self._store.read() as database:

@@ -3,7 +3,7 @@
 import asyncio
 from pathlib import Path
 
-from robot_runtime.config import craft_in, load
+from robot_runtime.config import craft_in, parse_text
 from robot_runtime.contract.commands import ControllerCommand
 from robot_runtime.contract.craft import Craft, load_craft
 from robot_runtime.contract.limits import ConfigError
@@ -14,7 +14,7 @@ from server.features.identification.effect import describe_effect
 from server.features.identification.schemas import AdoptedCraft
 from server.features.parameters.changes import Changes
 from server.health.monitor import HealthMonitor
-from server.platform.disk_space import explain_write_error
+from server.platform.disk_space import FileWriteError, explain_write_error
 from server.platform.settings import Settings
 from server.processes.supervisor import SIMULATION_ELSEWHERE, ProcessSupervisor
 from server.stream.bridge import RuntimeSilentError
@@ -87,7 +87,7 @@ class CraftAdoption:
         try:
             await asyncio.to_thread(self._write, text, keep)
         except OSError as problem:
-            raise RefusedError(explain_write_error(problem, self._file)) from problem
+            raise FileWriteError(explain_write_error(problem, self._file)) from problem
         new = await asyncio.to_thread(self._read, self._file)
         return [*describe_effect(old, new), *await self._restart_simulator(), *await self._tune(new, who)]
 
@@ -128,10 +128,10 @@ class CraftAdoption:
     async def _tune(self, craft: Craft, who: str) -> list[str]:
         """Set the gains of the running model-based controller that robot.toml leaves to the craft."""
         try:
-            configured = await asyncio.to_thread(load, self._settings.config)
+            configured = parse_text(self._settings.config_text, self._settings.config)
             given = configured.control.gains.get(PREDICTIVE, {})
             if gains := {name: value for name, value in craft_gains(craft).items() if name not in given}:
                 await self._changes.command(who, ControllerCommand(name=PREDICTIVE, gains=gains))
-        except (ConfigError, RefusedError, RuntimeSilentError) as problem:
+        except (RefusedError, RuntimeSilentError) as problem:
             return [f"The model-based controller takes its gains at the next start ({problem})."]
         return []

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 from sqlalchemy import Connection, delete, func, update
+from sqlalchemy.orm import defer
 from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
 from server.features.layouts.document import LayoutDocument
+from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.platform.errors import NotFoundError
 from server.platform.models import LayoutRow
 from server.platform.store import Store, insert_row
@@ -29,6 +31,8 @@ class SavedLayout(BaseModel):
     id: int
     name: str
     saved: datetime
+    author: str = Field(description="the person who saved it; empty where it is not known")
+    version: int = Field(description="counts its changes from 1")
 
 
 class LayoutDetails(SavedLayout):
@@ -45,10 +49,9 @@ class Layouts:
 
     def list(self) -> Sequence[SavedLayout]:
         """All of them, by name."""
-        columns = (col(LayoutRow.id), col(LayoutRow.name), col(LayoutRow.saved))
+        whole = select(LayoutRow).options(defer(LayoutRow.document))  # type: ignore[arg-type]
         with self._store.read() as database:
-            found = database.exec(select(*columns).order_by(func.lower(LayoutRow.name))).all()
-        return [SavedLayout(id=key or 0, name=name, saved=_utc(saved)) for key, name, saved in found]
+            return [_show(row) for row in database.exec(whole.order_by(func.lower(LayoutRow.name)))]
 
     def get(self, layout: int) -> LayoutDetails:
         """The layout of this number. Raises UnknownLayoutError."""
@@ -56,26 +59,36 @@ class Layouts:
             row = database.get(LayoutRow, layout)
             if row is None:
                 raise UnknownLayoutError(f"There is no layout {layout}. Somebody may have deleted it.")
-            return LayoutDetails(
-                id=layout, name=row.name, saved=_utc(row.saved), document=json.loads(row.document)
-            )
+            return LayoutDetails(**_show(row).model_dump(), document=json.loads(row.document))
 
-    async def save(self, name: str, document: LayoutDocument) -> SavedLayout:
-        """Save a layout, replacing one of the same name. Raises RefusedError if there are too many."""
+    async def save(
+        self, name: str, document: LayoutDocument, author: str = "", base: int | None = None
+    ) -> SavedLayout:
+        """Save a layout, replacing one of the same name.
+
+        `base` is the version that it replaces, 0 for a new layout; None replaces any. Raises RefusedError if
+        there are too many, ChangedMeanwhileError.
+        """
         text, now = document.model_dump_json(exclude_none=True), time.time()
+        columns = (col(LayoutRow.id), col(LayoutRow.version), col(LayoutRow.author))
 
-        def write(connection: Connection) -> int:
-            found = connection.execute(select(LayoutRow.id).where(LayoutRow.name == name)).scalar()
-            if found is not None:
-                change = update(LayoutRow).where(col(LayoutRow.id) == found)
-                connection.execute(change.values(document=text, saved=now))
-                return int(found)
+        def write(connection: Connection) -> SavedLayout:
+            found = connection.execute(select(*columns).where(LayoutRow.name == name)).first()
+            there, version, last = found or (None, 0, "")
+            if base is not None and base != version:
+                raise ChangedMeanwhileError(f"The layout “{name}”", last, gone=found is None)
+            row = LayoutRow(id=there, name=name, document=text, saved=now, author=author, version=version + 1)
+            values = row.model_dump(exclude={"id"})
+            if there is not None:
+                connection.execute(update(LayoutRow).where(col(LayoutRow.id) == there).values(values))
+                return _show(row)
             count = connection.execute(select(func.count()).select_from(LayoutRow)).scalar_one()
             if count >= LAYOUTS_MOST:
                 raise RefusedError(f"There are {LAYOUTS_MOST} layouts already. Delete one that nobody needs.")
-            return insert_row(connection, LayoutRow, {"name": name, "document": text, "saved": now})
+            row.id = insert_row(connection, LayoutRow, values)
+            return _show(row)
 
-        return SavedLayout(id=await self._store.write(write), name=name, saved=_utc(now))
+        return await self._store.write(write)
 
     async def delete(self, layout: int) -> None:
         """Delete a layout for good. Raises UnknownLayoutError."""
@@ -84,8 +97,9 @@ class Layouts:
             if connection.execute(delete(LayoutRow).where(col(LayoutRow.id) == layout)).rowcount == 0:
                 raise UnknownLayoutError(f"There is no layout {layout}. Somebody may have deleted it.")
 
-        await self._store.write(write)
+        await self._store.write(write, frees=True)
 
 
-def _utc(seconds: float) -> datetime:
-    return datetime.fromtimestamp(seconds, UTC)
+def _show(row: LayoutRow) -> SavedLayout:
+    saved = datetime.fromtimestamp(row.saved, UTC)
+    return SavedLayout(id=row.id or 0, name=row.name, saved=saved, author=row.author, version=row.version)

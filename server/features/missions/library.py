@@ -16,7 +16,8 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.missions.document import NAME, MissionDocument, called_by, read_mission
 from robot_runtime.missions.library import SHIPPED, shipped_missions
 from server.features.missions.schemas import MissionText, MissionVersion, summarize_mission
-from server.platform.disk_space import explain_write_error
+from server.platform.disk_space import FileWriteError, explain_write_error
+from server.platform.edited_meanwhile import ChangedMeanwhileError, mark_text
 from server.platform.errors import NotFoundError
 
 log = logging.getLogger(__name__)
@@ -24,6 +25,10 @@ log = logging.getLogger(__name__)
 MISSIONS_MAX = 200
 VERSIONS_MAX = 50
 """Of one mission; the oldest go."""
+AUTHORS = "authors.json"
+"""File beside the versions, with the author of each by its number."""
+DELETED = ".deleted"
+"""End of the name of a folder that is being removed."""
 _STORING = threading.Lock()
 """Held while a version is numbered and written: each request has a library of its own, and a thread."""
 
@@ -35,7 +40,8 @@ class UnknownMissionError(NotFoundError):
 class MissionLibrary:
     """The missions of one data folder, and those that ship with the program.
 
-    A mission of one's own is a folder with a file for each version, the newest with the highest number.
+    A mission of one's own is a folder with a file for each version, the newest with the highest number, and
+    one with their authors.
     """
 
     def __init__(self, own: Path, limits: MissionLimits) -> None:
@@ -71,52 +77,75 @@ class MissionLibrary:
         found = _versions(self._own / name) if NAME.fullmatch(name) else []
         if not found:
             raise UnknownMissionError(f"The library has no own mission {name!r}.")
+        authors = _read_authors(self._own / name)
         return [
-            MissionVersion(version=int(path.stem), made=path.stat().st_mtime, text=text)
+            MissionVersion(
+                version=int(path.stem),
+                made=path.stat().st_mtime,
+                author=authors.get(path.stem, ""),
+                text=text,
+            )
             for path in reversed(found)
             if (text := _read(path)) is not None
         ]
 
-    def keep(self, text: str) -> MissionDocument:
+    def keep(self, text: str, author: str = "", base: str | None = None) -> MissionDocument:
         """Stores a mission under its own name, as a new version where it differs from the newest.
 
-        Raises ConfigError if it is not valid, RefusedError if it may not or cannot be written.
+        `base` is the mark (`mark_text`) of the version that the editing began from, "" for a new mission;
+        None replaces any. Raises ConfigError if it is not valid, RefusedError if it may not be written,
+        ChangedMeanwhileError, FileWriteError.
         """
         mission = self.read(text)
         if mission.name in SHIPPED:
             raise RefusedError(f"{mission.name} ships with the program. Choose another name.")
         with _STORING:
-            self._store(mission.name, text)
+            self._store(mission.name, text, author, base)
         return mission
 
-    def _store(self, name: str, text: str) -> None:
+    def _store(self, name: str, text: str, author: str, base: str | None) -> None:
         folder = self._own / name
         versions = _versions(folder)
+        newest, authors = (_read(versions[-1]) or "") if versions else "", _read_authors(folder)
+        if newest == text:
+            return
+        if base is not None and base != mark_text(newest):
+            last = authors.get(versions[-1].stem, "") if versions else ""
+            raise ChangedMeanwhileError(f"The mission {name}", last, gone=not versions)
         if not versions and len(self.texts()) >= MISSIONS_MAX:
             raise RefusedError(
                 f"The library has {MISSIONS_MAX} missions already. Remove one from {self._own}."
             )
-        if versions and _read(versions[-1]) == text:
-            return
         path = folder / f"{int(versions[-1].stem) + 1 if versions else 1}.toml"
+        remaining = [*versions, path][-VERSIONS_MAX:]
+        authors = {one.stem: authors[one.stem] for one in remaining if one.stem in authors} | {
+            path.stem: author
+        }
         try:
             make_folder(self._own)
             make_folder(folder)
+            write_whole(folder / AUTHORS, json.dumps(authors, ensure_ascii=False).encode())
             write_whole(path, text.encode())
-            for old in versions[: max(len(versions) + 1 - VERSIONS_MAX, 0)]:
+            for old in versions[: len(versions) + 1 - len(remaining)]:
                 old.unlink(missing_ok=True)
         except OSError as problem:
-            raise RefusedError(explain_write_error(problem, path)) from problem
+            raise FileWriteError(explain_write_error(problem, path)) from problem
 
     def delete(self, name: str) -> None:
         """Deletes one's own mission with its versions. Raises UnknownMissionError, RefusedError."""
         if name in SHIPPED:
             raise RefusedError(f"{name} ships with the program and stays.")
-        self.versions(name)
-        try:
-            rmtree(self._own / name)
-        except OSError as problem:
-            raise RefusedError(f"{self._own / name} cannot be deleted: {problem.strerror}.") from problem
+        with _STORING:
+            self.versions(name)
+            # In one step; no mission has such a name.
+            away = self._own / f"{name}{DELETED}"
+            try:
+                if away.exists():
+                    rmtree(away)
+                (self._own / name).rename(away)
+                rmtree(away)
+            except OSError as problem:
+                raise RefusedError(f"{self._own / name} cannot be deleted: {problem.strerror}.") from problem
 
     def _describe(self, name: str, texts: dict[str, str]) -> MissionText:
         """A mission; the title of an invalid one is its name."""
@@ -128,7 +157,13 @@ class MissionLibrary:
         title = summary.title if summary else name
         shipped = name in SHIPPED
         return MissionText(
-            name=name, title=title, text=texts[name], shipped=shipped, versions=versions, summary=summary
+            name=name,
+            title=title,
+            text=texts[name],
+            mark=mark_text(texts[name]),
+            shipped=shipped,
+            versions=versions,
+            summary=summary,
         )
 
 
@@ -137,6 +172,14 @@ def _versions(folder: Path) -> list[Path]:
     if not folder.is_dir():
         return []
     return sorted((one for one in folder.glob("*.toml") if one.stem.isdigit()), key=lambda one: int(one.stem))
+
+
+def _read_authors(folder: Path) -> dict[str, str]:
+    """The authors by the versions' numbers; those of older versions of the program are not known."""
+    try:
+        return {str(key): str(name) for key, name in json.loads((folder / AUTHORS).read_bytes()).items()}
+    except (OSError, ValueError, AttributeError):
+        return {}
 
 
 def _read(path: Path) -> str | None:

@@ -18,6 +18,7 @@ from server.features.missions.schemas import (
     MissionText,
     MissionTrial,
     MissionVersion,
+    NewMission,
     TrialStart,
     summarize_mission,
 )
@@ -29,7 +30,7 @@ from server.http.heavy_requests import TooManyHeavyError, Turn
 from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
-from server.platform.disk_space import check_room
+from server.platform.disk_space import FileWriteError, check_room
 from server.platform.settings import Settings
 
 REFUSED = {409: "Refused now", 422: "The mission cannot be used"}
@@ -47,10 +48,11 @@ def list_missions(settings: Provided[Settings]) -> list[MissionText]:
     return _library(settings).describe()
 
 
-@router.operation("POST", Need.OPERATOR, REFUSED, status_code=201)
-async def keep_mission(settings: Provided[Settings], body: MissionBody) -> MissionSummary:
+@router.operation("POST", Need.OPERATOR, REFUSED, FileWriteError, status_code=201)
+async def keep_mission(settings: Provided[Settings], caller: Caller, body: NewMission) -> MissionSummary:
     """Store a mission in the data folder under its own name, as a new version."""
-    return summarize_mission(await run_in_threadpool(_library(settings).keep, body.text))
+    keep = _library(settings).keep
+    return summarize_mission(await run_in_threadpool(keep, body.text, caller.name, body.base))
 
 
 @router.operation(

@@ -21,6 +21,16 @@ class MissionBody(RequestBody):
     text: MissionToml
 
 
+class NewMission(MissionBody):
+    """A mission to be stored."""
+
+    base: Annotated[str, Field(max_length=64)] | None = Field(
+        default=None,
+        description="`mark` of the version that the editing began from, empty for a new mission: refused if "
+        "somebody has changed it since. null replaces any",
+    )
+
+
 class MissionStepSummary(BaseModel):
     """A step of a mission."""
 
@@ -53,6 +63,7 @@ class MissionText(BaseModel):
     name: str
     title: str
     text: str = Field(description="TOML")
+    mark: str = Field(description="tells this text from others")
     shipped: bool
     versions: int
     summary: MissionSummary | None = Field(description="null if it is not valid")
@@ -63,6 +74,7 @@ class MissionVersion(BaseModel):
 
     version: int
     made: float = Field(description="s since 1970")
+    author: str = Field(description="empty where it is not known")
     text: str = Field(description="TOML")
 
 

@@ -61,9 +61,11 @@ class Profiles:
             raise UnknownProfileError("There is no such profile; somebody may have deleted it.")
         return _show(row)
 
-    async def save(self, name: str, note: str, values: Mapping[str, Value]) -> Profile:
+    async def save(self, name: str, note: str, values: Mapping[str, Value], author: str = "") -> Profile:
         """Save these values. Raises RefusedError if the name is taken, or if there are too many profiles."""
-        row = ProfileRow(name=name, note=note, saved=time(), parameters=json.dumps(dict(values)))
+        row = ProfileRow(
+            name=name, note=note, saved=time(), parameters=json.dumps(dict(values)), author=author
+        )
 
         def write(connection: Connection) -> Profile:
             names = connection.execute(select(ProfileRow.name)).scalars().all()
@@ -86,7 +88,7 @@ class Profiles:
             if found.rowcount == 0:
                 raise UnknownProfileError("There is no such profile; somebody may have deleted it.")
 
-        await self._store.write(write)
+        await self._store.write(write, frees=True)
 
 
 def write_file(profile: Profile) -> str:
@@ -139,6 +141,7 @@ def _show(row: ProfileRow) -> Profile:
         id=row.id or 0,
         name=row.name,
         note=row.note,
+        author=row.author,
         saved=datetime.fromtimestamp(row.saved, UTC),
         values=json.loads(row.parameters),
     )

@@ -71,18 +71,20 @@ async def list_profiles(profiles: Provided[Profiles]) -> list[Profile]:
 
 
 @router.operation("POST /profiles", Need.OPERATOR, RuntimeSilentError, NAME_TAKEN, status_code=201)
-async def save_profile(bridge: Provided[Bridge], profiles: Provided[Profiles], body: NewProfile) -> Profile:
+async def save_profile(
+    bridge: Provided[Bridge], profiles: Provided[Profiles], caller: Caller, body: NewProfile
+) -> Profile:
     """Save all present parameter values as a profile."""
     listed = await ask_parameters(bridge)
     values = {one["name"]: one["value"] for one in listed["parameters"]}
-    return await profiles.save(body.name, body.note, values)
+    return await profiles.save(body.name, body.note, values, caller.name)
 
 
 @router.operation(
     "POST /profiles/file", Need.OPERATOR, ProfileError, RuntimeSilentError, NAME_TAKEN, status_code=201
 )
 async def import_profile(
-    bridge: Provided[Bridge], profiles: Provided[Profiles], body: ProfileText
+    bridge: Provided[Bridge], profiles: Provided[Profiles], caller: Caller, body: ProfileText
 ) -> Imported:
     """Import a profile from a file.
 
@@ -90,7 +92,7 @@ async def import_profile(
     """
     found = read_file(body.text)
     listed = await ask_parameters(bridge)
-    profile = await profiles.save(found.name, found.note, found.parameters)
+    profile = await profiles.save(found.name, found.note, found.parameters, caller.name)
     known = {one["name"] for one in listed["parameters"]}
     return Imported(profile=profile, unknown=[name for name in found.parameters if name not in known])
 

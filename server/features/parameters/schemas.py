@@ -50,6 +50,7 @@ class Profile(BaseModel):
     id: int
     name: str
     note: str
+    author: str = Field(description="the person who saved it; empty where it is not known")
     saved: datetime = Field(description="UTC")
     values: dict[str, Value]
 

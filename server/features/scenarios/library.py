@@ -1,6 +1,7 @@
 """The scenarios that ship with the program, and those of the data folder."""
 
 import logging
+import threading
 from importlib.resources import files
 from pathlib import Path
 
@@ -10,12 +11,15 @@ from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
 from server.features.scenarios.schemas import ScenarioText, summarize
-from server.platform.disk_space import explain_write_error
+from server.platform.disk_space import FileWriteError, explain_write_error
+from server.platform.edited_meanwhile import ChangedMeanwhileError, mark_text
 
 log = logging.getLogger(__name__)
 
 SHIPPED = ("figure_14", "hover_in_a_current", "beacon_approach", "sensor_failure", "lost_link", "sea_trial")
 """The shipped scenarios, the thesis's own first."""
+_STORING = threading.Lock()
+"""Held while a scenario is compared and written: each request has a thread."""
 
 
 def list_scenarios(own: Path) -> list[ScenarioText]:
@@ -25,20 +29,26 @@ def list_scenarios(own: Path) -> list[ScenarioText]:
     ]
 
 
-def keep_scenario(own: Path, text: str) -> Scenario:
+def keep_scenario(own: Path, text: str, base: str | None = None) -> Scenario:
     """Write a scenario into the folder `own`, under its own name.
 
-    Raises ConfigError if it is not valid, RefusedError if it may not or cannot be written.
+    `base` is the mark (`mark_text`) of the text that the editing began from, "" for a new scenario; None
+    replaces any. Raises ConfigError if it is not valid, RefusedError if it may not be written,
+    ChangedMeanwhileError, FileWriteError.
     """
     scenario = read_scenario(text)
     if scenario.name in SHIPPED:
         raise RefusedError(f"{scenario.name} ships with the program. Choose another name.")
     path = own / f"{scenario.name}.toml"
-    try:
-        make_folder(own)
-        write_whole(path, text.encode())
-    except OSError as problem:
-        raise RefusedError(explain_write_error(problem, path)) from problem
+    with _STORING:
+        there = dict(_own(own)).get(path, "")
+        if base is not None and text != there and base != mark_text(there):
+            raise ChangedMeanwhileError(f"The scenario {scenario.name}", "", gone=not there)
+        try:
+            make_folder(own)
+            write_whole(path, text.encode())
+        except OSError as problem:
+            raise FileWriteError(explain_write_error(problem, path)) from problem
     return scenario
 
 
@@ -65,4 +75,6 @@ def _describe(name: str, text: str, shipped: bool) -> ScenarioText:
     except ConfigError:
         summary = None
     title = summary.title if summary else name
-    return ScenarioText(name=name, title=title, text=text, shipped=shipped, summary=summary)
+    return ScenarioText(
+        name=name, title=title, text=text, mark=mark_text(text), shipped=shipped, summary=summary
+    )

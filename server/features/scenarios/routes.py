@@ -9,6 +9,7 @@ from server.features.lease.admission import admit, require_control
 from server.features.scenarios import library
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import (
+    NewScenario,
     ScenarioCheck,
     ScenarioDocument,
     ScenarioStart,
@@ -23,6 +24,7 @@ from server.http.heavy_requests import TooManyHeavyError, Turn
 from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
+from server.platform.disk_space import FileWriteError
 from server.platform.settings import Settings
 
 REFUSED = {409: "Refused now", 422: "The scenario cannot be run"}
@@ -36,11 +38,11 @@ def list_scenarios(settings: Provided[Settings]) -> list[ScenarioText]:
     return library.list_scenarios(settings.data.scenarios)
 
 
-@router.operation("POST", Need.OPERATOR, REFUSED, status_code=201)
-async def keep_scenario(settings: Provided[Settings], document: ScenarioDocument) -> ScenarioSummary:
+@router.operation("POST", Need.OPERATOR, REFUSED, FileWriteError, status_code=201)
+async def keep_scenario(settings: Provided[Settings], document: NewScenario) -> ScenarioSummary:
     """Store a scenario in the data folder under its own name, replacing one of that name."""
     folder = settings.data.scenarios
-    return summarize(await run_in_threadpool(library.keep_scenario, folder, document.text))
+    return summarize(await run_in_threadpool(library.keep_scenario, folder, document.text, document.base))
 
 
 @router.operation("POST /check", Need.VIEWER, TooManyHeavyError)

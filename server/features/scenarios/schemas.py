@@ -23,6 +23,7 @@ class ScenarioText(BaseModel):
     name: str
     title: str
     text: str = Field(description="TOML")
+    mark: str = Field(description="tells this text from others")
     shipped: bool
     summary: "ScenarioSummary | None" = Field(description="null if it is not valid")
 
@@ -31,6 +32,16 @@ class ScenarioDocument(RequestBody):
     """The text of a scenario."""
 
     text: Text
+
+
+class NewScenario(ScenarioDocument):
+    """A scenario to be stored."""
+
+    base: Annotated[str, Field(max_length=64)] | None = Field(
+        default=None,
+        description="`mark` of the text that the editing began from, empty for a new scenario: refused if "
+        "somebody has changed it since. null replaces any",
+    )
 
 
 class ScenarioEvent(BaseModel):

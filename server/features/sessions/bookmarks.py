@@ -90,7 +90,7 @@ class Bookmarks:
             _find_mark(connection, session, mark)
             connection.execute(delete(BookmarkRow).where(col(BookmarkRow.id) == mark))
 
-        await self._store.write(write)
+        await self._store.write(write, frees=True)
 
     def _now(self, session: int) -> float | None:
         """The present steady time for the session that records; None for any other."""

@@ -156,7 +156,7 @@ class Catalogue(Listing):
             query = update(SessionRow).where(col(SessionRow.id) == session, unset)
             connection.execute(query.values(deleted=time()))
 
-        await self._store.write(write)
+        await self._store.write(write, frees=True)
         return self.find(session)
 
     async def restore(self, session: int) -> Session:
@@ -178,7 +178,7 @@ class Catalogue(Listing):
                 raise SessionStateError("This session is not in the bin. Delete it first.")
             connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(state=REMOVING))
 
-        await self._store.write(write)
+        await self._store.write(write, frees=True)
 
     def notify(self, session: int) -> Session:
         """Report a session's new state to the pages, if it is being recorded."""

@@ -13,7 +13,7 @@ from math import inf
 from time import time
 from typing import NamedTuple
 
-from sqlalchemy import ColumnElement, Connection, delete, update
+from sqlalchemy import ColumnElement, Connection, UpdateBase, delete, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock, boot
@@ -102,6 +102,7 @@ class RetentionWorker:
             self._purged(session)
             await self._remove(session)
         await self._free_pages()
+        await self._store.make_reserve()
 
     async def _ages_known(self, now: float) -> bool:
         if self._wall_clock.ahead is None:
@@ -119,7 +120,7 @@ class RetentionWorker:
 
     async def _empty_bin(self, before: float) -> None:
         expired = col(SessionRow.deleted).between(SOFTWARE_MADE, before)
-        await self._store.execute(update(SessionRow).where(expired).values(state=REMOVING))
+        await self._free(update(SessionRow).where(expired).values(state=REMOVING))
 
     async def _expire_old(self, now: float, before: float) -> None:
         # A session of an impossible date has no known age.
@@ -185,7 +186,10 @@ class RetentionWorker:
 
     async def _change(self, sessions: list[_Candidate], **values: object) -> None:
         chosen = col(SessionRow.id).in_([one.id for one in sessions]), col(SessionRow.state) != "recording"
-        await self._store.execute(update(SessionRow).where(*chosen).values(values))
+        await self._free(update(SessionRow).where(*chosen).values(values))
+
+    async def _free(self, change: UpdateBase) -> None:
+        await self._store.write(lambda connection: connection.execute(change), frees=True)
 
     async def _find_removed(self) -> Sequence[int]:
         def read() -> Sequence[int]:
@@ -205,7 +209,7 @@ class RetentionWorker:
                 connection.execute(delete(table).where(col(table.session_id) == session))
             connection.execute(delete(SessionRow).where(col(SessionRow.id) == session))
 
-        await self._store.write(remove_rest)
+        await self._store.write(remove_rest, frees=True)
 
     async def _free_pages(self) -> None:
         def free_some(connection: Connection) -> int:
@@ -217,10 +221,10 @@ class RetentionWorker:
             free_pages: int = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
             return free_pages
 
-        before, free_pages = None, await self._store.write(free_some)
+        before, free_pages = None, await self._store.write(free_some, frees=True)
         while free_pages > 0 and free_pages != before:
             await asyncio.sleep(PAUSE)
-            before, free_pages = free_pages, await self._store.write(free_some)
+            before, free_pages = free_pages, await self._store.write(free_some, frees=True)
 
 
 def _first(sessions: Iterable[_Candidate], needed: int) -> list[_Candidate]:

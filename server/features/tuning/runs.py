@@ -115,7 +115,7 @@ class TuningStore:
                 raise SessionStateError("This run is active. Stop it first.")
             connection.execute(delete(TuningRunRow).where(col(TuningRunRow.id) == run))
 
-        await self._store.write(change)
+        await self._store.write(change, frees=True)
 
     async def forget(self, run: int) -> None:
         """Remove a run that could not start."""

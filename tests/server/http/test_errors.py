@@ -12,7 +12,7 @@ from server.features.sessions.recording import RecordingError
 from server.http.error_handlers import add_error_handlers
 from server.http.sign_in.pairing_codes import TooManyTriesError
 from server.platform.errors import ApiError
-from server.platform.store import StoreError
+from server.platform.store import FULL, StoreError
 from server.stream.bridge import RuntimeSilentError
 
 
@@ -49,7 +49,8 @@ def ask(problem: Exception) -> httpx.Response:
         (NotInControlError("Take control first."), 423, "Take control first."),
         (RuntimeSilentError("It is not running.", waited=False), 503, "It is not running."),
         (RuntimeSilentError("It did not answer.", waited=True), 504, "It did not answer."),
-        (StoreError("the disk is full"), 503, "The database does not work: the disk is full."),
+        (StoreError("it is locked"), 503, "The database does not work: it is locked."),
+        (StoreError(FULL), 507, f"The database does not work: {FULL}."),
         (RefusedError("Press STOP first."), 409, "Press STOP first."),
     ],
 )

@@ -19,18 +19,22 @@ import pytest
 from sqlalchemy import Connection, insert, text
 from sqlmodel import col, select
 
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.errors import RefusedError
 from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
 from server.features.exports.archive_reader import ArchiveError, examine
 from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.session import IMPORTING, REMOVING, UnknownSessionError, find_row
 from server.platform.disk_space import SPARE_BYTES, FileWriteError
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
+from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
-from server.platform.store import Reader, Store, StoreError
+from server.platform.store import FULL, Reader, Store, StoreError
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.exports.recordings import record
 from tests.server.features.sessions.missions import mission_blocks
@@ -268,6 +272,38 @@ def test_a_failed_import_leaves_nothing_and_is_never_visible(
     with store.read() as database:
         states = database.exec(select(SessionRow.state).order_by(col(SessionRow.id))).all()
     assert states == ["complete", REMOVING]
+
+
+def test_an_import_whose_failure_could_not_be_stored_does_not_block_the_next(
+    store: Store, settings: Settings, session: int, archive: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    change(archive, tell(identifier="f" * 32))
+
+    async def fail(*_: object, **__: object) -> int:
+        raise StoreError(FULL)
+
+    async def scenario() -> None:
+        imports = Imports(settings.data, store)
+        with monkeypatch.context() as full:
+            full.setattr(imports, "_fill_chunks", fail)
+            drop, marked = imports._drop_unfinished, 0
+
+            async def drop_first() -> None:
+                nonlocal marked
+                marked += 1
+                if marked > 1:
+                    raise StoreError(FULL)
+                await drop()
+
+            full.setattr(imports, "_drop_unfinished", drop_first)
+            with pytest.raises(StoreError):
+                await imports.take(archive)
+        with pytest.raises(RefusedError, match="is being removed"):
+            await imports.take(archive)
+        await RetentionWorker(store, settings, Notices(clock := SimulatedClock(), print), clock).apply(1e9)
+        assert await imports.take(archive) > session
+
+    asyncio.run(scenario())
 
 
 def test_an_archive_larger_than_the_free_space_is_refused_before_reading(

@@ -1,4 +1,4 @@
-"""Adoptions: twice, beside a configuration that cannot be read, beside a resting simulator; a worse fit."""
+"""Adoptions: twice, beside a configuration that was edited, beside a resting simulator; a worse fit."""
 
 import asyncio
 import sys
@@ -65,15 +65,17 @@ def test_a_second_adoption_of_the_same_craft_leaves_the_one_before_to_be_restore
     assert settings.data.craft.read_text() == LIGHT
 
 
-def test_an_adoption_beside_a_configuration_that_cannot_be_read_says_so(
-    settings: Settings, adoption: CraftAdoption, robot: Robot
+def test_an_adoption_follows_the_configuration_in_force_and_not_its_file(
+    settings: Settings, robot: Robot
 ) -> None:
+    part = cast(Any, robot)
+    in_force = "[control.gains.predictive]\nthrust = 0.3\n"
+    adoption = CraftAdoption(replace(settings, config_text=in_force), part, part, part)
     settings.config.write_text("[control]\nrate = 0\n")
-    *_, last = asyncio.run(adoption.adopt(HEAVY, ""))
-    assert last.startswith("The model-based controller takes its gains at the next start (")
-    assert "rate is 0" in last
-    assert settings.data.craft.read_text() == HEAVY
-    assert robot.gains == []
+    asyncio.run(adoption.adopt(HEAVY, ""))
+    (gains,) = robot.gains
+    assert "thrust" not in gains
+    assert "drag" in gains
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.serving import serve
 
+SHELL = "the shell of this computer"
 CAMERA = {"id": "camera", "panel": "camera", "x": 0, "y": 0, "width": 17, "height": 11}
 CHART = {
     "id": "chart 2",
@@ -62,6 +63,29 @@ def test_saving_under_the_same_name_replaces(store: Store) -> None:
         assert again.id == first.id
         assert [one.id for one in layouts.list()] == [other.id, first.id]
         assert layouts.get(first.id).document["panels"] == [CHART]
+
+    asyncio.run(scenario())
+
+
+def test_a_layout_that_somebody_has_saved_meanwhile_is_not_replaced_unasked(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served:
+
+            async def save(*panels: Any, **more: Any) -> Any:
+                body = {"name": "pool", "document": layout(*panels), **more}
+                return await served.api.post("/layouts", json=body)
+
+            first = (await save(CAMERA, base=0)).json()
+            assert (first["version"], first["author"]) == (1, SHELL)
+            assert (await save(CHART, base=1)).json()["version"] == 2
+            for base in (0, 1):
+                refused = await save(base=base)
+                assert (refused.status_code, refused.json()["kind"]) == (409, "changed")
+                assert f"“pool” was saved by {SHELL} since you opened it" in refused.json()["detail"]
+            assert (await save(base=2)).json() | {"saved": ""} == first | {"version": 3, "saved": ""}
+            await served.api.delete(f"/layouts/{first['id']}")
+            assert "was deleted" in (await save(base=3)).json()["detail"]
+            assert (await save(base=0)).json()["id"] > first["id"]
 
     asyncio.run(scenario())
 

@@ -1,6 +1,7 @@
 """Missions over HTTP: the library with versions, problems by entry, kinds of steps, and trials."""
 
 import asyncio
+import errno
 import json
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -19,6 +20,8 @@ from server.features.missions import trials as trials_module
 from server.features.missions.library import VERSIONS_MAX, MissionLibrary, UnknownMissionError
 from server.features.missions.nodes import list_node_kinds
 from server.features.missions.trials import MissionTrials
+from server.platform.disk_space import FileWriteError
+from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.platform.settings import Settings
 from tests.runtime.missions.water import DIVE, HOLD, mission
 from tests.server.blocks import state_block
@@ -59,6 +62,59 @@ def test_two_who_store_a_mission_at_once_make_two_versions(tmp_path: Path) -> No
     versions = MissionLibrary(tmp_path / "missions", MissionLimits()).versions("test")
     assert [one.version for one in versions] == [8, 7, 6, 5, 4, 3, 2, 1]
     assert {one.text for one in versions} == {*texts}
+
+
+def test_a_version_that_somebody_has_stored_meanwhile_is_not_replaced_unasked(tmp_path: Path) -> None:
+    library = MissionLibrary(tmp_path / "missions", MissionLimits())
+    library.keep(OWN, "Ann", base="")
+    mine, theirs = mission(HOLD, DIVE), mission(HOLD)
+    opened = library.describe()[-1].mark
+    library.keep(theirs, "Ben", base=opened)
+    with pytest.raises(ChangedMeanwhileError, match="The mission test was saved by Ben since you opened it"):
+        library.keep(mine, "Ann", base=opened)
+    with pytest.raises(ChangedMeanwhileError):
+        library.keep(mine, "Ann", base="")
+    library.keep(mine, "Ann", base=library.describe()[-1].mark)
+    assert [one.author for one in library.versions("test")] == ["Ann", "Ben", "Ann"]
+    opened = library.describe()[-1].mark
+    library.delete("test")
+    with pytest.raises(ChangedMeanwhileError, match="was deleted"):
+        library.keep(theirs, "Ben", base=opened)
+    assert "test" not in library.texts()
+
+
+def test_a_mission_deleted_while_it_is_stored_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
+    ready = Barrier(9)
+
+    def change(number: int) -> bool:
+        library = MissionLibrary(tmp_path / "missions", MissionLimits())
+        ready.wait()
+        if number:
+            library.keep(OWN + f"# {number}\n")
+            return True
+        try:
+            library.delete("test")
+        except UnknownMissionError:
+            return False
+        return True
+
+    MissionLibrary(tmp_path / "missions", MissionLimits()).keep(OWN)
+    with ThreadPoolExecutor(9) as people:
+        assert all(people.map(change, range(9)))
+    folder = tmp_path / "missions" / "test"
+    found = sorted(int(path.stem) for path in folder.glob("*.toml")) if folder.exists() else []
+    assert found == list(range(1, len(found) + 1))
+    assert [path.name for path in folder.parent.iterdir()] == (["test"] if found else [])
+
+
+def test_a_full_disk_is_told_as_such(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(library_module, "write_whole", fail)
+    with pytest.raises(FileWriteError, match="is full") as refused:
+        MissionLibrary(tmp_path / "missions", MissionLimits()).keep(OWN)
+    assert refused.value.status == 507
 
 
 def test_a_listing_reads_each_mission_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

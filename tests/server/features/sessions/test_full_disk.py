@@ -4,16 +4,16 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from server.platform.disk_reserve import RESERVE_BYTES
 from tests.stack import ROOT
 
-DISK = "4m"
 
-
-def on_small_disk(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
-    mount = f'mount -t tmpfs -o size={DISK} tmpfs "{folder}" && exec "$@"'
+def on_small_disk(folder: Path, *command: str, size: str = "4m") -> subprocess.CompletedProcess[str]:
+    mount = f'mount -t tmpfs -o size={size} tmpfs "{folder}" && exec "$@"'
     return subprocess.run(
         ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", mount, "sh", *command],
         cwd=ROOT,
@@ -24,16 +24,29 @@ def on_small_disk(folder: Path, *command: str) -> subprocess.CompletedProcess[st
     )
 
 
-def test_recording_loses_nothing_when_the_disk_is_full_for_a_while(tmp_path: Path) -> None:
+def perform(tmp_path: Path, act: str, size: str) -> Any:
+    """Perform an act of `tests.server.full_disk` on a disk of this size; returns what it tells."""
     try:
         trial = on_small_disk(tmp_path, "true")
     except FileNotFoundError:
         pytest.skip("there is no unshare(1) here")
     if trial.returncode != 0:
         pytest.skip(f"this computer lets nobody mount a small disk: {trial.stderr.strip()}")
-    done = on_small_disk(tmp_path, sys.executable, "-m", "tests.server.full_disk", str(tmp_path))
+    command = (sys.executable, "-m", "tests.server.full_disk", str(tmp_path), act)
+    done = on_small_disk(tmp_path, *command, size=size)
     assert done.returncode == 0, done.stderr
-    told = json.loads(done.stdout)
+    return json.loads(done.stdout)
+
+
+def test_a_session_can_be_removed_from_a_disk_without_a_free_byte(tmp_path: Path) -> None:
+    told = perform(tmp_path, "purge", "22m")
+    assert "full" in told["refused"]
+    assert (told["reserved"], told["given_up"], told["listed"]) == (RESERVE_BYTES, True, [1])
+    assert (told["reserved_again"], told["integrity"]) == (RESERVE_BYTES, "ok")
+
+
+def test_recording_loses_nothing_when_the_disk_is_full_for_a_while(tmp_path: Path) -> None:
+    told = perform(tmp_path, "record", "4m")
     assert told["refusals"] == [
         "the disk is full: free some space on the computer that holds the data folder"
     ]
