@@ -17,9 +17,9 @@ from server.http.security import refuse
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.platform.memory_reserve import SHORT, MemoryReserve
 
-REQUESTS_AT_ONCE = 16
-"""Of one viewer's device; a browser has six."""
-STOPS_AT_ONCE = 4
+REQUESTS_AT_ONCE = 6
+"""Of one viewer's device; a browser has as many."""
+STOPS_AT_ONCE = 2
 """Besides, so that other requests keep no STOP waiting."""
 STOP_PATH = "/api/robot/stop"
 OPERATING = ("/api/robot", "/api/control", "/api/alive", "/api/health", "/api/access/me")

@@ -9,7 +9,6 @@ import base64
 import json
 import logging
 import shutil
-import socket
 import sys
 import tempfile
 import time
@@ -19,26 +18,22 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 from threading import Event
-from urllib.parse import urlsplit
 
 import httpx
 from websockets.exceptions import WebSocketException
-from websockets.sync.client import ClientConnection, connect
-from websockets.typing import Origin
 
+from tests.proofs.field import PATIENCE, Field
+from tests.proofs.floods import FLOODS
 from tests.released import ARCHIVE, RELEASED, SIGNALS
 from tests.runtime.contract.test_toml_text import BOMBS, CHEAP
 from tests.server.features.exports.test_imports import change, row_bomb, tell
 from tests.server.features.exports.test_malformed_archives import MALFORMED
 
 HOLD_SECONDS = 3.0
-FROM = "127.0.0.2"
-"""The attackers' address: the operator has another, as on a network."""
 CROWD = "127.0.0.3"
 """The address of more connections than one may have, for which the server closes others of it."""
 CONNECTIONS = 260
 SOCKETS = 50
-PATIENCE = 60.0
 TRICKS = [
     "..",
     "%2e%2e",
@@ -72,59 +67,6 @@ COMMANDS: list[object] = [
     "x",
     None,
 ]
-
-
-class Field:
-    """The attacked robot, and the tokens of a viewer and an operator without control."""
-
-    def __init__(self, url: str, viewer: str, operator: str) -> None:
-        self.url = url
-        parts = urlsplit(url)
-        self.address = parts.hostname or "", parts.port or 0
-        self.viewer = {"authorization": f"Bearer {viewer}"}
-        self.operator = {"authorization": f"Bearer {operator}"}
-
-    def ask(self, method: str, path: str, headers: dict[str, str] | None = None, **options: object) -> int:
-        """The status of an answer, which is no internal error."""
-        with httpx.Client(
-            base_url=self.url, timeout=PATIENCE, transport=httpx.HTTPTransport(local_address=FROM)
-        ) as client:
-            answer = client.request(method, path, headers=headers, **options)  # type: ignore[arg-type]
-        assert answer.status_code != 500, (method, path, answer.text[:200])
-        assert "root:x:" not in answer.text
-        return answer.status_code
-
-    def refuse(
-        self, method: str, path: str, headers: dict[str, str] | None = None, **options: object
-    ) -> None:
-        """Ask for something that is refused."""
-        status = self.ask(method, path, headers, **options)
-        assert 400 <= status < 500 or status == 503, (method, path, status)
-
-    def reach(self, timeout: float, source: str = FROM) -> socket.socket:
-        """A connection from the attackers' address. Raises OSError."""
-        return socket.create_connection(self.address, timeout, source_address=(source, 0))
-
-    def send(self, data: bytes) -> bytes:
-        """The beginning of the answer to these bytes."""
-        with self.reach(PATIENCE) as line:
-            line.sendall(data)
-            with suppress(ConnectionError):
-                return line.recv(100)
-        return b""
-
-    def open(self, headers: dict[str, str]) -> ClientConnection:
-        """A live socket. Raises OSError, WebSocketException."""
-        address = f"{self.url.replace('http', 'ws', 1)}/api/live"
-        return connect(
-            address,
-            origin=Origin(self.url),
-            additional_headers=headers,
-            max_size=None,
-            ping_interval=None,
-            close_timeout=0.5,
-            sock=self.reach(PATIENCE),
-        )
 
 
 def paths(field: Field) -> None:
@@ -311,7 +253,9 @@ def repeat(attack: Callable[[Field], None], field: Field, end: Event) -> tuple[s
 
 
 def choose(words: str) -> dict[str, Callable[[Field], None]]:
-    """The attacks that have these words in their names."""
+    """The attacks that have these words in their names, or the flood of this name."""
+    if words in FLOODS:
+        return {words: FLOODS[words]}
     return {name: attack for name, attack in ATTACKS.items() if words in name}
 
 

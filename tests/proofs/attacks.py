@@ -3,6 +3,9 @@
 `python -m tests.proofs.attacks [WORDS]` prints a table of the attacks (of those that have the words in their
 names), the delays of STOP, and the control loop's jitter with and without attacks; status 1 where one was not
 held, or STOP came late. What needs no running robot, or another one, are tests, which are run first.
+
+The floods of a viewer follow, each alone, since some of them stop the robot and it cannot be armed then. STOP
+is pressed all the same, and the server that answers must be the same at the end.
 """
 
 import json
@@ -19,9 +22,12 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import httpx
+
 from robot_runtime.transport.blocks import read_blocks, read_rows
 from server.platform.pidfile import pid_file
 from tests.proofs.attackers import ATTACKS, choose
+from tests.proofs.floods import FLOOD_SECONDS, FLOODS
 from tests.stack import ROOT, Stack
 
 PRESSES = 100
@@ -55,7 +61,10 @@ TESTS = {
 
 
 AFTERWARDS = ("files, sockets and serial line as nobody", "the runtime killed in mid-command")
-LIVE = (*ATTACKS, *AFTERWARDS)
+LIVE = (*ATTACKS, *AFTERWARDS, *FLOODS)
+PAUSE = 0.03
+"""s between two presses in a flood."""
+DOORS = "[doors]\nrosbridge = true\nfoxglove = true\n"
 
 
 def percentile(values: Sequence[float], share: float) -> float:
@@ -87,9 +96,8 @@ def read_jitter(stack: Stack, start: float, end: float) -> float:
 
 def make_token(stack: Stack, scope: str) -> str:
     """A token of a new program."""
-    made = stack.api.post(
-        "/access/tokens", json={"name": f"attacker {scope}", "scope": scope}
-    ).raise_for_status()
+    name = f"attacker {len(stack.api.get('/access/devices').json())}"
+    made = stack.api.post("/access/tokens", json={"name": name, "scope": scope}).raise_for_status()
     token: str = made.json()["token"]
     return token
 
@@ -146,13 +154,50 @@ class Outcome:
 
 def attack(stack: Stack, words: str) -> Outcome:
     """Make the attacks that have these words in their names."""
-    outcome = attack_while_pressing(stack, words) if choose(words) else Outcome()
+    chosen = {} if words in FLOODS else choose(words)
+    outcome = attack_while_pressing(stack, words) if chosen else Outcome()
     nobody, killed = AFTERWARDS
     if words in nobody and os.geteuid() == 0:
         outcome.problems[nobody] = look_as_nobody(stack.data)
     if words in killed:
         outcome.problems[killed] = kill_the_runtime(stack)
+    for name in FLOODS:
+        if words in name:
+            outcome.problems[name] = flood(stack, name)
     return outcome
+
+
+def start_attackers(stack: Stack, words: str) -> subprocess.Popen[str]:
+    """The process of the attackers, which attack until their input is closed."""
+    tokens = [make_token(stack, scope) for scope in ("read", "administer")]
+    command = [sys.executable, "-m", "tests.proofs.attackers", stack.url, *tokens, words]
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, cwd=ROOT, stdin=pipe, stdout=pipe, text=True)
+
+
+def flood(stack: Stack, name: str) -> str:
+    """The problem of a flood; empty where STOP was answered in time, always by the same server."""
+    server, delays = stack.server, list[float]()
+    with start_attackers(stack, name) as attackers:
+        end = time.monotonic() + 2 * FLOOD_SECONDS
+        while time.monotonic() < end or len(delays) < PRESSES:
+            began = time.monotonic()
+            try:
+                stack.api.post("/robot/stop", timeout=60).raise_for_status()
+            except httpx.HTTPError as failure:
+                attackers.communicate()
+                return f"STOP after {len(delays)} others: {type(failure).__name__} {failure}"
+            delays.append(time.monotonic() - began)
+            time.sleep(PAUSE)
+        ((problem, _),) = json.loads(attackers.communicate()[0]).values()
+    late = percentile(delays, 0.99)
+    most = server.memory_info().rss / 1e6 if server.is_running() else 0.0
+    print(f"{name}: {len(delays)} STOPs, p99 {late:.3f} s; the server has {most:.0f} MB", flush=True)
+    if not server.is_running() or stack.server.pid != server.pid:
+        return "the server has ended"
+    if late > STOP_MAX:
+        return f"STOP p99 {late:.3f} s"
+    return str(problem)
 
 
 def attack_while_pressing(stack: Stack, words: str) -> Outcome:
@@ -161,10 +206,7 @@ def attack_while_pressing(stack: Stack, words: str) -> Outcome:
     began = time.monotonic()
     press(stack, QUIET_PRESSES)
     outcome = Outcome(quiet_jitter=read_jitter(stack, began, time.monotonic()))
-    tokens = [make_token(stack, scope) for scope in ("read", "administer")]
-    command = [sys.executable, "-m", "tests.proofs.attackers", stack.url, *tokens, words]
-    pipe = subprocess.PIPE
-    with subprocess.Popen(command, cwd=ROOT, stdin=pipe, stdout=pipe, text=True) as attackers:
+    with start_attackers(stack, words) as attackers:
         began = time.monotonic()
         outcome.delays = press(stack, PRESSES)
         outcome.jitter = read_jitter(stack, began, time.monotonic())
@@ -192,8 +234,11 @@ def main() -> int:
     rows = {name: test(path) for name, path in TESTS.items() if words in name}
     outcome = Outcome()
     if any(words in name for name in LIVE):
-        with tempfile.TemporaryDirectory(prefix="mucat-") as folder, Stack(Path(folder) / "data") as stack:
-            outcome = attack(stack, words)
+        with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+            config = Path(folder) / "robot.toml"
+            config.write_text(DOORS, encoding="utf-8")
+            with Stack(Path(folder) / "data", "--config", str(config)) as stack:
+                outcome = attack(stack, words)
         rows |= outcome.problems
     if not rows:
         print(f"No attack has “{words}” in its name.")

@@ -1,0 +1,69 @@
+"""The robot that attackers attack, over the loopback from an address of their own."""
+
+import socket
+from contextlib import suppress
+from urllib.parse import urlsplit
+
+import httpx
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin, Subprotocol
+
+FROM = "127.0.0.2"
+"""The attackers' address: the operator has another, as on a network."""
+PATIENCE = 60.0
+
+
+class Field:
+    """The attacked robot, and the tokens of a viewer and an operator without control."""
+
+    def __init__(self, url: str, viewer: str, operator: str) -> None:
+        self.url = url
+        parts = urlsplit(url)
+        self.address = parts.hostname or "", parts.port or 0
+        self.viewer = {"authorization": f"Bearer {viewer}"}
+        self.operator = {"authorization": f"Bearer {operator}"}
+
+    def ask(self, method: str, path: str, headers: dict[str, str] | None = None, **options: object) -> int:
+        """The status of an answer, which is no internal error."""
+        with httpx.Client(
+            base_url=self.url, timeout=PATIENCE, transport=httpx.HTTPTransport(local_address=FROM)
+        ) as client:
+            answer = client.request(method, path, headers=headers, **options)  # type: ignore[arg-type]
+        assert answer.status_code != 500, (method, path, answer.text[:200])
+        assert "root:x:" not in answer.text
+        return answer.status_code
+
+    def refuse(
+        self, method: str, path: str, headers: dict[str, str] | None = None, **options: object
+    ) -> None:
+        """Ask for something that is refused."""
+        status = self.ask(method, path, headers, **options)
+        assert 400 <= status < 500 or status == 503, (method, path, status)
+
+    def reach(self, timeout: float, source: str = FROM) -> socket.socket:
+        """A connection from the attackers' address. Raises OSError."""
+        return socket.create_connection(self.address, timeout, source_address=(source, 0))
+
+    def send(self, data: bytes) -> bytes:
+        """The beginning of the answer to these bytes."""
+        with self.reach(PATIENCE) as line:
+            line.sendall(data)
+            with suppress(ConnectionError):
+                return line.recv(100)
+        return b""
+
+    def open(
+        self, headers: dict[str, str], path: str = "/api/live", subprotocol: str | None = None
+    ) -> ClientConnection:
+        """A live socket, or one of a door. Raises OSError, WebSocketException."""
+        return connect(
+            f"{self.url.replace('http', 'ws', 1)}{path}",
+            origin=Origin(self.url),
+            additional_headers=headers,
+            subprotocols=None if subprotocol is None else [Subprotocol(subprotocol)],
+            max_size=None,
+            compression=None,
+            ping_interval=None,
+            close_timeout=0.5,
+            sock=self.reach(PATIENCE),
+        )

@@ -1,0 +1,188 @@
+"""Floods of a viewer: as much as a signed-in viewer can send, ask for, or leave unread.
+
+Each lasts for `FLOOD_SECONDS`, and asserts nothing itself: meanwhile an operator presses STOP.
+"""
+
+import json
+import socket
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, closing, suppress
+from struct import Struct
+
+from websockets.exceptions import WebSocketException
+
+from robot_runtime.contract.topics import TOPICS, Kind
+from tests.proofs.field import Field
+
+FLOOD_SECONDS = 5.0
+DEVICE_SOCKETS = 8
+"""Sockets that one device may have at a door."""
+UNREAD = 95
+"""Connections below the limit of one address."""
+BATCH = 400
+"""Messages in one piece of bytes: the attackers shall cost less than what they attack."""
+SUBPROTOCOL = "foxglove.sdk.v1"
+SERVICE_CALL = Struct("<BIII")
+ROWS = [topic.name for topic in TOPICS if topic.kind is Kind.ROWS]
+
+
+def frame(payload: bytes, opcode: int = 1) -> bytes:
+    """A whole WebSocket message of a client (RFC 6455, 5.2); masked by zeros, it is sent as it is."""
+    size = len(payload)
+    length = bytes([128 + size]) if size < 126 else bytes([128 + 126]) + size.to_bytes(2)
+    return bytes([128 + opcode]) + length + bytes(4) + payload
+
+
+def pour(line: socket.socket, data: bytes) -> None:
+    """Send these bytes over and over while somebody takes them, and read nothing."""
+    line.settimeout(0.5)
+    end = time.monotonic() + FLOOD_SECONDS
+    while time.monotonic() < end:
+        with suppress(TimeoutError):
+            line.sendall(data)
+
+
+def pour_into_sockets(field: Field, path: str, data: bytes, subprotocol: str | None = None) -> None:
+    """Pour into as many sockets as one device may have."""
+    with ExitStack() as opened, ThreadPoolExecutor(DEVICE_SOCKETS) as threads:
+        pages = []
+        for _ in range(DEVICE_SOCKETS):
+            with suppress(OSError, WebSocketException):
+                page = field.open(field.viewer, path, subprotocol)
+                pages.append(opened.enter_context(closing(page)))
+        assert pages, "no socket was opened"
+        poured = [threads.submit(pour, page.socket, data) for page in pages]
+        for one in poured:
+            with suppress(OSError):
+                one.result()
+
+
+def stops_at_rosbridge(field: Field) -> None:
+    call = {"op": "call_service", "service": "/mucat/stop", "id": "x"}
+    publish = {"op": "publish", "topic": "/mucat/stop", "msg": {}}
+    data = frame(json.dumps(call).encode()) + frame(json.dumps(publish).encode())
+    pour_into_sockets(field, "/rosbridge", data * BATCH)
+
+
+def stops_at_foxglove(field: Field) -> None:
+    channel = {"id": 1, "topic": "/mucat/stop", "encoding": "json", "schemaName": "std_msgs/msg/Empty"}
+    head = frame(json.dumps({"op": "advertise", "channels": [channel]}).encode())
+    publish = frame(bytes([1]) + (1).to_bytes(4, "little") + b"{}", 2)
+    calls = b"".join(frame(SERVICE_CALL.pack(2, one, 1, 4) + b"json{}", 2) for one in range(1, 4))
+    pour_into_sockets(field, "/foxglove", head + (publish + calls) * BATCH, SUBPROTOCOL)
+
+
+def stops_on_live_sockets(field: Field) -> None:
+    pour_into_sockets(field, "/api/live", frame(b'{"op": "stop"}') * BATCH)
+
+
+def stops_over_http(field: Field) -> None:
+    token = field.viewer["authorization"]
+    head = f"POST /api/robot/stop HTTP/1.1\r\nHost: localhost\r\nAuthorization: {token}\r\n"
+    request = f"{head}Content-Length: 0\r\n\r\n".encode()
+    _pour_requests(field, request * 20)
+
+
+def small_messages(field: Field) -> None:
+    odd = b"".join(frame(json.dumps(one).encode()) for one in ({"op": "ping", "id": 1}, {"op": "watch"}))
+    watch = b"".join(
+        frame(json.dumps({"op": "watch", "pictures": one}).encode()) for one in ([], ["picture"], ["mask"])
+    )
+    pour_into_sockets(field, "/api/live", (odd + watch + frame(b"")) * BATCH)
+
+
+def pings_unread(field: Field) -> None:
+    pour_into_sockets(field, "/api/live", frame(bytes(125), 9) * BATCH)
+
+
+def subscriptions(field: Field) -> None:
+    asked = b""
+    for place in range(40):
+        for op in ("subscribe", "unsubscribe"):
+            asked += frame(
+                json.dumps({"op": op, "topic": "/camera/image/compressed", "id": str(place)}).encode()
+            )
+    pour_into_sockets(field, "/rosbridge", asked)
+
+
+def fragments(field: Field) -> None:
+    with ExitStack() as opened, ThreadPoolExecutor(DEVICE_SOCKETS) as threads:
+        reading = []
+        for place in range(DEVICE_SOCKETS):
+            with suppress(OSError, WebSocketException):
+                page = opened.enter_context(closing(field.open(field.viewer, "/rosbridge")))
+                page.send(json.dumps({"op": "call_service", "service": "/rosapi/topics", "id": "topics"}))
+                topics = json.loads(page.recv(FLOOD_SECONDS))["values"]["topics"]
+                asked = {"op": "subscribe", "fragment_size": 4096, "compression": ("none", "png")[place % 2]}
+                for topic in topics:
+                    page.send(json.dumps(asked | {"topic": topic}))
+                reading.append(threads.submit(_read_on, page.socket))
+        for one in reading:
+            one.result()
+
+
+def history_unread(field: Field) -> None:
+    token = field.viewer["authorization"]
+    query = "&".join(f"topic={one}" for one in ROWS)
+    head = f"GET /api/past?{query}&until=1e9 HTTP/1.1\r\nHost: localhost\r\nAuthorization: {token}\r\n\r\n"
+    _pour_requests(field, head.encode())
+
+
+def small_connections(field: Field) -> None:
+    token = field.viewer["authorization"]
+    head = f"GET /api/sessions HTTP/1.1\r\nHost: localhost\r\nAuthorization: {token}\r\n"
+    request = f"{head}Connection: close\r\n\r\n".encode()
+    end = time.monotonic() + FLOOD_SECONDS
+
+    def ask(_: int) -> None:
+        while time.monotonic() < end:
+            with suppress(OSError), field.reach(1.0) as line:
+                line.sendall(request)
+                while line.recv(65_536):
+                    pass
+
+    with ThreadPoolExecutor(50) as threads:
+        list(threads.map(ask, range(50)))
+
+
+def _pour_requests(field: Field, request: bytes) -> None:
+    """Send requests over many connections, and read no answers."""
+    with ExitStack() as opened:
+        lines = []
+        for _ in range(UNREAD):
+            with suppress(OSError):
+                line = opened.enter_context(field.reach(1.0))
+                line.setblocking(False)
+                lines.append(line)
+        end = time.monotonic() + FLOOD_SECONDS
+        while time.monotonic() < end:
+            for line in lines:
+                with suppress(OSError):
+                    line.send(request)
+            time.sleep(0.02)
+
+
+def _read_on(line: socket.socket) -> None:
+    line.settimeout(0.5)
+    end = time.monotonic() + FLOOD_SECONDS
+    while time.monotonic() < end:
+        with suppress(TimeoutError):
+            if not line.recv(1 << 20):
+                return
+
+
+FLOODS: dict[str, Callable[[Field], None]] = {
+    "STOPs at rosbridge": stops_at_rosbridge,
+    "STOPs at Foxglove": stops_at_foxglove,
+    "STOPs on live sockets": stops_on_live_sockets,
+    "STOPs over HTTP": stops_over_http,
+    "small messages on live sockets": small_messages,
+    "pings whose answers are not read": pings_unread,
+    "subscriptions that come and go": subscriptions,
+    "fragments of all topics": fragments,
+    "the history asked for and not read": history_unread,
+    "small connections": small_connections,
+}
+"""Each alone, while an operator presses STOP."""
