@@ -9,6 +9,7 @@ import numpy as np
 
 from robot_runtime.clock import Clock
 from robot_runtime.vision.camera import Camera, CameraError, CameraFrame, taken_at
+from robot_runtime.vision.shape import describe_fit, fit
 
 FIRST_DEVICE = "/dev/video0"
 BUFFERS = 2
@@ -17,7 +18,7 @@ MILLISECONDS = 1e3
 
 
 class UsbCamera(Camera):
-    """Takes pictures of a Video4Linux device, scaled to `width` × `height` pixels.
+    """Takes pictures of a Video4Linux device, fitted to `width` × `height` pixels.
 
     `device` is its path, or the first one if empty. Raises CameraError where there is none, where it may not
     be opened, and where it is in use.
@@ -25,7 +26,7 @@ class UsbCamera(Camera):
 
     def __init__(self, device: str, width: int, height: int, rate: float, clock: Clock) -> None:
         self._path = device or FIRST_DEVICE
-        self._size = (width, height)
+        self._size = self._given = (width, height)
         self._clock = clock
         _check(Path(self._path))
         self._capture = cv2.VideoCapture(self._path, cv2.CAP_V4L2)
@@ -46,16 +47,17 @@ class UsbCamera(Camera):
         ok, picture = self._capture.read()
         if not ok or picture is None:
             raise CameraError(f"the camera {self._path} gives no picture; check its plug")
-        if picture.shape[1::-1] != self._size:
-            picture = cv2.resize(picture, self._size, interpolation=cv2.INTER_AREA)
-        return CameraFrame(picture.astype(np.uint8, copy=False), self._taken())
+        self._given = (picture.shape[1], picture.shape[0])
+        fitted = fit(picture.astype(np.uint8, copy=False), *self._size)
+        return CameraFrame(fitted, self._taken())
 
     def close(self) -> None:
         """Releases the camera."""
         self._capture.release()
 
     def __str__(self) -> str:
-        return f"USB camera {self._path}"
+        fitted = describe_fit(self._given, *self._size)
+        return f"USB camera {self._path}" + (f" ({fitted})" if fitted else "")
 
     def _taken(self) -> float:
         """The driver's time of the picture (s), or now where its clock is another one."""

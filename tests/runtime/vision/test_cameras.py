@@ -2,7 +2,9 @@
 
 import errno
 import os
+import struct
 import sys
+from math import inf, nan
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -10,12 +12,15 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.vision_settings import COLOURS, ColourRange
+from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
+from robot_runtime.vision import file_camera
 from robot_runtime.vision.camera import Camera, CameraError
 from robot_runtime.vision.card_camera import ATTENUATION, CARD_DISTANCE, NOISE, CardCamera
 from robot_runtime.vision.cards import CameraCard, make_card
+from robot_runtime.vision.detector import Detector
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
@@ -78,15 +83,43 @@ class TestCardCamera:
 
 @pytest.fixture(params=[("mjpg.avi", "MJPG"), ("mp4v.mp4", "mp4v")], ids=["avi", "mp4"])
 def video(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
-    """Twelve pictures, each brighter by 20 than the one before."""
     name, code = request.param
-    file: Path = tmp_path / name
-    writer = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*code), FPS, (160, 120))
+    return make_video(tmp_path / name, code)
+
+
+def write_video(file: Path, pictures: list[Picture], code: str) -> Path:
+    height, width = pictures[0].shape[:2]
+    writer = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*code), FPS, (width, height))
     assert writer.isOpened()
-    for index in range(12):
-        writer.write(np.full((120, 160, 3), 20 * index, np.uint8))
+    for picture in pictures:
+        writer.write(picture)
     writer.release()
     return file
+
+
+def make_video(file: Path, code: str = "MJPG") -> Path:
+    """Twelve pictures, each brighter by 20 than the one before."""
+    return write_video(file, [np.full((120, 160, 3), 20 * index, np.uint8) for index in range(12)], code)
+
+
+def claim_rate(file: Path, rate: int) -> None:
+    """Have an AVI claim so many pictures a second: scale and rate of its stream's header."""
+    data = bytearray(file.read_bytes())
+    header = data.index(b"strh") + 8
+    data[header + 20 : header + 28] = struct.pack("<II", 1, rate)
+    file.write_bytes(data)
+
+
+def turn_film(file: Path, turn: int) -> None:
+    """Note in an MP4 by how much it is to be turned clockwise (ISO 14496-12, the matrix of tkhd)."""
+    data = bytearray(file.read_bytes())
+    cosine, sine = {90: (0, 1), 180: (-1, 0), 270: (0, -1)}[turn]
+    place = data.index(b"tkhd") + 4 + 40
+    one = 1 << 16
+    data[place : place + 36] = struct.pack(
+        ">9i", *(cosine * one, sine * one, 0, -sine * one, cosine * one, 0, 0, 0, 1 << 30)
+    )
+    file.write_bytes(data)
 
 
 def shown(camera: Camera) -> int:
@@ -108,9 +141,15 @@ class TestFileCamera:
         assert seen[4:] == [0, 3, 6, 9]
         camera.close()
 
-    def test_a_video_read_faster_than_it_plays_advances_picture_by_picture(self, video: Path) -> None:
-        camera = FileCamera(video, 160, 120, SimulatedClock())
-        assert [shown(camera) for _ in range(3)] == [0, 1, 2]
+    def test_a_video_read_faster_than_it_plays_shows_each_picture_for_its_time(self, video: Path) -> None:
+        clock = SimulatedClock()
+        camera = FileCamera(video, 160, 120, clock)
+        clock.forward(0.001)
+        seen = []
+        for _ in range(9):
+            seen.append(shown(camera))
+            clock.forward(1 / 30)
+        assert seen == [0, 0, 0, 1, 1, 1, 2, 2, 2]
         camera.close()
 
     def test_pictures_are_scaled(self, video: Path) -> None:
@@ -118,8 +157,109 @@ class TestFileCamera:
         frame = camera.read()
         assert frame.picture.shape == (240, 320, 3)
         assert frame.taken == 7.0
-        assert str(camera) == f"file {video.name}"
+        assert str(camera) == f"file {video.name} (160 × 120, scaled to 320 × 240)"
         camera.close()
+
+    @pytest.mark.parametrize("rate", ["1000", "180000", "1e9"])
+    def test_a_rate_that_no_camera_has_is_replaced_by_a_usual_one(self, tmp_path: Path, rate: str) -> None:
+        file = make_video(tmp_path / "claims.avi")
+        claim_rate(file, int(float(rate)))
+        clock = SimulatedClock()
+        camera = FileCamera(file, 160, 120, clock)
+        assert "played at 25" in str(camera)
+        clock.forward(0.001)
+        seen = []
+        for _ in range(4):
+            seen.append(shown(camera))
+            clock.forward(0.08)
+        assert seen == [0, 2, 4, 6]
+        camera.close()
+
+    @pytest.mark.parametrize("rate", [nan, inf, 0.0, -1.0])
+    def test_a_video_without_rate_and_times_is_played_at_a_usual_rate(
+        self, video: Path, rate: float, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        class Timeless:
+            def __init__(self, path: str) -> None:
+                self._capture = cv2.VideoCapture(path)
+
+            def get(self, property_: int) -> float:
+                timed = property_ in (cv2.CAP_PROP_FPS, cv2.CAP_PROP_POS_MSEC)
+                return rate if timed else self._capture.get(property_)
+
+            def __getattr__(self, name: str) -> Any:
+                return getattr(self._capture, name)
+
+        monkeypatch.setattr(file_camera, "_capture", Timeless)
+        clock = SimulatedClock()
+        camera = FileCamera(video, 160, 120, clock)
+        assert "played at 25" in str(camera)
+        clock.forward(0.081)
+        assert shown(camera) == 2
+        camera.close()
+
+    def test_uneven_times_are_those_of_the_pictures(self, tmp_path: Path) -> None:
+        file = make_video(tmp_path / "uneven.webm", "VP80")
+        times = [0, 100, 200, 1000, 1050, 1100, 3000, 3100, 3200, 3300, 3400, 3500]
+        data = file.read_bytes()
+        for index, time in reversed(list(enumerate(times))):
+            # A SimpleBlock of Matroska: the track, 16 bits of ms, flags.
+            old, new = (b"\x81" + value.to_bytes(2, "big") for value in (100 * index, time))
+            place = data.rindex(old)
+            data = data[:place] + new + data[place + len(old) :]
+        file.write_bytes(data)
+        clock = SimulatedClock()
+        camera = FileCamera(file, 160, 120, clock)
+        for passed, number in ((0.05, 0), (0.15, 1), (0.9, 2), (1.02, 3), (2.9, 5), (3.05, 6), (3.52, 11)):
+            clock.forward(passed - clock.now())
+            assert shown(camera) == number, passed
+        camera.close()
+
+    @pytest.mark.parametrize("shape", [(640, 360), (360, 640), (64, 48), (1000, 200)])
+    @pytest.mark.parametrize("name", ["disc.png", "disc.avi"])
+    def test_a_circle_stays_a_circle(self, tmp_path: Path, shape: tuple[int, int], name: str) -> None:
+        picture = np.full((shape[1], shape[0], 3), (130, 110, 20), np.uint8)
+        middle = (shape[0] // 2, shape[1] // 2)
+        cv2.circle(picture, middle, min(shape) // 3, (30, 200, 225), cv2.FILLED)
+        file = tmp_path / name
+        if name.endswith(".png"):
+            cv2.imwrite(str(file), picture)
+        else:
+            write_video(file, [picture] * 3, "MJPG")
+        camera = FileCamera(file, 320, 240, SimulatedClock())
+        sight = Detector(VisionSettings(colour="yellow", aspect=(0.95, 1.05))).search(camera.read().picture)
+        assert sight.colour == "yellow"
+        assert f"{shape[0]} × {shape[1]}" in str(camera)
+        camera.close()
+
+    @pytest.mark.parametrize("turn", [90, 180, 270])
+    def test_a_film_of_a_phone_that_was_held_otherwise_is_upright(self, tmp_path: Path, turn: int) -> None:
+        # Red in the upper left corner as it lies in the file.
+        picture = np.zeros((120, 160, 3), np.uint8)
+        picture[:40, :40] = (0, 0, 255)
+        file = write_video(tmp_path / "phone.mp4", [picture] * 4, "mp4v")
+        turn_film(file, turn)
+        camera = FileCamera(file, 160, 120, SimulatedClock())
+        red = camera.read().picture[..., 2] > 150
+        down, across = (float(one.mean()) for one in np.nonzero(red))
+        right, below = {90: (True, False), 180: (True, True), 270: (False, True)}[turn]
+        assert (across > 80, down > 60) == (right, below)
+        camera.close()
+
+    @pytest.mark.parametrize("kind", ["grey", "grey 16 bit", "16 bit", "alpha", "one pixel"])
+    def test_pictures_of_every_kind_have_three_bytes_a_pixel(self, tmp_path: Path, kind: str) -> None:
+        pixel: dict[str, NDArray[Any]] = {
+            "grey": np.full((6, 8), 200, np.uint8),
+            "grey 16 bit": np.full((6, 8), 200 * 257, np.uint16),
+            "16 bit": np.full((6, 8, 3), 200 * 257, np.uint16),
+            "alpha": np.full((6, 8, 4), 200, np.uint8),
+            "one pixel": np.full((1, 1, 3), 200, np.uint8),
+        }
+        file = tmp_path / "picture.png"
+        cv2.imwrite(str(file), pixel[kind])
+        picture = FileCamera(file, 32, 24, SimulatedClock()).read().picture
+        assert (picture.shape, picture.dtype) == ((24, 32, 3), np.uint8)
+        assert (picture == 200).all()
 
     @pytest.mark.parametrize("name", ["card.png", "card.jpg", "card 01.bmp"])
     def test_a_still_picture_stays_the_same(self, tmp_path: Path, name: str) -> None:
@@ -298,7 +438,7 @@ class TestUsbCamera:
         assert frames[0].picture.shape == (240, 320, 3)
         assert frames[0].picture.dtype == np.uint8
         assert {frame.taken for frame in frames} == {70.0}  # the file counts from its own beginning
-        assert str(camera) == f"USB camera {video}"
+        assert str(camera) == f"USB camera {video} (160 × 120, scaled to 320 × 240)"
         camera.close()
 
     def test_a_camera_that_ends_is_reported(self, video: Path, monkeypatch: pytest.MonkeyPatch) -> None:
