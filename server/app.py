@@ -43,6 +43,7 @@ from server.http.proxies import RequestsOfAddress
 from server.http.security import SecurityMiddleware
 from server.http.sign_in.middleware import SignInMiddleware
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
+from server.http.start_problems import StartProblems, explaining_start
 from server.http.turns import RequestTurns
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
@@ -69,13 +70,14 @@ def create_app(
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        container = Container(settings, commands, token, app.state.ended)
-        app.state.container = container
-        app.state.services = container.services
-        async with container.run():
-            if started is not None:
-                started(container)
-            yield
+        with explaining_start(app):
+            container = Container(settings, commands, token, app.state.ended)
+            app.state.container = container
+            app.state.services = container.services
+            async with container.run():
+                if started is not None:
+                    started(container)
+                yield
 
     app = FastAPI(
         title="µ-CAT",
@@ -100,6 +102,7 @@ def create_app(
     if settings.trusted_proxies:
         app.add_middleware(RequestsOfAddress)
     app.add_middleware(AuditMiddleware)
+    app.add_middleware(StartProblems)
     add_error_handlers(app)
     app.router.routes.extend(_build_routes())
     for door in doors.open_routes(settings):

@@ -17,7 +17,8 @@ from server.http.dependencies import find_service
 from server.http.security import DOORS, SAFE_METHODS
 from server.http.sign_in.confirmation import UNCONFIRMED
 from server.http.sign_in.identity import IDENTITY, Identity
-from server.platform.audit_file import AuditEntry, Outcome, append_entries, clean
+from server.http.sign_in.policy import Need, need_of
+from server.platform.audit_file import FILES_MOST, AuditEntry, Outcome, Series, append_entries, clean
 
 log = logging.getLogger(__name__)
 
@@ -50,22 +51,41 @@ SECRETS = frozenset({"code"})
 """Entries of a request's body that are not stored."""
 SOCKET_REFUSED = 403
 """Stands for a live socket that was closed before it was accepted."""
+SIGNING = frozenset({"pairBrowser", "signOut"})
+DELETING = frozenset({"purgeSession", "importSession"})
+"""Operations whose entries are with those of other deletions, which are sent as DELETE."""
+QUERY_MAX = 100
+"""Characters of a query that are written."""
 WINDOW = 3600.0
 LIMIT, LIMIT_OPERATOR = 60, 600
-"""Entries of one device (all who are not signed in are one) about one action in an hour. Further ones are
-counted: nobody can push others' acts out of the log, or fill the disk."""
+"""Entries of one device (all who are not signed in are one) about one action in an hour; the second is also
+that of all actions of a series together. Further ones are counted: nobody can push others' acts out of the
+log, or fill the disk."""
 PENDING_MOST = 1000
 """The greatest number of entries that wait in memory while the disk takes none."""
 
 
+_Written = tuple[Series, AuditEntry]
+
+
 @dataclass(slots=True)
 class _Window:
-    """The entries of one device about one action since `begun` (s, steady clock); `left_out` is the last of
-    those that were only counted."""
+    """The entries of one device about one action, or of one series, since `begun` (s, steady clock);
+    `left_out` is the last of those that were only counted."""
 
     begun: float
+    series: Series
     entries: int = 0
     left_out: AuditEntry | None = None
+
+    def admit(self, entry: AuditEntry, most: int) -> bool:
+        """Count an entry; False where there are too many, so that it is only counted."""
+        self.entries += 1
+        if self.entries <= most:
+            return True
+        count = 1 if self.left_out is None else self.left_out.count + 1
+        self.left_out = replace(entry, count=count)
+        return False
 
 
 class AuditLog:
@@ -76,8 +96,8 @@ class AuditLog:
         self._clock = clock
         self._notice = notice
         self._noticed = -NOTICE_SECONDS, ""
-        self._windows: dict[tuple[int | None, str, Outcome], _Window] = {}
-        self._pending: list[AuditEntry] = []
+        self._windows: dict[tuple[int | None, str, str], _Window] = {}
+        self._pending: list[_Written] = []
         self._thread = ThreadPoolExecutor(1, "audit")
 
     def record(
@@ -88,8 +108,12 @@ class AuditLog:
         about: str,
         outcome: Outcome,
         operation: str = "",
+        series: Series = "",
     ) -> None:
-        """Add an entry. `operation` is the name of an operation of the HTTP interface, if it is one."""
+        """Add an entry. `operation` is the name of an operation of the HTTP interface, if it is one.
+
+        `series` is that of the entry where the act was done, but for arming, which is known by `operation`.
+        """
         entry = AuditEntry(
             time=time.time(),
             who=identity.name if identity else "",
@@ -101,8 +125,9 @@ class AuditLog:
             outcome=outcome,
         )
         entries = self._end_windows()
-        if self._admit(entry):
-            entries.append(entry)
+        of: Series = "" if outcome != "done" else "arming" if operation in ARMING else series
+        if self._admit(entry, of):
+            entries.append((of, entry))
             if outcome == "done" and identity is not None and operation in NOTICED:
                 self._notify(operation, f"“{identity.name}” {NOTICED[operation]}.")
         if entries:
@@ -119,36 +144,37 @@ class AuditLog:
             self._noticed = now, text
             self._notice(operation, text)
 
-    def _admit(self, entry: AuditEntry) -> bool:
+    def _admit(self, entry: AuditEntry, series: Series) -> bool:
         """Count an entry; False where there are too many of its kind, so that it is only counted."""
         operator = entry.role == "operator" and entry.outcome == "done"
-        window = self._windows.setdefault(
-            (entry.device, entry.action, entry.outcome), _Window(self._clock.now())
+        of_action = self._window(entry.device, entry.action, entry.outcome, series)
+        of_series = self._window(entry.device, "", series, series)
+        return of_action.admit(entry, LIMIT_OPERATOR if operator else LIMIT) and of_series.admit(
+            entry, LIMIT_OPERATOR
         )
-        window.entries += 1
-        if window.entries <= (LIMIT_OPERATOR if operator else LIMIT):
-            return True
-        count = 1 if window.left_out is None else window.left_out.count + 1
-        window.left_out = replace(entry, count=count)
-        return False
 
-    def _end_windows(self, *, everything: bool = False) -> list[AuditEntry]:
+    def _window(self, device: int | None, action: str, kind: str, series: Series) -> _Window:
+        return self._windows.setdefault((device, action, kind), _Window(self._clock.now(), series))
+
+    def _end_windows(self, *, everything: bool = False) -> list[_Written]:
         """The counts of windows that have ended."""
         before = self._clock.now() - WINDOW
         over = [key for key, one in self._windows.items() if everything or one.begun <= before]
         ended = [self._windows.pop(key) for key in over]
-        return [one.left_out for one in ended if one.left_out is not None]
+        return [(one.series, one.left_out) for one in ended if one.left_out is not None]
 
-    def _write(self, entries: list[AuditEntry]) -> None:
-        self._pending = [*self._pending, *entries][-PENDING_MOST:]
-        if not self._pending:
-            return
-        try:
-            append_entries(self.folder, self._pending)
-        except OSError as problem:
-            log.warning("%d entries of the audit log wait: %s", len(self._pending), problem)
-        else:
-            self._pending = []
+    def _write(self, entries: list[_Written]) -> None:
+        waiting, self._pending = [*self._pending, *entries], []
+        for series in FILES_MOST:
+            of_series = [entry for of, entry in waiting if of == series]
+            if not of_series:
+                continue
+            try:
+                append_entries(self.folder, of_series, series)
+            except OSError as problem:
+                log.warning("%d entries of the audit log wait: %s", len(of_series), problem)
+                self._pending += [(series, entry) for entry in of_series]
+        self._pending = self._pending[-PENDING_MOST:]
 
 
 class AuditMiddleware:
@@ -219,10 +245,11 @@ class _Request:
         # Whoever has signed out, or was revoked meanwhile, was still somebody.
         identity = caller_of(self._scope) or self._identity
         outcome = _outcome(self.status)
-        audit.record(identity, address_of(self._scope), action, self._describe(), outcome, operation)
+        series = _series_of(route, method, operation)
+        audit.record(identity, address_of(self._scope), action, self._describe(), outcome, operation, series)
 
     def _describe(self) -> str:
-        query = self._scope.get("query_string", b"").decode(errors="replace")
+        query = self._scope.get("query_string", b"")[:QUERY_MAX].decode(errors="replace")
         said = self._read_body()
         asked = f"{self._scope['method']} {self._scope['path']}" + (f"?{query}" if query else "")
         if UNCONFIRMED in self._scope:
@@ -249,6 +276,12 @@ def address_of(scope: Scope) -> str:
     """The address that asks; empty where the server does not know it."""
     client = scope.get("client")
     return str(client[0]) if client else ""
+
+
+def _series_of(route: object, method: str, operation: str) -> Series:
+    if need_of(route) is Need.ADMINISTER or operation in SIGNING:
+        return "access"
+    return "deletion" if method == "DELETE" or operation in DELETING else ""
 
 
 def _outcome(status: int) -> Outcome:

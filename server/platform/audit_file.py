@@ -8,9 +8,10 @@ import json
 import logging
 import os
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from heapq import merge
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -26,7 +27,9 @@ Outcome = Literal["done", "refused", "failed", "begun"]
 killed has none."""
 FILE_BYTES = 512 * 1024
 """Size from which on a new file is begun."""
-FILES_MOST = 8
+Series = Literal["", "access", "arming", "deletion", "shell"]
+"""A kind of entries with files of their own, named after it: others push none of them out. "" is the rest."""
+FILES_MOST: Mapping[Series, int] = {"": 8, "access": 4, "arming": 4, "deletion": 4, "shell": 4}
 """The greatest number of files; the oldest is removed when one more is begun."""
 TEXT_MAX = 400
 WRITTEN = "mucat.audit"
@@ -53,11 +56,11 @@ class AuditEntry:
     count: int = 1
 
 
-def append_entries(folder: Path, entries: Iterable[AuditEntry]) -> None:
-    """Append entries durably, each whole or not at all. Raises OSError."""
+def append_entries(folder: Path, entries: Iterable[AuditEntry], series: Series = "") -> None:
+    """Append entries of one series durably, each whole or not at all. Raises OSError."""
     lines = "".join(json.dumps(asdict(one), ensure_ascii=False) + "\n" for one in entries)
     make_folder(folder)
-    path = _current(folder)
+    path = _current(folder, series)
     handle = os.open(path, os.O_RDWR | os.O_APPEND | os.O_CREAT, 0o600)
     try:
         size = os.fstat(handle).st_size
@@ -82,7 +85,7 @@ def append_shell_command(folder: Path) -> None:
     context.meta[WRITTEN] = True
     named = {name: str(value) for name, value in context.params.items() if value not in (None, (), False)}
     about = json.dumps(named, ensure_ascii=False)
-    append_entries(folder, [_shell_entry(context.command_path, about, "begun")])
+    append_entries(folder, [_shell_entry(context.command_path, about, "begun")], "shell")
     context.with_resource(_append_end(folder, context.command_path, about))
 
 
@@ -103,14 +106,19 @@ def _append_end(folder: Path, action: str, about: str) -> Iterator[None]:
     finally:
         if os.getpid() == process:
             try:
-                append_entries(folder, [_shell_entry(action, about, outcome)])
+                append_entries(folder, [_shell_entry(action, about, outcome)], "shell")
             except OSError as problem:
                 log.warning("the audit log does not say how this command ended: %s", problem)
 
 
 def read_entries(folder: Path) -> Iterator[AuditEntry]:
     """All entries, newest first. A line that was cut off is left out. Raises OSError."""
-    for path in reversed(_files(folder)):
+    every = (_read_series(folder, series) for series in FILES_MOST)
+    return merge(*every, key=lambda entry: entry.time, reverse=True)
+
+
+def _read_series(folder: Path, series: Series) -> Iterator[AuditEntry]:
+    for path in reversed(_files(folder, series)):
         for line in reversed(path.read_text(encoding="utf-8", errors="replace").splitlines()):
             try:
                 entry = AuditEntry(**json.loads(line))
@@ -130,14 +138,16 @@ def _shell_entry(action: str, about: str, outcome: Outcome) -> AuditEntry:
     return AuditEntry(time.time(), SHELL_NAME, 0, "operator", "", action, clean(about), outcome)
 
 
-def _files(folder: Path) -> list[Path]:
-    return sorted(folder.glob("[0-9]*.jsonl")) if folder.is_dir() else []
+def _files(folder: Path, series: Series) -> list[Path]:
+    return sorted(folder.glob(f"{series}[0-9]*.jsonl")) if folder.is_dir() else []
 
 
-def _current(folder: Path) -> Path:
-    files = _files(folder)
+def _current(folder: Path, series: Series) -> Path:
+    files = _files(folder, series)
     if files and files[-1].stat().st_size < FILE_BYTES:
         return files[-1]
-    for old in files[: 1 - FILES_MOST] if len(files) >= FILES_MOST else ():
+    most = FILES_MOST[series]
+    for old in files[: 1 - most] if len(files) >= most else ():
         old.unlink(missing_ok=True)
-    return folder / f"{int(files[-1].stem) + 1 if files else 1:08}.jsonl"
+    number = int(files[-1].stem.removeprefix(series)) + 1 if files else 1
+    return folder / f"{series}{number:08}.jsonl"

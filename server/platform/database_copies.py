@@ -15,6 +15,7 @@ Kind = Literal["backup", "before", "replaced"]
 """Copies made by hand, before an upgrade, and of a database that a restore replaced."""
 COPIES_MOST = 5
 """The greatest number of copies of each kind in the data folder."""
+DAMAGED_REMEDY = "Put back a copy (`mucat restore`), or move it away to start with an empty one"
 CHECKSUM = ".sha256"
 SUM_BYTES = 1 << 20
 

@@ -8,7 +8,13 @@ from pathlib import Path
 from typing import Literal
 
 from migrations import HEAD
-from server.platform.database_copies import copy_database, open_database, place, thin_out
+from server.platform.database_copies import (
+    DAMAGED_REMEDY,
+    copy_database,
+    open_database,
+    place,
+    thin_out,
+)
 from server.platform.settings import DataFolder, SetupError
 
 INCREMENTAL = 2
@@ -45,7 +51,7 @@ def explain(problem: sqlite3.DatabaseError | OSError, folder: Path) -> str:
         return f"the disk that holds {folder} is full. Free some space, and try again."
     if isinstance(problem, OSError) or "readonly" in words or "unable to open" in words:
         return f"{words}. Check the permissions of {folder}, and whether its disk is read-only."
-    return f"{words}. Put back a copy (`mucat restore`), or move it away to start with an empty one."
+    return f"{words}. {DAMAGED_REMEDY}."
 
 
 def read_revision(database: Path, mode: Literal["ro", "rw"] = "ro") -> str | None:

@@ -19,6 +19,7 @@ from sqlalchemy import Connection, Delete, Engine, UpdateBase, create_engine, ev
 from sqlalchemy.exc import DBAPIError
 from sqlmodel import Session, SQLModel
 
+from server.platform.database_copies import DAMAGED_REMEDY
 from server.platform.disk_reserve import DiskReserve
 from server.platform.errors import InsufficientStorageError, UnavailableError
 from server.platform.settings import RESERVE
@@ -190,4 +191,6 @@ def _explain(problem: DBAPIError) -> str:
         return "the disk does not take or give data (input/output error): check the SD card or disk"
     if "readonly" in words:
         return "the data folder cannot be written: check its permissions, and whether the disk is read-only"
+    if "malformed" in words or "not a database" in words:
+        return f"the database is damaged: {words}. {DAMAGED_REMEDY}"
     return f"the database refuses: {words}"

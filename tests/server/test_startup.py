@@ -1,15 +1,19 @@
 """Start and end of the server: the libraries of its runner, signals, a full disk, and a part that fails."""
 
 import asyncio
+import sqlite3
 import subprocess
 import sys
 import threading
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from robot_runtime.durable_files import PART
 from server.app import create_app
+from server.http.listener import open_socket
+from server.http.serving import make_server
 from server.platform.running_server import announce
 from server.platform.settings import Settings, SetupError
 from server.processes.supervisor import ProcessSupervisor
@@ -92,6 +96,25 @@ def test_a_server_that_cannot_hear_the_runtime_says_so(settings: Settings) -> No
     settings.data.server_socket.mkdir()
     with pytest.raises(SetupError, match="cannot listen for the robot's runtime"):
         asyncio.run(live_once(settings))
+
+
+def test_a_damaged_page_of_the_database_is_said_with_its_remedy(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place_empty(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        (page,) = database.execute("SELECT rootpage FROM sqlite_master WHERE name = 'device'").fetchone()
+        (size,) = database.execute("PRAGMA page_size").fetchone()
+    with settings.data.database.open("r+b") as file:
+        file.seek((page - 1) * size)
+        file.write(b"x" * size)
+    with open_socket("127.0.0.1", 0) as listener, pytest.raises(SystemExit):
+        make_server(create_app(settings)).run(sockets=[listener])
+    said = capsys.readouterr().err
+    assert "the database is damaged: " in said
+    assert "Put back a copy (`mucat restore`), or move it away to start with an empty one." in said
+    assert "Traceback" not in said
 
 
 def test_a_part_that_cannot_be_closed_keeps_nothing_else_open(

@@ -13,7 +13,18 @@ from robot_runtime.clock import SimulatedClock
 from server import cli
 from server.app import create_app
 from server.http import audit
-from server.http.audit import DOWNLOADS, LIMIT, NOTICED, UNCHANGING, WINDOW, AuditLog
+from server.http.audit import (
+    DELETING,
+    DOWNLOADS,
+    LIMIT,
+    LIMIT_OPERATOR,
+    NOTICED,
+    QUERY_MAX,
+    SIGNING,
+    UNCHANGING,
+    WINDOW,
+    AuditLog,
+)
 from server.http.security import SAFE_METHODS
 from server.http.sign_in.identity import SHELL, Identity
 from server.http.sign_in.policy import Need, list_needs, need_of
@@ -37,7 +48,7 @@ def make_log(folder: Path, clock: SimulatedClock) -> AuditLog:
 
 def test_tables_name_operations_that_exist(settings: Settings) -> None:
     known = list_needs(create_app(settings).routes).keys()
-    assert known >= UNCHANGING | DOWNLOADS | NOTICED.keys()
+    assert known >= UNCHANGING | DOWNLOADS | NOTICED.keys() | SIGNING | DELETING
 
 
 def test_what_only_looks_is_in_no_log(settings: Settings) -> None:
@@ -70,6 +81,8 @@ def test_sign_in_refusals_roles_arm_and_stop_are_written_with_who_and_where(sett
         assert '{"role": "operator"}' in what[3]
         assert what[-2] == "GET /api/robot"
         assert "page was closed" in what[-1]
+        files = {path.stem.rstrip("0123456789") for path in (settings.data.audit / "own").iterdir()}
+        assert files == {"", "access", "arming"}
 
     asyncio.run(scenario())
 
@@ -140,6 +153,51 @@ def test_a_flood_of_a_stranger_is_counted_and_leaves_others_acts_in_the_log(tmp_
     assert rest[-1].action == "Make a token"
 
 
+PROGRAM = Identity(8, "Program", "operator", "program", limited=True)
+
+
+def test_no_program_of_an_operator_pushes_out_what_others_did(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(audit_file, "FILE_BYTES", 10_000)
+    clock = SimulatedClock()
+    log = make_log(tmp_path, clock)
+    log.record(ANNA, "", "Make a token", "", "done", "makeToken", "access")
+    log.record(ANNA, "", "Arm", "", "done", "commandArm")
+    log.record(ANNA, "", "Delete a session", "", "done", "deleteSession", "deletion")
+    for _ in range(5):
+        for number in range(20 * LIMIT_OPERATOR):
+            log.record(PROGRAM, "", f"Action {number % 20}", "x" * 400, "done", "stopRobot")
+        clock.forward(WINDOW)
+    log.close()
+    found = list(read_entries(tmp_path))
+    assert [one.action for one in found if one.who == "Anna"] == ["Delete a session", "Arm", "Make a token"]
+    assert sum(path.stat().st_size for path in tmp_path.iterdir()) < 10 * 10_000
+
+
+def test_a_program_has_as_many_entries_an_hour_whatever_it_does(tmp_path: Path) -> None:
+    log = make_log(tmp_path, SimulatedClock())
+    for number in range(20 * LIMIT_OPERATOR):
+        log.record(PROGRAM, "", f"Action {number % 20}", "", "done")
+    log.record(PROGRAM, "", "Delete a session", "", "done", "deleteSession", "deletion")
+    log.close()
+    found = list(read_entries(tmp_path))
+    assert sum(one.count for one in found) == 20 * LIMIT_OPERATOR + 1
+    assert len(found) == LIMIT_OPERATOR + 2
+    assert "Delete a session" in {one.action for one in found}
+
+
+def test_a_long_query_does_not_pad_an_entry(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with open_house(settings) as house:
+            right, operator = house.places("right", "right"), house.people["operator"]
+            await house.ask(operator, "POST", "/api/robot/stop", right, query="x" * 5000)
+        (entry, *_) = (one for one in read_entries(settings.data.audit) if "/api/robot/stop" in one.about)
+        assert entry.about == "POST /api/robot/stop?" + "x" * QUERY_MAX
+
+    asyncio.run(scenario())
+
+
 def test_entries_wait_while_the_disk_takes_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise OSError("full")
@@ -166,9 +224,9 @@ def test_the_oldest_file_goes_when_there_are_too_many(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(audit_file, "FILE_BYTES", 1)
-    for number in range(audit_file.FILES_MOST + 2):
+    for number in range(audit_file.FILES_MOST[""] + 2):
         append_entries(tmp_path, [entry(number)])
-    assert len(list(tmp_path.iterdir())) == audit_file.FILES_MOST
+    assert len(list(tmp_path.iterdir())) == audit_file.FILES_MOST[""]
     assert [one.time for one in read_entries(tmp_path)] == [9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0]
 
 
