@@ -36,6 +36,7 @@ from server.features.updates import routes as updates
 from server.features.vision import routes as vision
 from server.http.audit import AuditMiddleware
 from server.http.error_handlers import add_error_handlers
+from server.http.head_requests import HeadRequests
 from server.http.help_pages import HelpPages, make_help_router
 from server.http.operations import EVERYWHERE
 from server.http.page import Page, make_router
@@ -101,6 +102,7 @@ def create_app(
     )
     if settings.trusted_proxies:
         app.add_middleware(RequestsOfAddress)
+    app.add_middleware(HeadRequests)
     app.add_middleware(AuditMiddleware)
     app.add_middleware(StartProblems)
     add_error_handlers(app)

@@ -78,11 +78,11 @@ def make_help_router(pages: HelpPages) -> APIRouter:
     """Everything under /help."""
     router = APIRouter(include_in_schema=False)
 
-    @router.api_route(PREFIX, methods=["GET", "HEAD"])
+    @router.get(PREFIX)
     def open_help() -> Response:
         return RedirectResponse(PREFIX + "/")
 
-    @router.api_route(PREFIX + "/{path:path}", methods=["GET", "HEAD"])
+    @router.get(PREFIX + "/{path:path}")
     def get_help(path: str) -> Response:
         return pages.respond(path)
 

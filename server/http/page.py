@@ -63,7 +63,7 @@ def make_router(page: Page) -> APIRouter:
     """Everything that is not under /api."""
     router = APIRouter(include_in_schema=False)
 
-    @router.api_route("/{path:path}", methods=["GET", "HEAD"])
+    @router.get("/{path:path}")
     def get_page(request: Request, path: str) -> Response:
         if path == "api" or path.startswith("api/"):
             return Response('{"detail":"There is no such address."}', 404, media_type="application/json")

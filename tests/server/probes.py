@@ -66,7 +66,6 @@ STEP |= {"settle": 10.0, "duration": 20.0}
 
 PROBES: dict[tuple[str, str], Probe] = {
     ("GET", "/help"): Probe(307),
-    ("HEAD", "/help"): Probe(307),
     ("GET", "/api/alive"): Probe(204),
     ("POST", "/api/access/pair"): Probe(body={"code": CODE, "name": "somebody"}),
     ("POST", "/api/access/confirm"): Probe(204, {"code": OPERATOR_CODE}),

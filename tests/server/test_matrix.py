@@ -44,11 +44,8 @@ Where = Literal["right", "wrong", "missing"]
 
 ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/{path:path}"): "anyone",
-    ("HEAD", "/{path:path}"): "anyone",
     ("GET", "/help"): "anyone",
-    ("HEAD", "/help"): "anyone",
     ("GET", "/help/{path:path}"): "anyone",
-    ("HEAD", "/help/{path:path}"): "anyone",
     ("GET", "/api/openapi.json"): "viewer",
     ("HEAD", "/api/openapi.json"): "viewer",
     ("GET", "/api/access/me"): "anyone",

@@ -1,0 +1,36 @@
+"""HEAD requests to every route that answers GET, and their answers beside those of GET."""
+
+import asyncio
+
+from server.http.sign_in.middleware import OPEN
+from server.platform.settings import Settings
+from tests.server.probes import PROBES, THERE, Probe
+from tests.server.test_matrix import ROUTES, Somebody, open_house
+
+
+def test_every_get_answers_head_with_the_same_status_and_headers_and_without_a_body(
+    settings: Settings,
+) -> None:
+    async def scenario() -> None:
+        surprises = []
+        async with open_house(settings) as house:
+            right = house.places("right", "right")
+            for template in sorted(path for method, path in ROUTES if method == "GET"):
+                probe = PROBES.get(("GET", template), Probe())
+                path = template.replace(":path", "").format(**THERE | probe.named)
+                answers = [
+                    await house.ask(house.shell, method, path, right, query=probe.query)
+                    for method in ("GET", "HEAD")
+                ]
+                (status, headers, _), (head_status, head_headers, body) = answers
+                if (status, headers.keys(), b"") != (head_status, head_headers.keys(), body):
+                    surprises.append((path, status, head_status, headers, head_headers, body[:80]))
+            assert not surprises
+            for method, path in OPEN:
+                if method == "GET":
+                    status, _, body = await house.ask(Somebody(), "HEAD", path, right)
+                    assert (status, body) in ((200, b""), (204, b""))
+            status, _, _ = await house.ask(Somebody(), "HEAD", "/api/robot", right)
+            assert status == 401
+
+    asyncio.run(scenario())
