@@ -100,7 +100,7 @@ def _groups(robot: RealRobot, *, limited: bool) -> Iterator[None]:
         return
     name = f"mucat-bench-{os.getpid()}"
     parent, memory = _CPU / name, _MEMORY / name
-    homes = {"runtime": ["runtime"], "server": ["runner", "server"]}
+    homes = {"runtime": ["runtime", "vision"], "server": ["runner", "server"]}
     try:
         for folder in (parent, memory):
             folder.mkdir()

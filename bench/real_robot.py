@@ -72,7 +72,8 @@ class RealRobot(Stack):
     @property
     def robot_processes(self) -> dict[str, psutil.Process]:
         """The processes that a robot has, by name."""
-        return {"runner": self.process, "server": self.server, "runtime": self.part("runtime")}
+        parts = {name: self.part(name) for name in ("runtime", "vision")}
+        return {"runner": self.process, "server": self.server, **parts}
 
 
 @contextmanager

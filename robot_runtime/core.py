@@ -61,8 +61,7 @@ from robot_runtime.parameters.providers import runtime_entries
 from robot_runtime.parameters.registry import Registry
 from robot_runtime.transport.bus import Bus
 from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.zenoh_transport import ZenohTransport
-from robot_runtime.vision.camera import Camera
+from robot_runtime.vision.interface import Vision, VisionOutputs
 from robot_runtime.vision.node import VisionNode
 
 log = logging.getLogger(__name__)
@@ -79,11 +78,11 @@ _CALIBRATION_EVERY = 10.0
 class Core:
     """The robot without its threads. `run` is this run's identifier, 16 hexadecimal digits.
 
-    `open_camera` replaces the configured camera, which may query `messages`. `hil` feeds a board without
-    sensors. With `heartbeat` (s) a server that is silent for longer is a fault.
+    `open_vision` replaces the vision node in this process. `hil` feeds a board without sensors. With
+    `heartbeat` (s) a server that is silent for longer is a fault.
 
     `line` calls `take_messages` and `link_changed`. Threads of their own may run: `line`, `take_pilot`,
-    `publish_tick`, `vision.tick`, and `control_tick` together with `pilot_tick`.
+    `publish_tick`, `vision`, and `control_tick` together with `pilot_tick`.
     """
 
     def __init__(
@@ -95,8 +94,7 @@ class Core:
         outbox: Outbox,
         *,
         watched: Callable[[str], bool],
-        open_camera: Callable[[], Camera] | None = None,
-        messages: ZenohTransport | None = None,
+        open_vision: Callable[[VisionOutputs], Vision] | None = None,
         hil: HilFeed | None = None,
         heartbeat: float | None = None,
     ) -> None:
@@ -134,17 +132,14 @@ class Core:
         )
         self.control = ControlNode(self.bus, clock, line.send, self.supervisor.pilot)
         self.experiments = Experiments(clock, self._publish_experiment)
-        self.vision = VisionNode(
-            config.vision,
-            clock,
-            self._take_detection,
-            outbox.send_picture,
-            watched,
-            self.publish_event,
-            open_camera,
-            messages,
-            on_thumbnail=partial(outbox.add_picture, "thumbnail"),
+        outputs = VisionOutputs(
+            detection=self._take_detection,
+            event=self.publish_event,
+            picture=outbox.send_picture,
+            thumbnail=partial(outbox.add_picture, "thumbnail"),
+            watched=watched,
         )
+        self.vision = (open_vision or self._open_vision)(outputs)
         self._every: list[tuple[float, Callable[[], None]]] = [
             (_STATE_EVERY, self.announce),
             (_STATISTICS_EVERY, self._publish_statistics),
@@ -169,6 +164,9 @@ class Core:
         )
         self._parameters_published: Parameters | None = None
         self._join()
+
+    def _open_vision(self, outputs: VisionOutputs) -> Vision:
+        return VisionNode(self.config.vision, self.clock, outputs)
 
     def publish_event(self, event: Event) -> None:
         """Publishes an event and the changed state."""

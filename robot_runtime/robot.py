@@ -20,6 +20,7 @@ from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.vision.process import VisionProcess
 from robot_runtime.vision.settings_file import VisionSettingsFile
 
 
@@ -62,7 +63,9 @@ class Robot(Core):
             outbox,
             hil=self.hil,
             watched=messages.watched,
-            messages=messages,
+            open_vision=lambda outputs: VisionProcess(
+                config.vision, clock, outputs, config.robot.name, messages.endpoints[0]
+            ),
             heartbeat=heartbeat,
         )
         self._vision_file = vision_file
@@ -79,7 +82,7 @@ class Robot(Core):
             self._messages.serve(f"command/{name}", command)
         self._messages.serve("query/frames", lambda _: self.frames())
         self._messages.serve("query/vision", lambda _: self.vision_settings())
-        self._messages.serve("query/pick", lambda question: asdict(self.vision.pick(question)))
+        self._messages.serve("query/pick", lambda question: self.vision.pick(question))
         self._messages.serve("query/state", lambda _: asdict(self.state()))
         self._messages.serve("query/parameters", lambda _: asdict(self.list_parameters()))
         self._messages.serve_bytes("query/blocks", self.cache.answer)

@@ -162,7 +162,15 @@ class Stack:
         return found[0]
 
     def part(self, name: str) -> psutil.Process:
-        """The running part of this name, whichever server has started it."""
+        """The running part of this name, whichever server has started it; "vision" is the runtime's own.
+
+        Raises LookupError where there is none.
+        """
+        if name == "vision":
+            found = [
+                one for one in self.part("runtime").children() if "robot_runtime.vision" in one.cmdline()
+            ]
+            return found[0]
         return psutil.Process(running_parts(DataFolder(self.data).run)[name].pid)
 
     def kill(self) -> None:

@@ -129,9 +129,13 @@ class Detection(Document):
     processing: float
     candidates: list[Candidate] = field(default_factory=list)
     markers: list[ArucoMarker] = field(default_factory=list)
+    confirmed: list[str] = field(
+        default_factory=list,
+        metadata={"meaning": "colours and markers that enough of the last pictures show"},
+    )
     target: str | None = field(
         default=None,
-        metadata={"meaning": "what sets the set point: the target colour, or the name of an action"},
+        metadata={"meaning": "what sets the set point: the confirmed target colour, or name of an action"},
     )
     set_point: float | None = field(
         default=None,

@@ -4,6 +4,7 @@ import math
 import types
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
+from functools import cache
 from reprlib import Repr
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -20,7 +21,7 @@ def parse(cls: type[T], table: Mapping[str, Any], where: DocumentEntry = TOP) ->
     Raises ConfigError with all problems: names that are unknown or missing, wrong types, numbers out of
     range, and what the dataclass itself refuses with a ValueError.
     """
-    hints = get_type_hints(cls, include_extras=True)
+    hints = _hints(cls)  # type: ignore[arg-type]
     known = {one.name: one for one in fields(cls)}  # type: ignore[arg-type]
     problems = [
         where.field(name, repr(name)).problem(f"is not known here; known are {', '.join(known)}")
@@ -51,6 +52,11 @@ _WORDS = {
     tuple: "a list",
     dict: "a table",
 }
+
+
+@cache
+def _hints(cls: type) -> Mapping[str, Any]:
+    return get_type_hints(cls, include_extras=True)
 
 
 def _values(

@@ -18,6 +18,9 @@ Share = Annotated[float, Range(0, 1)]
 Area = Annotated[float, Range(0.0001, 1)]
 Aspect = Annotated[float, Range(0.05, 20)]
 MarkerNumber = Annotated[int, Range(0, 1023)]
+PICTURES_MAX = 10
+"""Pictures that may vote on a sighting."""
+PictureCount = Annotated[int, Range(1, PICTURES_MAX)]
 WhiteBalance = Literal["none", "grey_world", "underwater"]
 MarkerDictionary = Literal["none", "4x4_50", "5x5_100", "6x6_250", "7x7_1000", "original", "april_36h11"]
 MARKER_COUNTS: Mapping[MarkerDictionary, int] = {
@@ -85,8 +88,9 @@ class VisionSettings:
     `colour` is the target colour, whose mask is shown. A patch counts if its area, its fill (area over that
     of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
     perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary
-    counts. `actions` are set points (m) while a colour or `marker 7` is seen. Raises ConfigError on settings
-    that contradict each other.
+    counts. `actions` are set points (m) while a colour or `marker 7` is seen. With `confirmation` (2, 3) it
+    is seen while at least 2 of the last 3 pictures show it. Raises ConfigError on settings that contradict
+    each other.
     """
 
     rate: Annotated[float, VISION_RATE] = 4.0
@@ -98,6 +102,7 @@ class VisionSettings:
     aspect: tuple[Aspect, Aspect] = (0.05, 20.0)
     circularity_min: Share = 0.0
     opening: Annotated[float, Range(0, 0.1)] = 0.01
+    confirmation: tuple[PictureCount, PictureCount] = (2, 3)
     white_balance: WhiteBalance = "none"
     markers: MarkerDictionary = "none"
     marker_numbers: tuple[MarkerNumber, ...] = ()
@@ -136,6 +141,11 @@ class VisionSettings:
             problems.append(f"area_min is {self.area_min:g}, above area_max, which is {self.area_max:g}")
         if self.aspect[0] > self.aspect[1]:
             problems.append(f"aspect is [{self.aspect[0]:g}, {self.aspect[1]:g}]; it cannot run backwards")
+        if self.confirmation[0] > self.confirmation[1]:
+            needed, pictures = self.confirmation
+            problems.append(
+                f"confirmation is [{needed}, {pictures}]; its first number cannot be above its second"
+            )
         if len(self.marker_numbers) > MARKERS_MAX:
             problems.append(
                 f"there are {len(self.marker_numbers)} marker_numbers; there can be at most {MARKERS_MAX}"

@@ -331,7 +331,7 @@ class ControlNode:
         if detection is not None and now - detection.taken <= VISION_STALE:
             if detection.set_point is not None:
                 set_point, reason = detection.set_point, f": {detection.target} is seen"
-            elif detection.colour == self.colour:
+            elif detection.target == self.colour:
                 set_point, reason = self.set_point_detected, f": {self.colour} is seen"
         if detection is not None and detection is not self._used_detection:
             self._used_detection, self.picture_age = detection, now - detection.taken

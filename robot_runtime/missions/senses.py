@@ -7,7 +7,7 @@ from robot_runtime.contract.vision_settings import MARKER, MARKER_COUNTS, Vision
 from robot_runtime.control.fault_detector import FaultDetector
 from robot_runtime.control.node import BEACON_STALE, VISION_STALE, ControlNode
 from robot_runtime.transport.bus import Bus
-from robot_runtime.vision.node import VisionNode
+from robot_runtime.vision.interface import Vision
 
 LIGHT = "light"
 """What `sees` calls the light of the beacon detectors."""
@@ -19,7 +19,7 @@ class MissionSenses:
     """The newest readings. The bus fills it from any thread."""
 
     def __init__(
-        self, bus: Bus, clock: Clock, control: ControlNode, detector: FaultDetector, vision: VisionNode
+        self, bus: Bus, clock: Clock, control: ControlNode, detector: FaultDetector, vision: Vision
     ) -> None:
         self.control = control
         self._clock = clock
@@ -53,13 +53,13 @@ class MissionSenses:
         return seen and self._clock.now() - time <= BEACON_STALE
 
     def sees(self, what: str) -> bool:
-        """True if a fresh picture shows this colour or marker, or a detector sees the light."""
+        """True if this colour or marker is confirmed by a fresh picture, or a detector sees the light."""
         if what == LIGHT:
             return self.light
         seen = self._detection
         if seen is None or self._clock.now() - seen.taken > VISION_STALE:
             return False
-        return what == seen.colour or any(marker_name(one.number) == what for one in seen.markers)
+        return what in seen.confirmed
 
     def check_sight(self, what: str) -> str:
         """The reason why this cannot be seen; empty if it can."""

@@ -11,11 +11,11 @@ from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.steering import STEERINGS
 from robot_runtime.parameters.entry import Entry
-from robot_runtime.vision.node import VisionNode
+from robot_runtime.vision.interface import Vision
 
 
 def runtime_entries(
-    control: ControlNode, vision: VisionNode, set_vision: Callable[[VisionSettings], None]
+    control: ControlNode, vision: Vision, set_vision: Callable[[VisionSettings], None]
 ) -> Iterator[Entry]:
     """Every parameter of the control node and of the vision node; `set_vision` applies vision settings."""
     yield from _set_points(control)
@@ -88,7 +88,7 @@ def _tune(controller: Controller, name: str, value: float) -> None:
     controller.tune({name: value})
 
 
-def _vision(vision: VisionNode, set_vision: Callable[[VisionSettings], None]) -> Iterator[Entry]:
+def _vision(vision: Vision, set_vision: Callable[[VisionSettings], None]) -> Iterator[Entry]:
     def set_rate(rate: float) -> None:
         set_vision(replace(vision.settings, rate=rate))
 

@@ -69,6 +69,8 @@ class ZenohTransport:
         network: Mapping[str, Any] = LOCAL_ONLY,
     ) -> None:
         self.run = secrets.token_hex(8)
+        self.endpoints = tuple(listen)
+        """The endpoints that it listens on."""
         self._prefix = f"mucat/{robot}/"
         # Zenoh reads it once, when a process opens its first session.
         os.environ.setdefault("ZENOH_RUNTIME", _THREADS)

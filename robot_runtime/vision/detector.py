@@ -1,6 +1,6 @@
 """The search for colours and markers: BGR to HSV, a mask of the colour, its patches (thesis, section 4.2)."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import cv2
@@ -56,7 +56,7 @@ class Sight:
     """The result of searching one picture.
 
     `target_patches` are the patches of the target colour. `patch`, of `colour`, is the reported one:
-    the target's largest or, without a target, the largest of all. `set_point` (m) is the action for `target`.
+    the target's largest or, without a target, the largest of all.
     """
 
     balanced: Picture
@@ -64,8 +64,17 @@ class Sight:
     colour: str | None
     patch: Candidate | None
     markers: list[ArucoMarker]
-    target: str | None
-    set_point: float | None
+
+    @property
+    def names(self) -> list[str]:
+        """The colour and the markers that the picture shows."""
+        colour = [] if self.colour is None else [self.colour]
+        return [*colour, *(marker_name(one.number) for one in self.markers)]
+
+
+def choose_target(settings: VisionSettings, seen: Collection[str]) -> str | None:
+    """Returns what sets the set point: the target colour, else the first action that is seen."""
+    return next((name for name in (settings.colour, *settings.actions) if name in seen), None)
 
 
 class Detector:
@@ -88,12 +97,11 @@ class Detector:
         markers = self._markers.find(balanced)
         target_patches = find_patches(hsv, settings.colour, settings)
         if (patch := target_patches.largest) is not None:
-            action = settings.actions.get(settings.colour)
-            return Sight(balanced, target_patches, settings.colour, patch, markers, settings.colour, action)
+            return Sight(balanced, target_patches, settings.colour, patch, markers)
         others = (find_patches(hsv, name, settings) for name in settings.colours if name != settings.colour)
         seen = {one.colour: patch for one in others if (patch := one.largest) is not None}
         there = {*seen, *(marker_name(one.number) for one in markers)}
-        target = next((name for name in settings.actions if name in there), None)
+        target = choose_target(settings, there)
         colour = target if target in seen else max(seen, key=lambda name: seen[name].area, default=None)
         return Sight(
             balanced=balanced,
@@ -101,6 +109,4 @@ class Detector:
             colour=colour,
             patch=seen[colour] if colour is not None else None,
             markers=markers,
-            target=target,
-            set_point=settings.actions[target] if target is not None else None,
         )

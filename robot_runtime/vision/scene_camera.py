@@ -2,12 +2,15 @@
 
 from collections.abc import Callable
 from math import isfinite
+from typing import TYPE_CHECKING
 
 from robot_runtime.contract.scene_picture import read_picture, write_request
 from robot_runtime.errors import NoAnswerError, RefusedError
-from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
 from robot_runtime.vision.cards import CameraCard
+
+if TYPE_CHECKING:
+    from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 READY_TIMEOUT = 1.0
 PICTURE_TIMEOUT = 16.0
@@ -30,7 +33,7 @@ class SceneCamera(Camera):
         self,
         width: int,
         height: int,
-        messages: ZenohTransport,
+        messages: "ZenohTransport",
         card: Callable[[], CameraCard | None],
     ) -> None:
         self._size = (width, height)

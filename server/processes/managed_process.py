@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from robot_runtime.backoff import Backoff, describe_pause, is_killed
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Severity
 from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.places import EMULATOR_REMEDY
 from server import VERSION
 from server.platform.pidfile import pid_file
-from server.processes.backoff import Backoff, describe_pause, is_killed
 from server.processes.exit_status import describe_end
 from server.processes.logs import LINES_SHOWN, ProcessLog
 from server.processes.process import AdoptedProcess, Process, ProcessGroup

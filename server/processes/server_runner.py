@@ -24,10 +24,10 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import NoReturn
 
+from robot_runtime.backoff import Backoff, describe_pause, is_killed
 from robot_runtime.transport.lifetime import end_with_parent
 from server.platform.pidfile import PidFile
 from server.platform.settings import DataFolder
-from server.processes.backoff import Backoff, describe_pause, is_killed
 from server.processes.error_output import ErrorOutput
 from server.processes.exit_status import describe_end, describe_status
 from server.processes.logs import LINES_SHOWN

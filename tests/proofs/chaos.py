@@ -50,7 +50,7 @@ JUMPS = (-86_400, -3600, 3600, 86_400, 10 * 365 * 86_400)
 SAMPLE = 1.0
 """s between two looks at the memory."""
 PARTS = ("runtime", "board", "simulator", "scene")
-VICTIMS = (*PARTS, "server")
+VICTIMS = (*PARTS, "server", "vision")
 WARM_UP = HISTORY_SECONDS + 60.0
 """s without a kill in which memory may still grow; what is shorter does not show whether it does."""
 GROWTH = (3.0, 6.0)

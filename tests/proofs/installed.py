@@ -123,7 +123,8 @@ class InstalledRobot:
         runner = psutil.Process(self._process.pid)
         (server,) = [one for one in runner.children() if one.name() == "mucat-server"]
         runtime = psutil.Process(running_parts(DataFolder(self.data).run)["runtime"].pid)
-        return {"runner": runner, "server": server, "runtime": runtime}
+        (vision,) = runtime.children()
+        return {"runner": runner, "server": server, "runtime": runtime, "vision": vision}
 
     def end(self) -> None:
         """Presses Ctrl-C."""

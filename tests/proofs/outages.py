@@ -71,6 +71,7 @@ OUTAGES = (
     Outage("runtime", "kill", "runtime_down", NEUTRAL, DISARMED),
     Outage("runtime", "stop", "runtime_silent", NEUTRAL, DISARMED, lasts=3.0),
     Outage("runtime", "hang", "runtime_silent", NEUTRAL, DISARMED),
+    Outage("vision", "kill", None),
     Outage("server", "kill", "server_restarted"),
     Outage("server", "stop", "server_silent", SERVER_SILENT, SERVER_SILENT, lasts=5.5),
     Outage("simulator", "kill", "simulator_down", 1.0, 1.0),

@@ -38,4 +38,6 @@ def test_the_robot_loads_neither_simulation_nor_experiments(tmp_path: Path) -> N
     assert done.returncode == 0, done.stderr
     loaded = json.loads(done.stdout.splitlines()[-1])
     assert "robot_runtime.control.supervisor" in loaded
+    # A decoder that crashes would take control with it: the vision process alone loads these.
+    assert [name for name in loaded if name in ("cv2", "numpy")] == []
     assert [name for name in loaded if name.startswith(APART)] == []

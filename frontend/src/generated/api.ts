@@ -6735,8 +6735,9 @@ export interface components {
          *     `colour` is the target colour, whose mask is shown. A patch counts if its area, its fill (area over that
          *     of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
          *     perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary
-         *     counts. `actions` are set points (m) while a colour or `marker 7` is seen. Raises ConfigError on settings
-         *     that contradict each other.
+         *     counts. `actions` are set points (m) while a colour or `marker 7` is seen. With `confirmation` (2, 3) it
+         *     is seen while at least 2 of the last 3 pictures show it. Raises ConfigError on settings that contradict
+         *     each other.
          */
         VisionSettings: {
             /** Actions */
@@ -6778,6 +6779,17 @@ export interface components {
             colours?: {
                 [key: string]: components["schemas"]["ColourRange-Output"];
             };
+            /**
+             * Confirmation
+             * @default [
+             *       2,
+             *       3
+             *     ]
+             */
+            confirmation: [
+                number,
+                number
+            ];
             /**
              * Fill Min
              * @default 0
@@ -6837,6 +6849,11 @@ export interface components {
             colours: {
                 [key: string]: components["schemas"]["ColourRange-Input"];
             };
+            /** Confirmation */
+            confirmation: [
+                number,
+                number
+            ];
             /** Fill Min */
             fill_min: number;
             /** Marker Numbers */

@@ -77,6 +77,7 @@ export interface VisionSettingsCommand {
   aspect: [number, number];
   circularity_min: number;
   opening: number;
+  confirmation: [number, number];
   white_balance: 'none' | 'grey_world' | 'underwater';
   markers: 'none' | '4x4_50' | '5x5_100' | '6x6_250' | '7x7_1000' | 'original' | 'april_36h11';
   marker_numbers: number[];

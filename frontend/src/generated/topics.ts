@@ -540,6 +540,7 @@ export interface Detection {
   processing: number;
   candidates: Candidate[];
   markers: ArucoMarker[];
+  confirmed: string[];
   target: string | null;
   set_point: number | null;
   latency: number | null;
@@ -612,8 +613,9 @@ export interface ColourRange {
     `colour` is the target colour, whose mask is shown. A patch counts if its area, its fill (area over that
     of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
     perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary
-    counts. `actions` are set points (m) while a colour or `marker 7` is seen. Raises ConfigError on settings
-    that contradict each other.
+    counts. `actions` are set points (m) while a colour or `marker 7` is seen. With `confirmation` (2, 3) it
+    is seen while at least 2 of the last 3 pictures show it. Raises ConfigError on settings that contradict
+    each other.
      */
 export interface VisionSettings {
   rate: number;
@@ -625,6 +627,7 @@ export interface VisionSettings {
   aspect: [number, number];
   circularity_min: number;
   opening: number;
+  confirmation: [number, number];
   white_balance: 'none' | 'grey_world' | 'underwater';
   markers: 'none' | '4x4_50' | '5x5_100' | '6x6_250' | '7x7_1000' | 'original' | 'april_36h11';
   marker_numbers: number[];

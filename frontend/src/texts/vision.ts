@@ -132,6 +132,8 @@ export const vision = {
     title: 'Patch filters',
     area: 'Area, share of the picture',
     aspect: 'Width / height',
+    confirmation: 'Seen while in',
+    pictures: (needed: number, pictures: number) => `${needed} of the last ${pictures}`,
     fill: 'Fill',
     fillHint: 'Least share of its bounding box that a patch fills',
     roundness: 'Roundness',

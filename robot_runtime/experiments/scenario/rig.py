@@ -24,6 +24,7 @@ from robot_runtime.transport.outbox import STREAM, Outbox
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import CameraCard
+from robot_runtime.vision.node import VisionNode
 
 _NOISY = -round(1.0 / PERIOD)
 _TRUTH_EVERY = round(TRUTH_PERIOD / PERIOD)
@@ -38,7 +39,12 @@ class MakeBoard(Protocol):
 
 
 class SimulatedRobot(Core):
-    """The robot whose time is the scenario's; `send` gets what it publishes, blocks one after the other."""
+    """The robot whose time is the scenario's; `send` gets what it publishes, blocks one after the other.
+
+    The vision node runs in this process, one step after the other.
+    """
+
+    vision: VisionNode
 
     def __init__(
         self,
@@ -79,7 +85,7 @@ class SimulatedRobot(Core):
             self.link,
             Outbox(publish, lambda _: False),
             watched=lambda _: False,
-            open_camera=open_camera,
+            open_vision=lambda outputs: VisionNode(config.vision, clock, outputs, open_camera),
         )
 
     def publish_tick(self) -> None:

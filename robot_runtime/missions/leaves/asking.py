@@ -12,7 +12,9 @@ _SIGHT = {"description": 'a colour, a marker such as "marker 7", or "light"', "k
 
 @mission_node("wait_for")
 class WaitForLeaf(Leaf):
-    """Waits until a fresh picture shows a colour or a marker, or a detector sees the light.
+    """Waits until the last pictures show a colour or a marker, or a detector sees the light.
+
+    How many must show it is `confirmation` of the vision settings: 2 of 3 by default.
 
     Of several colours in a picture the robot sees one: the target colour, else one with an action, else the
     largest. A step `set` of `vision.colour` before this one makes its colour the target.

@@ -49,7 +49,7 @@ class Rig:
             box=None,
             area=0.1,
             processing=0.001,
-            target=target,
+            target=colour if target is None else target,
             set_point=set_point,
         )
         self.bus.publish_document("detection", seen)

@@ -1,5 +1,7 @@
 """Picking a colour in the picture: on cards, at any hue, and without a colour."""
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,10 +10,12 @@ from hypothesis import strategies as st
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange
 from robot_runtime.errors import RefusedError
 from robot_runtime.vision.camera import CameraError
 from robot_runtime.vision.colour_picker import PickPoint, propose, range_of
+from robot_runtime.vision.interface import VisionOutputs
 from robot_runtime.vision.node import VisionNode
 from robot_runtime.vision.patches import find_colour
 from robot_runtime.vision.picture import Picture
@@ -116,9 +120,8 @@ class TestNode:
     def vision(self, picture: Picture, clock: SimulatedClock) -> tuple[VisionNode, ShakyCamera]:
         camera = ShakyCamera(picture, clock)
         config = VisionConfig()
-        node = VisionNode(
-            config, clock, lambda _: None, lambda *_: None, lambda _: False, lambda _: None, camera.open
-        )
+        outputs = VisionOutputs(detection=lambda _: None, event=lambda _: None)
+        node = VisionNode(config, clock, outputs, camera.open)
         return node, camera
 
     def test_picks_in_the_newest_picture_and_changes_nothing(self) -> None:
@@ -126,8 +129,8 @@ class TestNode:
         node, _ = self.vision(drawn(1.0, "blue"), clock)
         node.process_picture()
         before = node.settings
-        proposal = node.pick({"x": 0.5, "y": 0.5})
-        assert find(drawn(1.0, "blue"), "picked", colours={"picked": proposal.colour}) is not None
+        colour = json.loads(json.dumps(node.pick({"x": 0.5, "y": 0.5})))["colour"]
+        assert find(drawn(1.0, "blue"), "picked", colours={"picked": parse(ColourRange, colour)}) is not None
         assert node.settings is before
 
     def test_without_a_picture_the_reason_is_given(self) -> None:

@@ -1,30 +1,26 @@
 """The vision node: its detections, their times, and its recovery from failing cameras."""
 
 import sys
-import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from math import inf
 from pathlib import Path
-from statistics import median
+from typing import Literal
 
 import cv2
 import numpy as np
 import pytest
 
-from robot_runtime.clock import Clock, SimulatedClock, SteadyClock
+from robot_runtime.clock import Clock, SimulatedClock
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.documents import Detection, Event
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import RefusedError
 from robot_runtime.vision.camera import Camera, CameraError
+from robot_runtime.vision.interface import VisionOutputs
 from robot_runtime.vision.node import RETRY, VisionNode
+from robot_runtime.vision.picture import Picture
 from tests.runtime.vision.harness import ShakyCamera, drawn
-
-DEADLINE = 30.0
-"""s until what must come is given up, on a busy computer."""
 
 
 @dataclass
@@ -40,15 +36,16 @@ class Listener:
     def node(
         self, clock: Clock, camera: Callable[[], Camera] | None = None, config: VisionConfig | None = None
     ) -> VisionNode:
-        return VisionNode(
-            config or VisionConfig(),
-            clock,
-            self.detections.append,
-            lambda topic, time, jpeg: self.pictures.append((topic, time, jpeg)),
-            lambda topic: topic in self.watching,
-            self.events.append,
-            camera,
-            on_thumbnail=lambda time, jpeg: self.thumbnails.append((time, jpeg)),
+        return VisionNode(config or VisionConfig(), clock, self.outputs, camera)
+
+    @property
+    def outputs(self) -> VisionOutputs:
+        return VisionOutputs(
+            detection=self.detections.append,
+            event=self.events.append,
+            picture=lambda topic, time, jpeg: self.pictures.append((topic, time, jpeg)),
+            thumbnail=lambda time, jpeg: self.thumbnails.append((time, jpeg)),
+            watched=lambda topic: topic in self.watching,
         )
 
 
@@ -60,13 +57,6 @@ def listener() -> Listener:
 @pytest.fixture
 def clock() -> SimulatedClock:
     return SimulatedClock(20.0)
-
-
-def wait_for(condition: Callable[[], bool], what: str) -> None:
-    end = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < end, f"no {what} within {DEADLINE} s"
-        time.sleep(0.005)
 
 
 def test_each_picture_gives_a_detection(listener: Listener, clock: SimulatedClock) -> None:
@@ -153,7 +143,9 @@ def test_settings_change_as_a_whole_between_two_pictures(
     picture = drawn(1.0, "red")
     picture[:60, :60] = (0, 220, 240)
     node = listener.node(clock, ShakyCamera(picture, clock).open)
-    other = VisionSettings(colour="red", actions={"red": 2.0, "yellow": 3.0})
+    at_once = (1, 1)
+    node.settings = VisionSettings(confirmation=at_once)
+    other = VisionSettings(colour="red", actions={"red": 2.0, "yellow": 3.0}, confirmation=at_once)
     convert = cv2.cvtColor
 
     def change_meanwhile(*arguments: object) -> object:
@@ -249,57 +241,55 @@ def test_cards_are_refused_where_they_cannot_be_shown(listener: Listener, clock:
         other.show_card("red")
 
 
-class TestThread:
-    def test_pictures_are_taken_at_the_rate(self, listener: Listener) -> None:
-        node = listener.node(SteadyClock(), config=VisionConfig(rate=20.0, width=64, height=48))
-        node.start()
-        wait_for(lambda: len(listener.detections) >= 11, "eleven pictures")
-        node.close()
-        gaps = [after.taken - before.taken for before, after in pairwise(listener.detections)]
-        # On a busy computer single pictures are late, and those after them less so.
-        assert median(gaps) > 0.045
+def test_pictures_are_taken_at_the_rate(listener: Listener, clock: SimulatedClock) -> None:
+    node = listener.node(clock, config=VisionConfig(rate=20.0))
+    while len(listener.detections) < 11:
+        clock.forward(node.tick())
+    gaps = {round(after.taken - before.taken, 6) for before, after in pairwise(listener.detections)}
+    assert gaps == {0.05}
 
-    def test_a_higher_rate_applies_at_once(self, listener: Listener) -> None:
-        node = listener.node(SteadyClock(), config=VisionConfig(rate=2.0, width=64, height=48))
-        node.start()
-        wait_for(lambda: len(listener.detections) >= 1, "first picture")
-        node.settings = replace(node.settings, rate=30.0)
 
-        def shortest() -> float:
-            taken = [detection.taken for detection in listener.detections]
-            return min((b - a for a, b in pairwise(taken)), default=inf)
+def test_a_higher_rate_applies_at_once(listener: Listener, clock: SimulatedClock) -> None:
+    node = listener.node(clock, config=VisionConfig(rate=2.0))
+    assert node.tick() == 0.0
+    assert node.tick() == pytest.approx(0.5)
+    node.settings = replace(node.settings, rate=20.0)
+    assert node.tick() == pytest.approx(0.05)
 
-        wait_for(lambda: shortest() < 0.25, "pictures at the new rate")
-        node.close()
 
-    def test_close_ends_it_and_gives_the_camera_back(self, listener: Listener) -> None:
-        clock = SimulatedClock()
-        camera = ShakyCamera(drawn(1.0, None), clock)
-        node = listener.node(clock, camera.open)
-        node.start()
-        wait_for(lambda: len(listener.detections) == 1, "picture")
-        node.close()
-        # It waits 2 s at most, in which a busy computer may not have let the thread run.
-        wait_for(lambda: "vision" not in [thread.name for thread in threading.enumerate()], "end of it")
-        assert camera.closed == 1
+def test_close_gives_the_camera_back(listener: Listener, clock: SimulatedClock) -> None:
+    camera = ShakyCamera(drawn(1.0, None), clock)
+    node = listener.node(clock, camera.open)
+    node.tick()
+    node.close()
+    assert camera.closed == 1
 
-    def test_survives_a_listener_that_fails(self, caplog: pytest.LogCaptureFixture) -> None:
-        calls = []
 
-        def fail(detection: Detection) -> None:
-            calls.append(detection)
-            raise RuntimeError("nobody wants to know")
+def test_close_before_start(listener: Listener, clock: SimulatedClock) -> None:
+    listener.node(clock).close()
+    assert listener.detections == []
 
-        config = VisionConfig(rate=30.0, width=64, height=48)
-        node = VisionNode(config, SteadyClock(), fail, lambda *_: None, lambda _: False, lambda _: None)
-        node.start()
-        wait_for(lambda: len(calls) >= 3, "pictures")
-        node.close()
-        assert "nobody wants to know" in caplog.text
 
-    def test_close_before_start(self, listener: Listener, clock: SimulatedClock) -> None:
-        listener.node(clock).close()
-        assert listener.detections == []
+def test_survives_a_receiver_that_fails(clock: SimulatedClock, caplog: pytest.LogCaptureFixture) -> None:
+    def fail(_: Detection) -> None:
+        raise RuntimeError("nobody wants to know")
+
+    node = VisionNode(VisionConfig(), clock, VisionOutputs(detection=fail, event=lambda _: None))
+    assert node.tick() == 0.0
+    assert "nobody wants to know" in caplog.text
+
+
+@pytest.mark.parametrize("problem", [MemoryError("no room"), cv2.error("(-4:Insufficient memory)")])
+def test_exhausted_memory_is_no_failure_of_the_camera(
+    listener: Listener, clock: SimulatedClock, problem: Exception
+) -> None:
+    if isinstance(problem, cv2.error):
+        problem.code = -4
+    camera = ShakyCamera(drawn(1.0, None), clock)
+    camera.failure = problem
+    with pytest.raises(MemoryError):
+        listener.node(clock, camera.open).tick()
+    assert listener.events == []
 
 
 def test_a_thumbnail_is_sent_every_two_seconds_without_subscribers(
@@ -322,7 +312,6 @@ def test_without_opencv_the_camera_says_so_and_all_else_goes_on(
     monkeypatch.setitem(sys.modules, "robot_runtime.vision.pipeline", None)
     node = listener.node(clock)
     node.start()
-    wait_for(lambda: bool(listener.events), "event")
     node.close()
     assert node.text.startswith("no picture: NumPy and OpenCV cannot be loaded")
     assert "sudo apt install python3-opencv" in node.text
@@ -345,3 +334,117 @@ def test_a_camera_with_a_rate_of_its_own_is_opened_again_for_another(
     node.settings = replace(node.settings, rate=8.0)
     node.process_picture()
     assert (camera.opened, camera.closed) == (2, 1)
+
+
+YELLOW, NOTHING, RED = drawn(1.0, "yellow"), drawn(1.0, None), drawn(1.0, "red")
+
+
+def see(node: VisionNode, camera: ShakyCamera, clock: SimulatedClock, *pictures: Picture) -> None:
+    """Shows these pictures, four a second."""
+    for picture in pictures:
+        camera.picture = picture
+        node.process_picture()
+        clock.forward(0.25)
+
+
+class TestConfirmation:
+    @pytest.fixture
+    def camera(self, clock: SimulatedClock) -> ShakyCamera:
+        return ShakyCamera(NOTHING, clock)
+
+    def test_one_false_picture_shows_nothing(
+        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+    ) -> None:
+        node = listener.node(clock, camera.open, VisionConfig(actions={"yellow": 2.0, "red": 3.0}))
+        see(node, camera, clock, NOTHING, YELLOW, NOTHING, RED, NOTHING, YELLOW, NOTHING)
+        assert "yellow" in [one.colour for one in listener.detections]
+        assert {(one.target, one.set_point) for one in listener.detections} == {(None, None)}
+        assert all(one.confirmed == [] for one in listener.detections)
+
+    def test_one_false_picture_hides_nothing(
+        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+    ) -> None:
+        node = listener.node(clock, camera.open, VisionConfig(actions={"yellow": 2.0}))
+        see(node, camera, clock, YELLOW, YELLOW, NOTHING, YELLOW, YELLOW, RED, YELLOW)
+        assert [one.set_point for one in listener.detections] == [None, *[2.0] * 6]
+
+    def test_it_comes_and_goes_with_the_second_picture(
+        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+    ) -> None:
+        node = listener.node(clock, camera.open)
+        see(node, camera, clock, NOTHING, YELLOW, YELLOW, YELLOW, NOTHING, NOTHING, NOTHING)
+        targets = [one.target for one in listener.detections]
+        assert targets == [None, None, "yellow", "yellow", "yellow", None, None]
+
+    def test_old_pictures_do_not_count(
+        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+    ) -> None:
+        node = listener.node(clock, camera.open)
+        see(node, camera, clock, YELLOW)
+        clock.forward(5.0)
+        see(node, camera, clock, YELLOW, YELLOW)
+        assert [one.target for one in listener.detections] == [None, None, "yellow"]
+
+    def test_other_numbers(self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera) -> None:
+        node = listener.node(clock, camera.open, VisionConfig(confirmation=(3, 4)))
+        see(node, camera, clock, *[YELLOW] * 4, NOTHING, YELLOW, NOTHING, NOTHING)
+        targets = [one.target for one in listener.detections]
+        assert targets == [None, None, *["yellow"] * 4, None, None]
+
+    def test_a_change_of_settings_forgets_nothing(
+        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+    ) -> None:
+        node = listener.node(clock, camera.open)
+        see(node, camera, clock, YELLOW, YELLOW)
+        node.settings = replace(node.settings, rate=8.0)
+        see(node, camera, clock, YELLOW)
+        assert [one.target for one in listener.detections] == [None, "yellow", "yellow"]
+
+
+class TestRepeatedPicture:
+    """A real camera's pictures differ by its noise."""
+
+    @pytest.mark.parametrize("kind", ["usb", "pi"])
+    def test_a_camera_that_repeats_one_picture_fails_until_another_one_comes(
+        self, listener: Listener, clock: SimulatedClock, kind: Literal["usb", "pi"]
+    ) -> None:
+        camera = ShakyCamera(YELLOW, clock)
+        node = listener.node(clock, camera.open, VisionConfig(camera=kind))
+        for number in range(20):
+            see(node, camera, clock, drawn(number / 4, "yellow"))
+        assert listener.events == []
+        frozen = YELLOW.copy()
+        since = clock.now()
+        while not listener.events:
+            see(node, camera, clock, frozen.copy())
+        assert 2.0 <= clock.now() - since <= 3.0
+        assert node.text == "no picture: the camera repeats one picture: it hangs, or its lens is covered"
+        searched = len(listener.detections)
+        # Opened again it still hangs: neither an event nor a detection comes of it.
+        for _ in range(40):
+            see(node, camera, clock, frozen.copy())
+        assert camera.opened >= 5
+        assert (len(listener.events), len(listener.detections)) == (1, searched)
+        for number in range(12):
+            see(node, camera, clock, drawn(100 + number / 4, "yellow"))
+        assert [event.severity for event in listener.events] == ["caution", "info"]
+        assert node.text == "shaky camera"
+
+    def test_a_change_of_one_byte_is_another_picture(self, listener: Listener, clock: SimulatedClock) -> None:
+        camera = ShakyCamera(YELLOW, clock)
+        node = listener.node(clock, camera.open, VisionConfig(camera="usb"))
+        for number in range(40):
+            picture = YELLOW.copy()
+            picture[1, 1, 1] = number
+            see(node, camera, clock, picture)
+        assert listener.events == []
+
+    @pytest.mark.parametrize("kind", ["file", "card", "scene"])
+    def test_files_and_simulated_cameras_may_repeat_theirs(
+        self, listener: Listener, clock: SimulatedClock, kind: Literal["file", "card", "scene"]
+    ) -> None:
+        camera = ShakyCamera(YELLOW, clock)
+        node = listener.node(clock, camera.open, VisionConfig(camera=kind))
+        see(node, camera, clock, *[YELLOW] * 40)
+        assert listener.events == []
+        assert len(listener.detections) == 40

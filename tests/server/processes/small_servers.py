@@ -13,8 +13,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from robot_runtime import backoff
 from server.platform.settings import DataFolder
-from server.processes import backoff
 from server.processes.server_runner import ServerRunner
 
 

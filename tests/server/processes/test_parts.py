@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-import server.processes.backoff as backoff_module
+import robot_runtime.backoff as backoff_module
 import server.processes.managed_process as parts_module
 from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.config import LinkConfig

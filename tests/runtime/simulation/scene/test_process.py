@@ -32,6 +32,7 @@ from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.blocks import Block, read_blocks, row
 from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.vision.interface import VisionOutputs
 from robot_runtime.vision.node import VisionNode
 from tests.runtime.simulation.scene.harness import truth
 
@@ -258,15 +259,8 @@ def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: 
     """Run a vision node on the camera "scene" until the condition holds; returns its events."""
     events: list[Event] = []
     found: list[Detection] = []
-    vision = VisionNode(
-        config,
-        SteadyClock(),
-        found.append,
-        lambda *_: None,
-        lambda _: False,
-        events.append,
-        messages=messages,
-    )
+    outputs = VisionOutputs(detection=found.append, event=events.append)
+    vision = VisionNode(config, SteadyClock(), outputs, connect=lambda: messages)
     vision.show_card("yellow")
     try:
         end = time.monotonic() + SLOW
@@ -275,7 +269,6 @@ def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: 
             vision.process_picture()
     finally:
         vision.close()
-    vision.process_picture()
     assert found[-1].colour == "yellow"
     return events
 
@@ -308,10 +301,9 @@ def test_a_missing_scene_gives_no_picture_and_is_reported_after_a_while() -> Non
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         clock = SimulatedClock()
         with ZenohTransport("turtle", [f"unixsock-stream/{folder}/zenoh"]) as alone:
-            vision = VisionNode(
-                VisionConfig(camera="scene"), clock, lambda _: None, lambda *_: None, lambda _: False,
-                events.append, messages=alone,
-            )  # fmt: skip
+            outputs = VisionOutputs(detection=lambda _: None, event=events.append)
+            config = VisionConfig(camera="scene")
+            vision = VisionNode(config, clock, outputs, connect=lambda: alone)
             vision.process_picture()
             assert (vision.text, events) == ("starting", [])
             clock.forward(9.0)

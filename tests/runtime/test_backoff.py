@@ -3,8 +3,8 @@ from signal import SIGABRT, SIGBUS, SIGHUP, SIGINT, SIGKILL, SIGSEGV, SIGTERM
 
 import pytest
 
+from robot_runtime.backoff import KILLED_MAX, MAX, Backoff, is_killed
 from robot_runtime.clock import SimulatedClock
-from server.processes.backoff import KILLED_MAX, MAX, Backoff, is_killed
 
 START = 0.5
 """s of work that a start costs."""
