@@ -107,6 +107,7 @@ GOALS = {
     **_fault("server_hung", _AGAIN, 5),
     **_fault("simulator_killed", _AGAIN, 1),
     **_fault("scene_killed", _AGAIN),
+    **_fault("vision_killed", _AGAIN),
     **_fault("board_killed", _AGAIN),
     "fault.restart_s_max": _most(_AGAIN),
     "firmware.hostile_missed_ticks": _most(0),

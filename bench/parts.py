@@ -52,6 +52,7 @@ PARTS = {
         Part("replay", draws=True),
         Part("stack"),
         Part("quota", is_long=True, prefix="quota."),
+        Part("decoder", is_long=True, prefix="decoder."),
         Part("hub"),
         Part("doors"),
         Part("page", draws=True),

@@ -167,7 +167,8 @@ class World:
                 time.sleep(0.01)
             since_up = since = time.monotonic()
             os.kill(victim.pid, signal.SIGCONT)
-        return wait(lambda: self.well(since_up), f"all to be well after {outage.name}") - since
+        topics = (*ALWAYS, "detection") if outage.victim == "vision" else ALWAYS
+        return wait(lambda: self.well(since_up, topics), f"all to be well after {outage.name}") - since
 
     def _see(self, outcome: Outcome, since: float) -> None:
         outage = outcome.outage
@@ -237,9 +238,9 @@ class World:
         except (LookupError, psutil.Error):
             return False
 
-    def well(self, since: float) -> bool:
-        """True if all parts are well, by data since then."""
-        if not self.viewer.fresh(ALWAYS, since) or not self.viewer.state["connected"]:
+    def well(self, since: float, topics: tuple[str, ...] = ALWAYS) -> bool:
+        """True if all parts are well, by data of these topics since then."""
+        if not self.viewer.fresh(topics, since) or not self.viewer.state["connected"]:
             return False
         try:
             health = self.stack.api.get("/health", timeout=1.0).json()

@@ -28,6 +28,7 @@ from robot_runtime.vision import process as process_module
 from robot_runtime.vision.interface import VisionOutputs
 from robot_runtime.vision.messages import MessageError, MessageSocket
 from robot_runtime.vision.process import VisionProcess
+from tests.runtime.vision.harness import uncompressed_video
 
 DEADLINE = 60.0
 CARD = VisionConfig(camera="card", width=64, height=48, rate=20.0)
@@ -352,25 +353,3 @@ class TestMessages:
         ends[1].close()
         with pytest.raises(EOFError):
             ends[0].receive(1.0)
-
-
-def uncompressed_video() -> bytes:
-    """An AVI file of six uncompressed pictures, 48 × 36 pixels, ten a second."""
-    width, height, count = 48, 36, 6
-
-    def chunk(name: bytes, data: bytes) -> bytes:
-        return name + Struct("<I").pack(len(data)) + data
-
-    size = width * height * 3
-    head = Struct("<14I").pack(100_000, size * 10, 0, 16, count, 0, 1, size, width, height, 0, 0, 0, 0)
-    stream = Struct("<4s4sIHHIIIIIIII4H").pack(
-        b"vids", b"DIB ", 0, 0, 0, 0, 1, 10, 0, count, size, 0xFFFFFFFF, 0, 0, 0, width, height
-    )
-    form = Struct("<IiiHHIIiiII").pack(40, width, height, 1, 24, 0, size, 0, 0, 0, 0)
-    streams = chunk(b"LIST", b"strl" + chunk(b"strh", stream) + chunk(b"strf", form))
-    pictures = b"".join(chunk(b"00db", bytes([40 * number]) * size) for number in range(count))
-    entries = b"".join(
-        Struct("<4sIII").pack(b"00db", 16, 4 + number * (size + 8), size) for number in range(count)
-    )
-    lists = chunk(b"LIST", b"hdrl" + chunk(b"avih", head) + streams)
-    return chunk(b"RIFF", b"AVI " + lists + chunk(b"LIST", b"movi" + pictures) + chunk(b"idx1", entries))

@@ -1,0 +1,130 @@
+"""Control while a decoder crashes, hangs and eats memory: its jitter, the alarm, and the restart.
+
+The whole robot swims in real time, with `make bench ONLY=decoder`.
+"""
+
+import os
+import signal
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+
+from bench import jitter
+from robot_runtime.vision.process import HUNG_SECONDS
+from tests.proofs.watching import Viewer, wait
+from tests.runtime.vision.harness import uncompressed_video
+from tests.stack import Stack
+
+_SECONDS = 40.0
+"""Of each phase, at least."""
+_SETTLE = 5.0
+_PATIENCE = HUNG_SECONDS + 20.0
+_MISSING = "no picture: "
+
+Phases = dict[str, tuple[float, float]]
+
+
+def measure() -> dict[str, float]:
+    """ms by which the time between two control ticks differs from their period, p50 and p999, of phases:
+    without a fault, with a vision process that crashes whenever it gives pictures, that hangs, whose memory
+    is exhausted, and with a video that crashes OpenCV's decoder whenever it is opened. s until the camera's
+    state names the first fault of a phase, until the alarm, and until pictures come again.
+    """
+    return _with_faults() | _with_video()
+
+
+def _with_faults() -> dict[str, float]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+        data = Path(folder) / "data"
+        with _Swim(data, 'camera = "card"') as swim:
+            swim.phase("well", lambda: 0)
+            swim.phase("crashing", lambda: swim.fault("crash", _crash))
+            swim.phase("hanging", lambda: swim.fault("hang", psutil.Process.suspend))
+            swim.phase("eating", lambda: swim.fault("memory", _exhaust))
+        return swim.figures()
+
+
+def _with_video() -> dict[str, float]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+        video = Path(folder) / "uncompressed.avi"
+        video.write_bytes(uncompressed_video())
+        with _Swim(Path(folder) / "data", f'camera = "file"\nfile = "{video}"') as swim:
+            swim.phase("video", lambda: 0)
+        return swim.figures()
+
+
+class _Swim:
+    """A robot that holds its depth, armed and recording."""
+
+    def __init__(self, data: Path, vision: str) -> None:
+        self._data = data
+        self._phases: Phases = {}
+        self._found: dict[str, float] = {}
+        data.mkdir()
+        config = data / "robot.toml"
+        config.write_text(f"[vision]\n{vision}\n", "utf-8")
+        self._stack = Stack(data, "--config", str(config))
+
+    def __enter__(self) -> "_Swim":
+        self._stack.__enter__()
+        self._viewer = Viewer(self._stack)
+        recording = self._stack.api.post("/sessions", json={"name": "bench"}).raise_for_status()
+        self._session = int(recording.json()["id"])
+        self._stack.arm()
+        time.sleep(_SETTLE)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._found["decoder.armed_at_the_end"] = float(self._viewer.state["armed"])
+        self._viewer.close()
+        self._stack.api.post("/robot/stop")
+        self._stack.api.post(f"/sessions/{self._session}/stop")
+        self._stack.__exit__(None, None, None)
+
+    def phase(self, name: str, act: Callable[[], object]) -> None:
+        """Acts again and again for the time of a phase."""
+        began = time.monotonic()
+        while time.monotonic() < began + _SECONDS:
+            act()
+            time.sleep(0.1)
+        self._phases[name] = began, time.monotonic()
+
+    def fault(self, name: str, cause: Callable[[psutil.Process], object]) -> None:
+        """Causes a fault of the vision process, and waits until pictures come again."""
+        self._stack.api.post("/robot/commands/acknowledge").raise_for_status()
+        wait(lambda: not self._viewer.tells("vision_stale"), "the end of the alarm")
+        vision, began = self._stack.part("vision"), time.monotonic()
+        cause(vision)
+        if name == "hang":
+            alarm = wait(lambda: self._viewer.tells("vision_stale"), "the alarm")
+            self._found.setdefault("decoder.alarm_s.hang", alarm - began)
+        if f"decoder.named_s.{name}" not in self._found:
+            # The next ones of a series may be over before the next state.
+            named = wait(self._is_named, f"the camera's state after {name}", _PATIENCE)
+            self._found[f"decoder.named_s.{name}"] = named - began
+        again = wait(lambda: self._is_back(began), f"pictures after {name}", _PATIENCE)
+        self._found.setdefault(f"decoder.pictures_again_s.{name}", again - began)
+
+    def figures(self) -> dict[str, float]:
+        """Returns all figures of the swim, which is over."""
+        found = jitter.figures(self._data, self._session, self._phases)
+        return {name.replace("jitter.", "decoder."): value for name, value in found.items()} | self._found
+
+    def _is_named(self) -> bool:
+        return str(self._viewer.state.get("camera", "")).startswith(_MISSING)
+
+    def _is_back(self, since: float) -> bool:
+        return not self._is_named() and self._viewer.fresh(("detection",), since)
+
+
+def _crash(vision: psutil.Process) -> None:
+    os.kill(vision.pid, signal.SIGSEGV)
+
+
+def _exhaust(vision: psutil.Process) -> None:
+    """Has the next allocation of the process fail."""
+    _, hard = vision.rlimit(psutil.RLIMIT_DATA)
+    vision.rlimit(psutil.RLIMIT_DATA, (1_000_000, hard))
