@@ -25,8 +25,8 @@ from robot_runtime.transport.network import LOCAL_ONLY, listen_settings
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.settings_file import VisionSettingsFile
 
-BYTES_MAX = 600_000_000
-"""Of the runtime's own memory: half of what it needs is room for stacks that nobody touches, so that this
+BYTES_MAX = 300_000_000
+"""Of the runtime's own memory: most of what it needs is room for stacks that nobody touches, so that this
 holds on the smallest computer as well."""
 
 
