@@ -114,7 +114,7 @@ class Container:
         self._add_ros2()
         self.heavy_requests = HeavyRequests()
         self.memory_reserve = MemoryReserve(self.clock)
-        self.downloads = DatabaseDownloads(settings.data)
+        self.downloads = DatabaseDownloads(settings.data, settings.config)
         self.layouts = Layouts(self.store)
         self.updates = PageUpdates(self.settings.data, InstallPlaces())
 

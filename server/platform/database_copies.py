@@ -1,14 +1,17 @@
 """Copies of the database, whole and on the disk, made while a server writes it."""
 
+import fcntl
 import hashlib
 import os
+import shutil
 import sqlite3
 import time
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.durable_files import make_folder, unfinished, write_whole
+from robot_runtime.durable_files import PART, make_folder, unfinished, write_whole
 from server.platform.settings import DataFolder
 
 Kind = Literal["backup", "before", "replaced"]
@@ -16,27 +19,70 @@ Kind = Literal["backup", "before", "replaced"]
 COPIES_MOST = 5
 """The greatest number of copies of each kind in the data folder."""
 DAMAGED_REMEDY = "Put back a copy (`mucat restore`), or move it away to start with an empty one"
+ENDING = ".db"
 CHECKSUM = ".sha256"
+FILES = ".files"
+"""End of the name of the folder with the files that a restore replaced, beside the database."""
 SUM_BYTES = 1 << 20
 
 
-def copy_database(database: Path, path: Path) -> None:
+def copy_database(
+    database: Path, path: Path, add: Callable[[sqlite3.Connection], object] = lambda _: None
+) -> None:
     """Copy a database as it is at this moment, looked through by SQLite; nobody else may read the copy.
 
-    The source is only read: whoever writes it goes on meanwhile. Raises sqlite3.DatabaseError, OSError; then
-    there is no copy.
+    `add` stores more in the copy. The source is only read: whoever writes it goes on meanwhile. Parts that
+    killed copies have left in that folder are removed. Raises sqlite3.DatabaseError, OSError; then there is
+    no copy.
     """
-    with unfinished(path) as part:
-        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600))
-        with closing(open_database(database, "ro")) as source, closing(sqlite3.connect(part)) as copy:
-            copy.execute("PRAGMA synchronous = OFF")
-            # In one step: one that is written to between two of them would be begun again, for ever.
-            source.backup(copy)
-            # One file, which also a medium that cannot be written shows.
-            copy.execute("PRAGMA journal_mode = DELETE")
-            (found,) = copy.execute("PRAGMA integrity_check(1)").fetchone()
-            if found != "ok":
-                raise sqlite3.DatabaseError(f"it is damaged ({found})")
+    remove_abandoned(path.parent)
+    with (
+        # First: a part that somebody else writes must stay.
+        _held(path.with_name(path.name + PART)),
+        unfinished(path) as part,
+        closing(open_database(database, "ro")) as source,
+        closing(sqlite3.connect(part)) as copy,
+    ):
+        copy.execute("PRAGMA synchronous = OFF")
+        # In one step: one that is written to between two of them would be begun again, for ever.
+        source.backup(copy)
+        add(copy)
+        # One file, which also a medium that cannot be written shows.
+        copy.execute("PRAGMA journal_mode = DELETE")
+        (found,) = copy.execute("PRAGMA integrity_check(1)").fetchone()
+        if found != "ok":
+            raise sqlite3.DatabaseError(f"it is damaged ({found})")
+
+
+def remove_abandoned(folder: Path) -> None:
+    """Remove the parts of killed copies in a folder, with their journals. Raises OSError."""
+    for part in folder.glob(f"*{ENDING}{PART}"):
+        handle = os.open(part, os.O_WRONLY)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            part.unlink()
+        except BlockingIOError:
+            continue  # it is being written
+        finally:
+            os.close(handle)
+    for journal in folder.glob(f"*{ENDING}{PART}-journal"):
+        if not journal.with_name(journal.name.removesuffix("-journal")).exists():
+            journal.unlink(missing_ok=True)
+
+
+@contextmanager
+def _held(part: Path) -> Iterator[None]:
+    """Create the file, empty, and hold it: a part that nobody holds is abandoned. Raises OSError."""
+    handle = os.open(part, os.O_WRONLY | os.O_CREAT, 0o600)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise OSError(f"another backup is writing {part}") from None
+        os.ftruncate(handle, 0)
+        yield
+    finally:
+        os.close(handle)
 
 
 def open_database(database: Path, mode: Literal["ro", "rw"]) -> sqlite3.Connection:
@@ -57,7 +103,10 @@ def thin_out(folder: DataFolder, kind: Kind, made: Path) -> None:
     others = [path for path in folder.backups.glob(f"mucat-{kind}-*.db") if path != made]
     for copy in sorted(others, key=lambda path: path.stem[-19:])[: 1 - COPIES_MOST]:
         for part in folder.backups.glob(f"{copy.name}*"):
-            part.unlink()
+            if part.name.endswith(FILES):
+                shutil.rmtree(part)
+            else:
+                part.unlink()
 
 
 def write_checksum(path: Path) -> str:

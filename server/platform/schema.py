@@ -36,12 +36,18 @@ def prepare(folder: DataFolder) -> None:
             copy = place(folder, "before", revision)
             copy_database(folder.database, copy)
             thin_out(folder, "before", copy)
-            _make_shrinkable(folder.database)
-        _upgrade(folder.database)
+        upgrade(folder.database)
     except (sqlite3.DatabaseError, OSError) as problem:
         raise SetupError(
             f"The database {folder.database} cannot be used: {explain(problem, folder.path)}"
         ) from problem
+
+
+def upgrade(database: Path) -> None:
+    """Create the tables, or upgrade them. Raises sqlite3.DatabaseError, OSError."""
+    if database.exists():
+        _make_shrinkable(database)
+    _upgrade(database)
 
 
 def explain(problem: sqlite3.DatabaseError | OSError, folder: Path) -> str:

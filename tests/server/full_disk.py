@@ -99,7 +99,7 @@ def beside(data: DataFolder, runs: CommTestStore, run: int) -> list[Callable[[],
         keep_scenario(data.scenarios, _shipped()["figure_14"].replace('"figure_14"', '"mine"', 1))
 
     async def copy() -> None:
-        back_up(data, data.path / "copy.db")
+        back_up(data, data.config, data.path / "copy.db")
 
     return [lambda: runs.add(run, 1, LONG), keep, copy]
 

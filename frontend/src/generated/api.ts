@@ -6276,6 +6276,11 @@ export interface components {
          */
         Storage: {
             /**
+             * Backups
+             * @description bytes of the copies in the folder `backups`, unfinished ones included
+             */
+            backups: number;
+            /**
              * Bin
              * @description number of sessions in the bin
              */

@@ -9,6 +9,7 @@ export const sessions = {
     title: 'Storage',
     recordings: 'Recordings',
     exports: 'Exports',
+    backups: 'Backups',
     other: 'Other files',
     free: 'Free',
     olderGo: (days: number) => `Sessions older than ${days} days are moved to the bin.`,

@@ -1,6 +1,7 @@
-"""`mucat backup` and `mucat restore`: the database copied while a server records, and put back."""
+"""`mucat backup` and `mucat restore`: everything that people have made, copied while a server records."""
 
 import os
+import shutil
 import sqlite3
 from contextlib import closing
 from pathlib import Path
@@ -8,10 +9,12 @@ from pathlib import Path
 import click
 
 from robot_runtime.durable_files import put_in_place, sync, write_whole
+from robot_runtime.places import DEFAULT_CONFIG
 from robot_runtime.transport.lifetime import give_way
 from server.platform.command_line import FILE, with_settings
 from server.platform.database_copies import (
     CHECKSUM,
+    FILES,
     Kind,
     copy_database,
     open_database,
@@ -21,9 +24,11 @@ from server.platform.database_copies import (
     write_checksum,
 )
 from server.platform.folder_lock import claim, record_command
-from server.platform.schema import explain, read_revision, refuse_unknown
+from server.platform.numbers import carry_numbers
+from server.platform.schema import explain, read_revision, refuse_unknown, upgrade
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
+from server.platform.user_files import LEFT_OUT, put_files, store_files, take_files
 
 LOGS = ("-wal", "-journal")
 """Files beside a database that may hold a part of it."""
@@ -35,60 +40,96 @@ NICENESS = 15
 @click.argument("file", type=FILE, required=False)
 @with_settings
 def backup(settings: Settings, file: Path | None) -> None:
-    """Copy the database, also while a server records.
+    """Copy sessions, settings and own files, also while a server records.
 
     FILE is a new one in the folder `backups` of the data folder by default.
     """
     give_way(NICENESS)
     record_command(settings.data)
-    echo(back_up(settings.data, file))
+    echo(back_up(settings.data, settings.config, file))
+    echo(LEFT_OUT)
 
 
 @click.command("restore")
 @click.argument("file", type=FILE)
 @with_settings
 def restore(settings: Settings, file: Path) -> None:
-    """Replace the database by a backup.
+    """Put a backup in the place of what is there.
 
     FILE was written by `mucat backup`.
     """
     with claim(settings.data):
         echo(put_back(settings.data, file))
+        if settings.config not in (settings.data.config, DEFAULT_CONFIG):
+            echo(f"The robot goes on with {settings.config}; the restored one is {settings.data.config}.")
 
 
-def back_up(folder: DataFolder, file: Path | None) -> str:
-    """Copy the database; returns a sentence about the copy. Raises SetupError."""
+def back_up(folder: DataFolder, config: Path, file: Path | None) -> str:
+    """Copy the database and the files that people have made; returns a sentence. Raises SetupError."""
     if not folder.database.is_file():
         raise SetupError(f"There is no database in {folder.path} yet, and so nothing to back up.")
     if file is not None and file.exists():
         raise SetupError(f"{file} exists already. Name another file.")
     try:
         path = file or place(folder, "backup")
-        copy_database(folder.database, path)
+        large: list[str] = []
+        copy_database(folder.database, path, lambda copy: large.extend(store_files(copy, folder, config)))
         checksum = write_checksum(path)
     except (sqlite3.DatabaseError, OSError) as problem:
         where = folder.backups if file is None else file.parent
         raise SetupError(f"No backup was made: {explain(problem, where)}") from problem
     remark = _thin_out(folder, "backup", path) if file is None else ""
+    if large:
+        remark += f" Too large, and not in it: {', '.join(large)}."
     return f"{path}: {path.stat().st_size / 1e6:.1f} MB, {_count(path)}, SHA-256 {checksum}{remark}"
 
 
 def put_back(folder: DataFolder, file: Path) -> str:
-    """Replace the database of a claimed folder by a copy; the old one is put aside.
+    """Replace the database and the files of a claimed folder by a copy; the old ones are put aside.
 
-    Raises SetupError; then nothing has changed.
+    The numbers of sessions go on after those of the replaced database. Raises SetupError.
     """
     revision = _examine(file)
-    fresh = folder.database.with_name("restored.db")
+    fresh, files = folder.database.with_name("restored.db"), folder.path / "restored"
     try:
+        shutil.rmtree(files, ignore_errors=True)
         copy_database(file, fresh)
-        aside = _put_aside(folder) if folder.database.exists() else None
+        names = take_files(fresh, files)
+        upgrade(fresh)
+        carry_numbers(folder.database, fresh)
+        aside = _put_aside(folder) if folder.database.exists() else place(folder, "replaced")
         put_in_place(fresh, folder.database)
-    except (sqlite3.DatabaseError, OSError) as problem:
+    except (sqlite3.DatabaseError, OSError, SetupError) as problem:
         fresh.unlink(missing_ok=True)
+        shutil.rmtree(files, ignore_errors=True)
+        if isinstance(problem, SetupError):
+            raise
         raise SetupError(f"Nothing was restored: {explain(problem, folder.path)}") from problem
-    saved = f" The database before is now {aside}.{_thin_out(folder, 'replaced', aside)}" if aside else ""
-    return f"{folder.database} was restored from {file} (revision {revision}): {_count(file)}.{saved}"
+    try:
+        put_files(folder, files, aside.with_name(aside.name + FILES))
+    except OSError as problem:
+        raise SetupError(
+            f"The database was restored, but not all files: {explain(problem, folder.path)} The rest is in "
+            f"{files}."
+        ) from problem
+    shutil.rmtree(files, ignore_errors=True)
+    return (
+        f"{folder.database} was restored from {file} (revision {revision}): {_count(folder.database)}"
+        f"{_describe_files(names)}.{_describe_aside(folder, aside)}"
+    )
+
+
+def _describe_files(names: list[str] | None) -> str:
+    if names is None:
+        return "; it is of an older version, without missions, scenarios, panels, craft and robot.toml"
+    return f", {len(names)} other files" if len(names) != 1 else ", 1 other file"
+
+
+def _describe_aside(folder: DataFolder, aside: Path) -> str:
+    places = [str(path) for path in (aside, aside.with_name(aside.name + FILES)) if path.exists()]
+    if not places:
+        return ""
+    return f" What was there before is now {' and '.join(places)}.{_thin_out(folder, 'replaced', aside)}"
 
 
 def _thin_out(folder: DataFolder, kind: Kind, made: Path) -> str:

@@ -9,17 +9,19 @@ import shutil
 import sqlite3
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import BinaryIO
 
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
-from robot_runtime.durable_files import PART, make_folder
+from robot_runtime.durable_files import make_folder
 from robot_runtime.errors import RefusedError
-from server.platform.database_copies import copy_database, place
+from server.platform.database_copies import copy_database, place, remove_abandoned
 from server.platform.disk_space import DIVE_BYTES
 from server.platform.errors import InsufficientStorageError
 from server.platform.settings import DataFolder
+from server.platform.user_files import store_files
 
 PIECE_BYTES = 1 << 18
 
@@ -31,15 +33,17 @@ class DatabaseCopyError(InsufficientStorageError):
 class DatabaseDownloads:
     """Copies of a folder's database, made for download."""
 
-    def __init__(self, folder: DataFolder) -> None:
+    def __init__(self, folder: DataFolder, config: Path) -> None:
         self._folder = folder
+        self._config = config
         self._path = folder.backups / "download.db"
         self._busy = False
 
     def recover(self) -> None:
-        """Remove the copy that a killed server has left. Raises OSError."""
-        for path in (self._path, self._path.with_name(self._path.name + PART)):
-            path.unlink(missing_ok=True)
+        """Remove copies and parts of copies that killed processes have left. Raises OSError."""
+        self._path.unlink(missing_ok=True)
+        if self._folder.backups.is_dir():
+            remove_abandoned(self._folder.backups)
 
     async def begin(self) -> Response:
         """An answer that sends the database as it is now. Raises RefusedError, DatabaseCopyError."""
@@ -67,7 +71,9 @@ class DatabaseDownloads:
                     f"{size / 1e6:.0f} MB. Remove sessions or exports; or copy it to another disk, with "
                     "`mucat backup FILE` on the robot's computer."
                 )
-            copy_database(database, self._path)
+            copy_database(
+                database, self._path, partial(store_files, folder=self._folder, config=self._config)
+            )
             file = self._path.open("rb")
             self._path.unlink()
         except (OSError, sqlite3.Error) as problem:

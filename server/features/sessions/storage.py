@@ -20,6 +20,7 @@ class Storage(BaseModel):
     database: int = Field(description="bytes of the database's files")
     reusable: int = Field(description="of these, bytes that are free for reuse")
     exports: int = Field(description="bytes of the exported files")
+    backups: int = Field(description="bytes of the copies in the folder `backups`, unfinished ones included")
     free: int = Field(description="free bytes of this disk")
     total: int = Field(description="bytes of this disk")
     sessions: int = Field(description="number of sessions, without the bin")
@@ -49,6 +50,7 @@ def measure(store: Store, settings: Settings) -> Storage:
         database=sum(_bytes(Path(f"{folder.database}{end}")) for end in ("", "-wal", "-shm")),
         reusable=pages * size,
         exports=sum(_bytes(path) for path in folder.exports.glob("*")),
+        backups=sum(_bytes(path) for path in folder.backups.rglob("*")),
         free=disk.free,
         total=disk.total,
         sessions=sessions,

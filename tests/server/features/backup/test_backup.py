@@ -21,8 +21,9 @@ from server.features.backup import command as backup_command
 from server.features.sessions.catalogue import Listing
 from server.platform import database_copies
 from server.platform.schema import prepare, read_revision
-from server.platform.settings import Settings
+from server.platform.settings import DataFolder, Settings
 from server.platform.store import Reader, Store
+from server.platform.user_files import NAMES
 from tests.server.blocks import depth_block
 from tests.server.features.exports.recordings import record
 from tests.server.older import ROWS, make_session, upgrade_to
@@ -140,6 +141,132 @@ def test_a_backup_of_an_older_version_is_restored_and_then_upgraded(
     assert ROWS
 
 
+OWN = {
+    "missions/class_one/1.toml": "first",
+    "missions/class_one/2.toml": "second",
+    "missions/class_one/authors.json": "{}",
+    "scenarios/mine.toml": "mine",
+    "panels/own.js": "panel",
+    "craft.toml": "title = 'Heavy'\n[craft]\nmass = 3.1\n",
+    "vision.json": "{}",
+}
+
+
+def write_own(folder: Path, files: dict[str, str]) -> None:
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+def read_own(folder: Path) -> dict[str, str]:
+    paths = [path for name in (*NAMES, "tls") for path in (folder / name, *(folder / name).rglob("*"))]
+    return {str(path.relative_to(folder)): path.read_text() for path in paths if path.is_file()}
+
+
+def test_a_backup_gives_everything_that_people_have_made_back(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill(settings, "one")
+    write_own(settings.data.path, {**OWN, "tls/key.pem": "PRIVATE KEY"})
+    path = tmp_path / "copy.db"
+    assert run(settings, "backup", str(path)) == 0
+    assert "Not in it: exported files, the audit log, and what is secret" in capsys.readouterr().out
+    assert b"PRIVATE KEY" not in path.read_bytes()
+
+    fresh = DataFolder(tmp_path / "fresh")
+    assert main(["restore", str(path), "--data", str(fresh.path), "--config", str(settings.config)]) == 0
+    assert f"{len(OWN) + 1} other files" in capsys.readouterr().out
+    assert read_own(fresh.path) == {**OWN, "robot.toml": settings.config.read_text()}
+    assert names(fresh.database) == ["one"]
+    assert not (fresh.path / "restored").exists()
+
+
+def test_a_restore_puts_files_aside_and_one_of_an_older_backup_leaves_them(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    moments = iter(f"2026-01-0{day}_00-00-00" for day in range(1, 9))
+    monkeypatch.setattr(time, "strftime", lambda *_: next(moments))
+    fill(settings, "one")
+    older, newer = tmp_path / "older.db", tmp_path / "newer.db"
+    database_copies.copy_database(settings.data.database, older)
+    write_own(settings.data.path, OWN)
+    assert run(settings, "backup", str(newer)) == 0
+    changed = {"missions/class_two/1.toml": "another", "craft.toml": "title = 'Light'\n[craft]\nmass = 2.5\n"}
+    write_own(settings.data.path, changed)
+    before = read_own(settings.data.path)
+    assert run(settings, "restore", str(older)) == 0
+    assert read_own(settings.data.path) == before
+    assert run(settings, "restore", str(newer)) == 0
+    assert read_own(settings.data.path).items() >= OWN.items()
+    assert "missions/class_two/1.toml" not in read_own(settings.data.path)
+    (aside,) = settings.data.backups.glob("*.files")
+    assert read_own(aside) == before
+
+
+def test_a_backup_with_a_file_that_leads_elsewhere_is_refused(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill(settings, "one")
+    path = tmp_path / "copy.db"
+    for name in ("../evil", "missions/../../evil", "/etc/evil", "tls/key.pem", ""):
+        path.unlink(missing_ok=True)
+        database_copies.copy_database(
+            settings.data.database,
+            path,
+            lambda copy, name=name: (  # type: ignore[misc]
+                copy.execute("CREATE TABLE backup_file (name, content)"),
+                copy.execute("INSERT INTO backup_file VALUES (?, 'x')", (name,)),
+                copy.commit(),
+            ),
+        )
+        assert run(settings, "restore", str(path)) == 1
+        assert "none of a data folder" in capsys.readouterr().err
+    assert not list(tmp_path.rglob("evil"))
+    assert not (settings.data.path / "restored.db").exists()
+    assert names(settings.data.database) == ["one"]
+
+
+@pytest.mark.parametrize("revision", ["0003", HEAD])
+def test_no_number_returns_with_a_backup(settings: Settings, tmp_path: Path, revision: str) -> None:
+    path = tmp_path / "copy.db"
+    if revision == HEAD:
+        fill(settings, "one")
+        assert run(settings, "backup", str(path)) == 0
+    else:
+        upgrade_to(settings, revision)
+        assert run(settings, "backup", str(path)) == 0
+    fill(settings, "two", "three")
+    with closing(Reader(settings.data.database)) as reader:
+        last = max(session.id for session in Listing(reader).list())
+    assert run(settings, "restore", str(path)) == 0
+    fill(settings, "four")
+    with closing(Reader(settings.data.database)) as reader:
+        (newest, *_) = Listing(reader).list()
+    assert (newest.name, newest.id) == ("four", last + 1)
+
+
+def test_the_next_copy_removes_what_killed_ones_have_left(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill(settings, "one")
+    left = [tmp_path / "old.db.part", tmp_path / "old.db.part-journal", tmp_path / "lone.db.part-journal"]
+    for path in left:
+        path.write_bytes(b"half")
+    copied = tmp_path / "copied.db.part"
+    with copied.open("wb") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        assert run(settings, "backup", str(tmp_path / "copy.db")) == 0
+        assert sorted(path.name for path in tmp_path.iterdir()) == [
+            "copied.db.part",
+            "copy.db",
+            "copy.db.sha256",
+        ]
+        assert run(settings, "backup", str(tmp_path / "copied.db")) == 1
+        assert "another backup is writing" in capsys.readouterr().err
+    assert copied.exists()
+
+
 @pytest.mark.parametrize(
     ("spoil", "words"),
     [
@@ -213,7 +340,7 @@ def test_only_the_newest_backups_stay(settings: Settings, monkeypatch: pytest.Mo
     moments = iter(f"2026-01-0{day}_00-00-00" for day in range(1, 9))
     monkeypatch.setattr(time, "strftime", lambda *_: next(moments))
     for _ in range(database_copies.COPIES_MOST + 2):
-        backup_command.back_up(settings.data, None)
+        backup_command.back_up(settings.data, settings.config, None)
     kept = sorted(path.name for path in settings.data.backups.glob("*.db"))
     assert kept == [f"mucat-backup-2026-01-0{day}_00-00-00.db" for day in range(3, 8)]
     assert len(list(settings.data.backups.iterdir())) == 2 * database_copies.COPIES_MOST
@@ -231,7 +358,7 @@ def test_copies_dated_in_the_future_do_not_cost_the_one_just_made(
     made = Path(capsys.readouterr().out.partition(": ")[0])
     assert names(made) == ["one"]
     assert run(settings, "restore", str(made)) == 0
-    (replaced,) = re.findall(r"The database before is now (\S+\.db)\.", capsys.readouterr().out)
+    (replaced,) = re.findall(r"What was there before is now (\S+\.db)", capsys.readouterr().out)
     assert names(Path(replaced)) == ["one"]
     for kind in ("backup", "replaced"):
         copies = sorted(settings.data.backups.glob(f"mucat-{kind}-*.db"))
