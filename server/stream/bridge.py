@@ -37,6 +37,9 @@ QUEUE_MAX = 20_000
 """Most blocks that wait while the event loop is busy; far more than in normal operation."""
 ANSWER_SECONDS = 2.0
 COMMANDS_AT_ONCE = 4
+WAITING_MAX = 32
+TURN_SECONDS = 2.0
+"""Commands and questions that wait for their turn, and for how long: performed later they might surprise."""
 BLOCK_BYTES_MAX = 4_000_000
 BACKLOG_SECONDS = 3.0
 BACKLOG_FIRST_SECONDS = 0.3
@@ -46,6 +49,8 @@ BACKLOG_PAUSE = 0.1
 """s between two requests; a process answers only after Zenoh has discovered it."""
 CONTACT_SECONDS = 10.0
 """Time that a starting server waits for the answer of a process that a killed server has left."""
+
+BUSY = "The robot's runtime is still busy with earlier commands. Try again."
 
 STREAMS = {STREAM: "runtime", SIMULATOR_STREAM: "simulator"}
 """The sender of each stream: one that sends topics of the other is not believed."""
@@ -102,7 +107,8 @@ class Bridge:
         self._shared_stop = SharedStop(lambda: self._ask("command/stop", {}, stop=True))
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
         self._leases = ThreadPoolExecutor(1, "lease")
-        self._asking = 0
+        self._turns = asyncio.Semaphore(COMMANDS_AT_ONCE)
+        self._waiting = 0
         self._opened = False
 
     async def open(self) -> None:
@@ -216,24 +222,36 @@ class Bridge:
     async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:
         if self.reserved_reason is not None and not stop:
             raise RefusedError(self.reserved_reason)
-        if not stop and self._asking >= COMMANDS_AT_ONCE:
-            raise RuntimeSilentError(
-                "The robot's runtime is still busy with earlier commands. Try again.", waited=False
-            )
-        self._asking += not stop
+        if stop:
+            return await self._ask_now(name, payload, self._stops, stop)
+        if self._waiting >= WAITING_MAX:
+            raise RuntimeSilentError(BUSY, waited=False)
+        self._waiting += 1
+        try:
+            async with asyncio.timeout(TURN_SECONDS):
+                await self._turns.acquire()
+        except TimeoutError:
+            raise RuntimeSilentError(BUSY, waited=False) from None
+        finally:
+            self._waiting -= 1
+        try:
+            return await self._ask_now(name, payload, self._commands, stop)
+        finally:
+            self._turns.release()
+
+    async def _ask_now(
+        self, name: str, payload: Mapping[str, Any], threads: ThreadPoolExecutor, stop: bool
+    ) -> Mapping[str, Any]:
         started = self._loop.time()
         try:
             return await self._loop.run_in_executor(
-                self._stops if stop else self._commands,
-                lambda: self._messages.query(name, payload, ANSWER_SECONDS),
+                threads, lambda: self._messages.query(name, payload, ANSWER_SECONDS)
             )
         except NoAnswerError as problem:
             if stop and self.stopped:
                 return {}
             waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
             raise RuntimeSilentError(_silence(name, waited), waited) from problem
-        finally:
-            self._asking -= not stop
 
     async def _contact(self, name: str) -> BacklogReply | None:
         first_numbers, backlog = self._fillers[name].everything(), None

@@ -269,6 +269,7 @@ def test_a_silent_runtime_is_reported_after_the_timeout_and_stop_does_not_wait(
     async def scenario(served: Served) -> None:
         # None of them is over before the others were asked, however busy the computer is.
         monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", SECONDS)
+        monkeypatch.setattr(bridge_module, "TURN_SECONDS", 0.05)
         gate = served.runtime.gates["vision"]
         gate.clear()
         slow = [
@@ -290,6 +291,25 @@ def test_a_silent_runtime_is_reported_after_the_timeout_and_stop_does_not_wait(
             await served.container.bridge.command("vision", {})
         gate.set()
         assert silent.value.waited
+
+    play(settings, scenario)
+
+
+def test_commands_wait_their_turn_and_too_many_are_refused(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario(served: Served) -> None:
+        for name in ("ANSWER_SECONDS", "TURN_SECONDS"):
+            monkeypatch.setattr(bridge_module, name, SECONDS)
+        gate, bridge = served.runtime.gates["vision"], served.container.bridge
+        gate.clear()
+        most = bridge_module.COMMANDS_AT_ONCE + bridge_module.WAITING_MAX
+        waiting = [asyncio.create_task(bridge.command("vision", {})) for _ in range(most)]
+        await asyncio.sleep(0)
+        with pytest.raises(bridge_module.RuntimeSilentError, match="busy"):
+            await bridge.command("vision", {})
+        gate.set()
+        assert await asyncio.gather(*waiting) == [{"accepted": True}] * most
 
     play(settings, scenario)
 

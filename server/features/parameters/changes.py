@@ -22,7 +22,7 @@ from robot_runtime.errors import RefusedError
 from server.features.parameters.schemas import Change, ChangedValue, LeftOut, Restored
 from server.platform.models import ParameterChangeRow
 from server.platform.store import Store, StoreError, insert_row
-from server.stream.bridge import Bridge, RuntimeSilentError
+from server.stream.bridge import BUSY, TURN_SECONDS, Bridge, RuntimeSilentError
 
 log = logging.getLogger(__name__)
 
@@ -54,18 +54,20 @@ class Changes:
     def __init__(self, store: Store, bridge: Bridge) -> None:
         self._store = store
         self._bridge = bridge
-        self._undoing = asyncio.Lock()
+        self._order = asyncio.Lock()
+        """Held from a command's sending until its changes are stored, which keeps the robot's order."""
         self._groups: list[_Group] = []
         self._undone: dict[int, str] = {}
         """Names of those who have undone a change, by its number, where that could not be stored."""
 
     async def command(self, who: str, command: RobotCommand, why: str = "") -> Restored:
         """Send a command; returns the parameters that it changed, and those that it left out."""
-        answer = await self._send(command)
-        changed = answer.get("changed", {})
-        if changed:
-            await self._note_groups()
-            await self._note(who, why, changed)
+        async with self._turn():
+            answer = await self._send(command)
+            changed = answer.get("changed", {})
+            if changed:
+                await self._note_groups()
+                await self._note(who, why, changed)
         left_out = [LeftOut(name=one, why=reason) for one, reason in answer.get("left_out", {}).items()]
         return Restored(changed=_changed_values(changed), left_out=left_out)
 
@@ -75,21 +77,24 @@ class Changes:
         group = _Group(who, why)
 
         async def send(command: RobotCommand) -> None:
-            answer = await self._send(command)
-            for name, (before, after) in answer.get("changed", {}).items():
-                first = group.changed[name][0] if name in group.changed else before
-                group.changed[name] = (first, after)
+            async with self._turn():
+                answer = await self._send(command)
+                for name, (before, after) in answer.get("changed", {}).items():
+                    first = group.changed[name][0] if name in group.changed else before
+                    group.changed[name] = (first, after)
 
         self._groups.append(group)
         try:
             yield send
         finally:
-            self._groups.remove(group)
-            await self._note_group(group)
+            async with self._order:
+                self._groups.remove(group)
+                await self._note_group(group)
 
     async def put_back(self, command: RobotCommand) -> None:
         """Send a command that restores values of the history; its changes are not stored."""
-        await self._send(command)
+        async with self._turn():
+            await self._send(command)
 
     def newest(self) -> list[Change]:
         """The newest changes, newest first. Blocks."""
@@ -102,7 +107,7 @@ class Changes:
 
     async def undo(self, who: str, change: int) -> Restored:
         """Undo a change, which must be the newest that is not undone."""
-        async with self._undoing:
+        async with self._turn():
             await self._note_groups()
             row = await asyncio.to_thread(self._find_newest)
             if row is None:
@@ -119,6 +124,22 @@ class Changes:
             await self._note_undone(who, change)
         undone = [ChangedValue(name=one.name, before=one.after, after=one.before) for one in values]
         return Restored(changed=undone, left_out=[])
+
+    @asynccontextmanager
+    async def _turn(self) -> AsyncIterator[None]:
+        """Wait for the turn among the commands, but not so long that the command might surprise.
+
+        Raises RuntimeSilentError.
+        """
+        try:
+            async with asyncio.timeout(TURN_SECONDS):
+                await self._order.acquire()
+        except TimeoutError:
+            raise RuntimeSilentError(BUSY, waited=False) from None
+        try:
+            yield
+        finally:
+            self._order.release()
 
     async def _send(self, command: RobotCommand) -> Mapping[str, Any]:
         return await self._bridge.command(command.policy.name, command.payload())

@@ -3,15 +3,15 @@
 import asyncio
 import json
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
-from robot_runtime.contract.commands import SteeringCommand
-from server.features.parameters.changes import Send
+from robot_runtime.contract.commands import ParametersCommand, SteeringCommand
+from server.features.parameters.changes import Changes, Send
 from server.features.parameters.profiles import ProfileError, read_file
 from server.platform.settings import Settings
-from server.platform.store import StoreError
+from server.platform.store import Store, StoreError
 from tests.server.blocks import state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
@@ -86,6 +86,45 @@ def test_changes_are_listed_with_who_made_them_and_undone_one_by_one(settings: S
         assert "no change to undo" in over.json()["detail"]
 
     play(settings, scenario)
+
+
+class OneParameter:
+    """A robot with one parameter, in place of the bridge; `stored` delays every second write."""
+
+    run = "run"
+
+    def __init__(self, store: Store) -> None:
+        self.value, self.writes = 0.0, 0
+        self._write = store.write
+
+    async def command(self, _: str, payload: dict[str, Any]) -> dict[str, Any]:
+        before, (self.value,) = self.value, payload["values"].values()
+        return {"changed": {"p": [before, self.value]}}
+
+    async def write(self, *arguments: Any, **options: Any) -> Any:
+        self.writes += 1
+        for _ in range(20 * (self.writes % 2)):
+            await asyncio.sleep(0)
+        return await self._write(*arguments, **options)
+
+
+def test_changes_made_at_once_are_in_the_history_in_the_robot_s_order(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario() -> None:
+        robot = OneParameter(store)
+        monkeypatch.setattr(store, "write", robot.write)
+        changes = Changes(store, cast(Any, robot))
+        await asyncio.gather(
+            *(changes.command("Ann", ParametersCommand(values={"p": float(n)})) for n in range(1, 9))
+        )
+        listed = changes.newest()
+        assert [one.values[0].after for one in reversed(listed)] == [float(n) for n in range(1, 9)]
+        for one in listed:
+            await changes.undo("Ben", one.id)
+        assert robot.value == 0.0
+
+    asyncio.run(scenario())
 
 
 def test_an_undo_that_cannot_be_stored_is_done_and_the_one_before_it_can_follow(
