@@ -2,7 +2,13 @@
 import { secretHeader } from './pageSecret';
 import { connection } from './texts/connection';
 
-export type Answer<T> = { readonly value: T } | { readonly problem: string };
+export type Answer<T> = { readonly value: T } | Refusal;
+
+/** Why there is no value, in words; `kind` tells what can be done, where the words alone do not. */
+export interface Refusal {
+  readonly problem: string;
+  readonly kind?: string;
+}
 
 const texts = connection.requests;
 const TIMEOUT = 5000;
@@ -64,10 +70,11 @@ function headers(method: string): Record<string, string> {
   return { ...secretHeader(), 'X-Mucat-Client': clientKey };
 }
 
-function refused(status: number, text: string): { problem: string } {
+function refused(status: number, text: string): Refusal {
   const problem = describe(status, text);
   if (status === UNAUTHORISED) signedOut(problem);
-  return { problem };
+  const { kind } = readProblem(text);
+  return { problem, kind: typeof kind === 'string' ? kind : '' };
 }
 
 export async function send<T>(

@@ -1,4 +1,4 @@
-import type { Answer } from './http';
+import type { Answer, Refusal } from './http';
 
 /** A request to the server as a component shows it: under way or not, what it brought, and why it failed. */
 export class Resource<Value = null> {
@@ -8,6 +8,8 @@ export class Resource<Value = null> {
   busy = $state(false);
   /** why the last request failed, in words; '' where it did not */
   problem = $state('');
+  /** whether it failed since somebody else has changed the thing meanwhile */
+  changed = $state(false);
   #newest = 0;
 
   /** Keep what a request brings, unless a later one was made meanwhile. Answers that; null where it failed. */
@@ -25,8 +27,14 @@ export class Resource<Value = null> {
   }
 
   /** Have a command done. Answers whether it was. */
-  async run(command: Promise<string | null>): Promise<boolean> {
-    return 'value' in (await this.#follow(command.then((problem) => (problem === null ? { value: null } : { problem }))));
+  async run(command: Promise<string | Refusal | null>): Promise<boolean> {
+    return 'value' in (await this.#follow(command.then((problem) => (problem === null ? { value: null } : typeof problem === 'string' ? { problem } : problem))));
+  }
+
+  /** What failed is of no interest any more. */
+  forget(): void {
+    this.problem = '';
+    this.changed = false;
   }
 
   async #follow<T>(request: Promise<Answer<T>>): Promise<Answer<T>> {
@@ -37,6 +45,7 @@ export class Resource<Value = null> {
     if (mine === this.#newest) {
       this.busy = false;
       this.problem = 'problem' in answer ? answer.problem : '';
+      this.changed = 'problem' in answer && answer.kind === 'changed';
     }
     return answer;
   }

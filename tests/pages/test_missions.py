@@ -331,6 +331,37 @@ def test_an_older_version_is_taken_back(page: Page, site: Site) -> None:
     expect(page.get_by_text(re.compile("^Version 3"))).to_be_visible()
 
 
+def test_what_somebody_else_has_saved_meanwhile_is_not_replaced_unasked(page: Page, site: Site) -> None:
+    keep(site, "shared")
+    open_mission(page, site, "shared")
+
+    def save_both(minutes: int) -> None:
+        """Another program saves, then this page."""
+        theirs = OWN.format(name="shared").replace("depth = 0.5", f"depth = 0.{minutes}")
+        site.api.post("/missions", json={"text": theirs}).raise_for_status()
+        text = show_toml(page)
+        text.fill(text.input_value() + f"# mine {minutes}\n")
+        expect(page.get_by_text(VALID)).to_be_visible()
+        page.get_by_role("button", name="Save", exact=True).click()
+        expect(
+            page.get_by_text("was saved by the shell of this computer since you opened it")
+        ).to_be_visible()
+
+    def stored() -> list[str]:
+        return [one["text"] for one in site.api.get("/missions/versions/shared").json()]
+
+    save_both(3)
+    assert len(stored()) == 2
+    page.get_by_role("button", name="Save mine over it").click()
+    expect(page.get_by_role("button", name="Saved", exact=True)).to_be_disabled()
+    assert "# mine 3" in stored()[0]
+    save_both(4)
+    page.get_by_role("button", name="Discard mine, open theirs").click()
+    expect(show_toml(page)).to_have_value(re.compile(r"depth = 0\.4"))
+    expect(page.get_by_role("button", name="Saved", exact=True)).to_be_disabled()
+    assert "depth = 0.4" in stored()[0]
+
+
 def test_what_is_written_while_it_is_saved_stays(page: Page, site: Site) -> None:
     keep(site, "meanwhile")
     open_mission(page, site, "meanwhile")

@@ -4,6 +4,7 @@ import { Arranger, type Arranged } from './arrange';
 import type { ShownChart } from '../parts/panelKind';
 import { FORMAT, readLayout, VERSION, type Layout, type Placed } from './layout';
 import { CHART, describe } from '../panels/registry';
+import type { Refusal } from '../http';
 import { SHIPPED } from './shipped';
 import { readStoredJson, writeStored } from '../storage';
 import { layout as texts } from '../texts/layout';
@@ -19,9 +20,11 @@ interface Standing {
   readonly title: string;
   /** whether it is not any more what `choice` says */
   readonly changed: boolean;
+  /** of the saved layout that was opened; null where there was none, or it is not known */
+  readonly version: number | null;
 }
 
-type Stored = Partial<Record<'choice' | 'title' | 'changed' | 'document', unknown>>;
+type Stored = Partial<Record<'choice' | 'title' | 'changed' | 'document' | 'version', unknown>>;
 
 export const savedChoice = (id: SavedLayout['id']): string => `kept/${id}`;
 
@@ -113,22 +116,25 @@ export class Arrangement {
     }
     const answer = await api.layout(Number(choice.replace('kept/', '')));
     if ('problem' in answer) return answer.problem;
-    return this.take(answer.value.document, answer.value.name, choice);
+    return this.take(answer.value.document, answer.value.name, choice, answer.value.version);
   }
 
   /** Show what this text or object holds. Returns why not, in words; null where it is shown. */
-  take(given: unknown, title: string, choice = ''): string | null {
+  take(given: unknown, title: string, choice = '', version: number | null = null): string | null {
     const layout = readLayout(given);
     if ('problem' in layout) return layout.problem;
-    this.#apply({ panels: layout.panels, choice, title, changed: choice === '' });
+    this.#apply({ panels: layout.panels, choice, title, changed: choice === '', version });
     return null;
   }
 
-  /** Save it on the server under this name. Returns why not, in words; null where it is saved. */
-  async save(name: string): Promise<string | null> {
-    const answer = await api.saveLayout(name, this.document);
-    if ('problem' in answer) return answer.problem;
-    this.#now = { ...this.#now, choice: savedChoice(answer.value.id), title: answer.value.name, changed: false };
+  /** Save it on the server under this name, `over` whatever it has there by now. Returns why not; null where it is saved. */
+  async save(name: string, over = false): Promise<Refusal | null> {
+    const same = this.saved.find((one) => one.name === name);
+    const opened = same && savedChoice(same.id) === this.choice ? this.#now.version : (same?.version ?? 0);
+    const answer = await api.saveLayout(name, this.document, over ? null : opened);
+    if ('problem' in answer) return answer;
+    const { id, version } = answer.value;
+    this.#now = { ...this.#now, choice: savedChoice(id), title: answer.value.name, changed: false, version };
     this.message = texts.done.saved(answer.value.name);
     this.#remember();
     await this.list();
@@ -170,14 +176,14 @@ export class Arrangement {
   }
 
   #remember(): void {
-    const { choice, title, changed } = this.#now;
-    writeStored(this.#key, JSON.stringify({ choice, title, changed, document: this.document }));
+    const { choice, title, changed, version } = this.#now;
+    writeStored(this.#key, JSON.stringify({ choice, title, changed, version, document: this.document }));
   }
 
   #recall(): void {
     const stored = readStoredJson(this.#key) as Stored | null;
     if (stored === null) return;
-    const { choice, title, changed, document } = stored;
+    const { choice, title, changed, version, document } = stored;
     // What comes with the program is as this version has it, and as this screen wants it.
     if (changed === false && SHIPPED.some(({ name }) => name === choice)) {
       this.#now = shipped(String(choice));
@@ -186,7 +192,7 @@ export class Arrangement {
     const layout = readLayout(document);
     if ('problem' in layout) this.message = layout.problem;
     else if (typeof choice === 'string' && typeof title === 'string') {
-      this.#now = { panels: layout.panels, choice, title, changed: changed === true };
+      this.#now = { panels: layout.panels, choice, title, changed: changed === true, version: typeof version === 'number' ? version : null };
     }
   }
 }
@@ -194,7 +200,7 @@ export class Arrangement {
 function shipped(choice: string): Standing {
   const found = SHIPPED.find(({ name }) => name === choice);
   if (found === undefined) throw new RangeError(`no layout ${choice}`);
-  return { panels: inReadingOrder(found.layout().panels), choice, title: found.title, changed: false };
+  return { panels: inReadingOrder(found.layout().panels), choice, title: found.title, changed: false, version: null };
 }
 
 function inReadingOrder(panels: readonly Placed[]): readonly Placed[] {

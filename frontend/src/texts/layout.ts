@@ -46,6 +46,7 @@ export const layout = {
     replaces: (layout: string) => `Replaces the saved layout “${layout}”.`,
     replace: 'Replace',
     saved: 'Saved layouts',
+    by: (author: string) => `by ${author}`,
   },
   handle: {
     role: 'movable panel',

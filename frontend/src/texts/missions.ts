@@ -120,6 +120,7 @@ export const missions = {
   versions: {
     shipped: 'Versions are kept of missions that you save.',
     version: (version: number) => `Version ${version}`,
+    by: (author: string) => ` by ${author}`,
     take: 'Take this version',
     takeNamed: (version: number) => `Take this version: ${version}`,
     present: 'shown now',

@@ -6,6 +6,8 @@ export const parts = {
   saving: 'Saving…',
   applying: 'Applying…',
   save: 'Save',
+  saveMine: 'Save mine over it',
+  openTheirs: 'Discard mine, open theirs',
   cancel: 'Cancel',
   copy: 'Copy',
   copied: 'Copied',

@@ -9,16 +9,21 @@ const sourceDraft = new Draft('mucat-mission-source');
 export interface Source {
   readonly name: string;
   readonly text: string;
+  /** of the text in the library; null where it is not known */
+  readonly mark: string | null;
 }
+
+/** of what is not from the library */
+export const NOTHING: Source = { name: '', text: '', mark: '' };
 
 export function readSource(): Source {
   try {
     const read: unknown = JSON.parse(sourceDraft.read());
-    if (isTable(read) && typeof read.name === 'string' && typeof read.text === 'string') return { name: read.name, text: read.text };
+    if (isTable(read) && typeof read.name === 'string' && typeof read.text === 'string') return { name: read.name, text: read.text, mark: typeof read.mark === 'string' ? read.mark : null };
   } catch {
     // Nothing was opened.
   }
-  return { name: '', text: '' };
+  return { name: '', text: '', mark: null };
 }
 
 export const writeSource = (source: Source): void => sourceDraft.write(JSON.stringify(source));

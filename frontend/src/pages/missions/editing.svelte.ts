@@ -24,7 +24,7 @@ import {
   type Path,
   type Place,
 } from './cards';
-import { readSource, textDraft, writeSource, type Source } from './drafts';
+import { NOTHING, readSource, textDraft, writeSource, type Source } from './drafts';
 import { amend, begin, go, record } from './history';
 import { placeProblems } from './problems';
 import { time } from './words';
@@ -131,10 +131,14 @@ export class MissionEditing {
     return this.#history.at < this.#history.entries.length - 1;
   }
 
+  /** The mark of what a mission of this name replaces; '' where it is new, null where that is not known. */
+  baseOf(name: string): string | null {
+    return name === this.#source.name ? this.#source.mark : '';
+  }
+
   /** Open a mission in place of this one. */
-  load(source: Source, text = source.text): void {
-    this.#source = source;
-    writeSource(source);
+  load({ name, text: opened, mark }: Source, text = opened): void {
+    this.keep({ name, text: opened, mark });
     this.#history = begin<Entry>({ text, cards: null });
     this.open = null;
     this.written.text = text;
@@ -143,7 +147,7 @@ export class MissionEditing {
   create(): void {
     const cards = newDocument(this.names);
     const text = writeMission(tableOf(cards));
-    this.load({ name: '', text });
+    this.load({ ...NOTHING, text });
     this.#cards = { text, cards };
     this.#history = begin<Entry>(this.#cards);
     this.open = cards.root.id;
