@@ -8,6 +8,7 @@ from pkgutil import resolve_name
 import click
 
 from robot_runtime.durable_files import keep_private
+from robot_runtime.transport.lifetime import limit_library_threads
 from server import VERSION
 from server.platform.terminal import PlainFormatter
 
@@ -80,6 +81,7 @@ def completion(shell: str) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit status: 0 after an orderly end, 1 where the command cannot be carried out, 2 for wrong usage."""
     keep_private()
+    limit_library_threads()
     try:
         return mucat.main(arguments, "mucat", standalone_mode=False) or 0
     except click.ClickException as problem:

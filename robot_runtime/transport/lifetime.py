@@ -68,6 +68,15 @@ def limit_memory(memory: int, share: float = 0.5) -> None:
     resource.setrlimit(resource.RLIMIT_DATA, (limit, hard))
 
 
+def limit_library_threads() -> None:
+    """Has libraries compute in the calling thread alone, in this process and those that it starts.
+
+    OpenBLAS, which NumPy loads, takes memory for each thread, and ends the process where it gets none.
+    """
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+
+
 def give_way(niceness: int) -> None:
     """Gives this process at least this niceness, also where it inherits one already, and its session, too.
 

@@ -129,6 +129,8 @@ class ManagedProcess:
         except OSError as problem:
             program = self.command.arguments[0]
             return f"cannot be started: {program}: {problem.strerror}; {EMULATOR_REMEDY}", False
+        except MemoryError:
+            return "cannot be started: the server has no memory left", False
         if self.state != "running":
             self._set("running")
         trimming = asyncio.create_task(self._trim())

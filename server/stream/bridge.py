@@ -8,7 +8,7 @@ otherwise begin rounds in which the robot's own samples wait.
 
 import asyncio
 import logging
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -37,6 +37,7 @@ QUEUE_MAX = 20_000
 """Most blocks that wait while the event loop is busy; far more than in normal operation."""
 ANSWER_SECONDS = 2.0
 COMMANDS_AT_ONCE = 4
+"""And as many questions, which viewers may ask: they take no command's place."""
 WAITING_MAX = 32
 TURN_SECONDS = 2.0
 """Commands and questions that wait for their turn, and for how long: performed later they might surprise."""
@@ -104,11 +105,12 @@ class Bridge:
         self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(AT_ONCE, "stop")
-        self._shared_stop = SharedStop(lambda: self._ask("command/stop", {}, stop=True))
+        self._shared_stop = SharedStop(lambda: self._ask("command/stop", {}, self._stops))
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
+        self._questions = ThreadPoolExecutor(COMMANDS_AT_ONCE, "question")
         self._leases = ThreadPoolExecutor(1, "lease")
-        self._turns = asyncio.Semaphore(COMMANDS_AT_ONCE)
-        self._waiting = 0
+        self._turns = {one: asyncio.Semaphore(COMMANDS_AT_ONCE) for one in (self._commands, self._questions)}
+        self._waiting: Counter[ThreadPoolExecutor] = Counter()
         self._opened = False
 
     async def open(self) -> None:
@@ -183,7 +185,7 @@ class Bridge:
         Commands that change parameters go through `Changes`, which records them.
         """
         if name != "stop":
-            return await self._ask(f"command/{name}", payload, stop=False)
+            return await self._ask(f"command/{name}", payload, self._commands)
         if self.on_stop is not None:
             self.on_stop()
         return await self._shared_stop.ask()
@@ -194,16 +196,16 @@ class Bridge:
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
         """The simulator's answer. Raises RefusedError, RuntimeSilentError."""
-        return await self._ask(f"simulator/{name}", payload, stop=False)
+        return await self._ask(f"simulator/{name}", payload, self._commands)
 
     async def query(self, name: str, question: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
         """The runtime's answer to a question. Raises RefusedError, RuntimeSilentError."""
-        return await self._ask(f"query/{name}", question or {}, stop=False)
+        return await self._ask(f"query/{name}", question or {}, self._questions)
 
     async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
         """The simulated scene's answer. Raises RefusedError, RuntimeSilentError."""
         try:
-            return await self._ask(f"scene/{name}", payload, stop=False)
+            return await self._ask(f"scene/{name}", payload, self._commands)
         except RuntimeSilentError as problem:
             raise RuntimeSilentError(
                 "The simulated scene does not answer. The System page shows whether it runs.", problem.waited
@@ -215,29 +217,34 @@ class Bridge:
             await filler.close()
         self._stops.shutdown(wait=False, cancel_futures=True)
         self._commands.shutdown(wait=False, cancel_futures=True)
+        self._questions.shutdown(wait=False, cancel_futures=True)
         self._leases.shutdown(wait=False, cancel_futures=True)
         if self._opened:
             await asyncio.to_thread(self._messages.close)
 
-    async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:
+    async def _ask(
+        self, name: str, payload: Mapping[str, Any], threads: ThreadPoolExecutor
+    ) -> Mapping[str, Any]:
+        stop = threads is self._stops
         if self.reserved_reason is not None and not stop:
             raise RefusedError(self.reserved_reason)
         if stop:
-            return await self._ask_now(name, payload, self._stops, stop)
-        if self._waiting >= WAITING_MAX:
+            return await self._ask_now(name, payload, threads, stop)
+        if self._waiting[threads] >= WAITING_MAX:
             raise RuntimeSilentError(BUSY, waited=False)
-        self._waiting += 1
+        turns = self._turns[threads]
+        self._waiting[threads] += 1
         try:
             async with asyncio.timeout(TURN_SECONDS):
-                await self._turns.acquire()
+                await turns.acquire()
         except TimeoutError:
             raise RuntimeSilentError(BUSY, waited=False) from None
         finally:
-            self._waiting -= 1
+            self._waiting[threads] -= 1
         try:
-            return await self._ask_now(name, payload, self._commands, stop)
+            return await self._ask_now(name, payload, threads, stop)
         finally:
-            self._turns.release()
+            turns.release()
 
     async def _ask_now(
         self, name: str, payload: Mapping[str, Any], threads: ThreadPoolExecutor, stop: bool

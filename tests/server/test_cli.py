@@ -370,3 +370,11 @@ def printed(program: str, **environment: str) -> str:
         check=True,
     )
     return result.stdout.strip()
+
+
+def test_libraries_compute_in_one_thread_in_all_processes_that_it_starts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(os, "environ", {"OMP_NUM_THREADS": "2"})
+    cli.main(["--version"])
+    assert os.environ == {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "1"}

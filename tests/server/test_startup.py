@@ -7,6 +7,7 @@ import sys
 import threading
 from contextlib import closing
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -82,6 +83,32 @@ def test_a_server_whose_address_cannot_be_written_keeps_that_of_the_one_before(s
     settings.data.address.with_name(settings.data.address.name + PART).mkdir()
     announce(settings)
     assert settings.data.address.read_text() == before
+
+
+WHOLE = """
+import sys
+from pathlib import Path
+from server.platform.settings import DataFolder, Settings
+from tests.server.serving import Served, play
+
+data = DataFolder(Path(sys.argv[1]))
+data.run.mkdir()
+
+async def look(served: Served) -> None:
+    (await served.api.get("/health")).raise_for_status()
+    print(*(name for name in ("numpy", "cv2") if name in sys.modules))
+
+play(Settings(data, Path("robot.toml"), mode="robot"), look)
+"""
+
+
+def test_a_server_that_serves_has_not_loaded_libraries_that_may_end_its_process() -> None:
+    # Sockets have short paths.
+    with TemporaryDirectory(prefix="mucat-") as folder:
+        ran = subprocess.run(
+            [sys.executable, "-c", WHOLE, folder], capture_output=True, text=True, timeout=SECONDS
+        )
+    assert (ran.returncode, ran.stdout.strip()) == (0, ""), ran.stderr
 
 
 async def live_once(settings: Settings) -> None:

@@ -128,18 +128,18 @@ class _LiveConnection:
         if self._stopping is not None and not self._stopping.done():
             self._stop_again = True
             return
-        self._stopping = asyncio.create_task(self._send_stop(client))
+        self._stopping = asyncio.create_task(self._send_stops(client))
 
-    async def _send_stop(self, client: Client) -> None:
-        try:
-            await self._bridge.command("stop", {})
-            self._record("stop", "done", "stopRobot")
-        except (RefusedError, RuntimeSilentError) as problem:
-            self._record("stop", "failed")
-            client.answer({"op": "error", "text": f"STOP has not been confirmed: {problem}"})
-        if self._stop_again:
+    async def _send_stops(self, client: Client) -> None:
+        self._stop_again = True
+        while self._stop_again:
             self._stop_again = False
-            await self._send_stop(client)
+            try:
+                await self._bridge.command("stop", {})
+                self._record("stop", "done", "stopRobot")
+            except (RefusedError, RuntimeSilentError) as problem:
+                self._record("stop", "failed")
+                client.answer({"op": "error", "text": f"STOP has not been confirmed: {problem}"})
 
     def _record(self, op: str, outcome: Outcome, operation: str = "") -> None:
         address = address_of(self._socket.scope)

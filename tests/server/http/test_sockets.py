@@ -13,6 +13,7 @@ from websockets.exceptions import ConnectionClosedOK
 
 from server.http.listener import open_socket
 from server.http.serving import make_server
+from server.http.websocket_protocol import PIECE_BYTES, WebSocketProtocol
 
 SIZES = (0, 1, 125, 126, 65_535, 65_536, 300_000)
 
@@ -98,6 +99,98 @@ def test_the_server_ends_in_order_while_a_page_that_has_left_still_has_unread_da
 
     asyncio.run(_serve(app, scenario))
     assert ended == [True]
+
+
+def test_a_burst_of_small_messages_is_taken_in_pieces() -> None:
+    sent, most = 20_000, 0
+    app, done = FastAPI(), asyncio.Event()
+    numbers: list[int] = []
+
+    @app.websocket("/")
+    async def take_all(socket: WebSocket) -> None:
+        nonlocal most
+        await socket.accept()
+        protocol: Any = protocols[0]
+        while len(numbers) < sent:
+            numbers.append(int(await socket.receive_text()))
+            most = max(most, protocol.queue.qsize())
+        done.set()
+
+    protocols: list[WebSocketProtocol] = []
+    opened = WebSocketProtocol.connection_made
+
+    def note(protocol: WebSocketProtocol, transport: Any) -> None:
+        protocols.append(protocol)
+        opened(protocol, transport)
+
+    async def scenario(url: str) -> None:
+        async with connect(url) as client:
+            client.transport.write(b"".join(_frame(str(number).encode()) for number in range(sent)))
+            await done.wait()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(WebSocketProtocol, "connection_made", note)
+        asyncio.run(_serve(app, scenario))
+    assert numbers == list(range(sent))
+    assert most <= PIECE_BYTES / len(_frame(b"1"))
+
+
+def test_others_have_a_turn_after_each_message() -> None:
+    app, done = FastAPI(), asyncio.Event()
+    turns: list[int] = []
+    turn = 0
+
+    @app.websocket("/")
+    async def take_all(socket: WebSocket) -> None:
+        await socket.accept()
+        for _ in range(500):
+            await socket.receive()
+            turns.append(turn)
+        done.set()
+
+    async def count() -> None:
+        nonlocal turn
+        while not done.is_set():
+            turn += 1
+            await asyncio.sleep(0)
+
+    async def scenario(url: str) -> None:
+        async with connect(url) as client:
+            counting = asyncio.create_task(count())
+            client.transport.write(_frame(b"") * 500)
+            await counting
+
+    asyncio.run(_serve(app, scenario))
+    assert len(set(turns)) == len(turns)
+
+
+def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_disconnected() -> None:
+    app, left = FastAPI(), asyncio.Event()
+
+    @app.websocket("/")
+    async def listen(socket: WebSocket) -> None:
+        await socket.accept()
+        while (await socket.receive())["type"] != "websocket.disconnect":
+            pass
+        left.set()
+
+    async def scenario(url: str) -> None:
+        client = await connect(url, ping_interval=None)
+        client.transport.pause_reading()
+        pings = _frame(bytes(125), 9) * 1000
+        while not left.is_set() and not client.transport.is_closing():
+            client.transport.write(pings)
+            while client.transport.get_write_buffer_size() and not left.is_set():
+                await asyncio.sleep(0)
+        await left.wait()
+        client.transport.abort()
+
+    asyncio.run(_serve(app, scenario))
+
+
+def _frame(payload: bytes, opcode: int = 1) -> bytes:
+    """A short message of a client, masked by zeros (RFC 6455, 5.2)."""
+    return bytes([128 + opcode, 128 + len(payload)]) + bytes(4) + payload
 
 
 async def _serve(app: FastAPI, scenario: Any) -> None:
