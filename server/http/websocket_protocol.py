@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.frames import Frame
 from websockets.protocol import State
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ PIECE_BYTES = 1024
 UNREAD_MAX = 262_144
 """Bytes that wait in this process for a client that reads nothing, until it is disconnected: answers to its
 own pings, for whose sending nobody waits."""
+PARTS_MAX = 100
+"""Frames of one message."""
 _BINARY = 0x82
 """First byte of an unfragmented binary frame (RFC 6455, 5.2)."""
 _SHORT, _LONG = 125, 0xFFFF
@@ -51,6 +54,13 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
             self.transport.abort()
             return
         super().handle_ping()
+
+    def handle_cont(self, event: Frame) -> None:
+        """Take a further part of a message. Parts without content would have no end, and no size."""
+        if len(self.frames) >= PARTS_MAX:
+            self.transport.abort()
+            return
+        super().handle_cont(event)
 
     async def receive(self) -> Any:
         """The next message for the application."""

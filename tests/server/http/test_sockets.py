@@ -13,7 +13,7 @@ from websockets.exceptions import ConnectionClosedOK
 
 from server.http.listener import open_socket
 from server.http.serving import make_server
-from server.http.websocket_protocol import PIECE_BYTES, WebSocketProtocol
+from server.http.websocket_protocol import PARTS_MAX, PIECE_BYTES, WebSocketProtocol
 
 SIZES = (0, 1, 125, 126, 65_535, 65_536, 300_000)
 
@@ -186,6 +186,32 @@ def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_disconnected
         client.transport.abort()
 
     asyncio.run(_serve(app, scenario))
+
+
+def test_a_message_without_an_end_is_ended() -> None:
+    app, left = FastAPI(), asyncio.Event()
+    received: list[str] = []
+
+    @app.websocket("/")
+    async def listen(socket: WebSocket) -> None:
+        await socket.accept()
+        while (message := await socket.receive())["type"] != "websocket.disconnect":
+            received.append(message["text"])
+        left.set()
+
+    async def scenario(url: str) -> None:
+        async with connect(url) as client:
+            first, part, last = _part(b"a", 1), _part(b"", 0), _frame(b"b", 0)
+            client.transport.write(first + part * (PARTS_MAX - 2) + last + first + part * PARTS_MAX)
+            await left.wait()
+
+    asyncio.run(_serve(app, scenario))
+    assert received == ["ab"]
+
+
+def _part(payload: bytes, opcode: int) -> bytes:
+    """A part of a message that is not its last."""
+    return bytes([opcode]) + _frame(payload)[1:]
 
 
 def _frame(payload: bytes, opcode: int = 1) -> bytes:
