@@ -11,6 +11,7 @@ from robot_runtime.contract.limits import SCENE_HEIGHT, SCENE_WIDTH, SET_POINT, 
 from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.problems import DocumentEntry
+from robot_runtime.contract.text_input import TextError, load_text
 from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.contract.vision_settings import VisionSettings
 
@@ -268,9 +269,11 @@ def load(path: Path) -> Config:
 def load_with_text(path: Path) -> tuple[Config, str]:
     """Reads the configuration and its text, which the file may not hold later. Raises as `load`."""
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as problem:
+        text = load_text(path)
+    except OSError as problem:
         raise ConfigError(f"{path} cannot be read: {problem}") from problem
+    except TextError as problem:
+        raise ConfigError(f"{path} cannot be read: it {problem}") from problem
     return parse_text(text, path), text
 
 

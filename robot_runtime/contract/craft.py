@@ -17,6 +17,7 @@ from typing import Annotated, Any
 from robot_runtime.contract.limits import ConfigError, Range
 from robot_runtime.contract.parsing import TOP, parse
 from robot_runtime.contract.problems import DocumentEntry
+from robot_runtime.contract.text_input import TextError, load_text
 from robot_runtime.contract.toml_text import TomlError, read_toml
 
 Vector = tuple[float, float, float]
@@ -294,9 +295,11 @@ def read_craft(text: str) -> CraftDocument:
 def load_craft(path: Path) -> CraftDocument:
     """Reads a craft file. Raises ConfigError where it cannot be read or used, with the file's name."""
     try:
-        return read_craft(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as problem:
+        return read_craft(load_text(path))
+    except OSError as problem:
         raise ConfigError(f"the craft file {path} cannot be read: {problem}") from problem
+    except TextError as problem:
+        raise ConfigError(f"the craft file {path} cannot be read: it {problem}") from problem
     except ConfigError as problem:
         file = DocumentEntry(path.name)
         named = [one.within(file) if one.path else file.sentence(one.text) for one in problem.problems]

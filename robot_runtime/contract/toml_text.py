@@ -8,6 +8,8 @@ import re
 import tomllib
 from typing import Any
 
+from robot_runtime.contract.text_input import MARK, TextError, find_slip
+
 BYTES_MAX = 60_000
 PARTS_MAX = 8
 """Parts of one dotted key or of one table's name."""
@@ -21,12 +23,20 @@ _TOKENS = re.compile(
 )
 
 
-class TomlError(ValueError):
+_PLACE = re.compile(
+    r"(?P<words>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)", re.DOTALL
+)
+_REPEATED = ("Cannot overwrite a value", "Cannot declare", "Duplicate inline table key")
+"""Beginnings of the parser's words for a key or table that comes twice."""
+
+
+class TomlError(TextError):
     """A text that is not TOML, or too large; the error's text continues a sentence about it."""
 
 
 def read_toml(text: str) -> dict[str, Any]:
     """Parses a TOML text. Raises TomlError."""
+    text = text.removeprefix(MARK)
     if len(text.encode("utf-8", "replace")) > BYTES_MAX:
         raise TomlError(f"is larger than {BYTES_MAX} bytes")
     for token in _TOKENS.finditer(text):
@@ -36,6 +46,29 @@ def read_toml(text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except ValueError as problem:
-        raise TomlError(f"is not TOML: {problem}") from problem
+        raise TomlError(_explain(text, str(problem))) from problem
     except RecursionError as problem:
         raise TomlError("is not TOML: it is nested too deeply") from problem
+
+
+def _explain(text: str, problem: str) -> str:
+    """The parser's problem in words that name the slip, where it is a usual one."""
+    found = _PLACE.fullmatch(problem)
+    if found is None:
+        return f"is not TOML: {problem}"
+    lines = text.split("\n")
+    line = int(found["line"] or len(lines))
+    there = lines[line - 1].strip()
+    if found["words"].startswith(_REPEATED):
+        return f"names {_repeated(found['words'], there)} twice, the second time in line {line}"
+    return find_slip(text, line, int(found["column"] or 1)) or f"is not TOML: {problem}"
+
+
+def _repeated(words: str, line: str) -> str:
+    """The key or table in a line that was there before; only a value of several lines hides its key."""
+    if words.startswith("Duplicate"):
+        return f"the key {words.rpartition('key ')[2]}"
+    if line.startswith("["):
+        return f"the table [{line.partition(']')[0].strip('[ ')}]"
+    key, equals, _ = line.partition("=")
+    return f"the key {key.strip()!r}" if equals else "a key"

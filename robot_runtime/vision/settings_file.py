@@ -6,6 +6,7 @@ from pathlib import Path
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import read_value
 from robot_runtime.contract.problems import DocumentEntry
+from robot_runtime.contract.text_input import TextError, read_json
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.durable_files import write_whole
 
@@ -19,14 +20,16 @@ class VisionSettingsFile:
     def read(self) -> VisionSettings | None:
         """Reads the stored settings; None if there are none. Raises ConfigError if they cannot be used."""
         try:
-            table = json.loads(self._path.read_bytes())
+            table = read_json(self._path.read_bytes())
             settings: VisionSettings = read_value(VisionSettings, table, DocumentEntry(self._path.name))
         except FileNotFoundError:
             return None
         except ConfigError:
             raise
-        except (OSError, ValueError) as problem:
+        except OSError as problem:
             raise ConfigError(f"{self._path} cannot be read: {problem}") from problem
+        except TextError as problem:
+            raise ConfigError(f"{self._path} cannot be read: it {problem}") from problem
         return settings
 
     def write(self, settings: VisionSettings) -> None:

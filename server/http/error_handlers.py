@@ -9,6 +9,7 @@ from fastapi.responses import JSONResponse
 
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.problems import DocumentEntry, EntryProblem
+from robot_runtime.contract.text_input import TextError
 from robot_runtime.errors import RefusedError
 from server.http.dependencies import find_service
 from server.platform.errors import ApiError
@@ -49,8 +50,10 @@ async def _answer_invalid_request(_: Request, problem: Exception) -> JSONRespons
     return _answer(422, f"The request is not valid. {words}", problems=problems)
 
 
-async def _answer_unreadable_body(_: Request, __: Exception) -> JSONResponse:
-    return _answer(422, "The request is not valid. Its body is not JSON in UTF-8.")
+async def _answer_unreadable_body(_: Request, problem: Exception) -> JSONResponse:
+    cause = problem.__cause__
+    words = str(cause) if isinstance(cause, TextError) else "is not JSON in UTF-8"
+    return _answer(422, f"The request is not valid. Its body {words}.")
 
 
 async def _answer_lack_of_memory(request: Request, _: Exception) -> JSONResponse:

@@ -11,6 +11,7 @@ from starlette.responses import Response
 from starlette.routing import BaseRoute
 
 from robot_runtime.contract.problems import EntryProblem
+from server.http.json_bodies import JsonRoute
 from server.http.sign_in.confirmation import UnconfirmedError
 from server.http.sign_in.policy import LINKED, Need, needs
 from server.platform.errors import ApiError
@@ -71,6 +72,7 @@ class Operations:
             tags=[*self._tags],
             dependencies=[*dependencies],
             responses={**(responses or {})},
+            route_class=JsonRoute,
         )
         for declare in self._declared:
             declare(router)

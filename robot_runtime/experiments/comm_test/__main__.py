@@ -13,6 +13,7 @@ from io import FileIO
 from pathlib import Path
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.text_input import TextError, decode_text
 from robot_runtime.experiments.comm_test.document import DOCUMENT_BYTES_MAX, read_document
 from robot_runtime.experiments.comm_test.lab import (
     TEST_ERRORS,
@@ -86,9 +87,9 @@ def _transfer(arguments: argparse.Namespace) -> int:
 
 def _decode(document: bytes) -> str:
     try:
-        return document.decode()
-    except UnicodeDecodeError as problem:
-        raise ConfigError(f"the document is not UTF-8: {problem}") from problem
+        return decode_text(document)
+    except TextError as problem:
+        raise ConfigError(f"the document {problem}") from problem
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -14,6 +14,7 @@ from robot_runtime.config import BAUD_ERROR_MAX, CHIP_CLOCK
 from robot_runtime.contract.limits import ConfigError, Range
 from robot_runtime.contract.parsing import TOP, parse
 from robot_runtime.contract.problems import DocumentEntry, EntryProblem
+from robot_runtime.contract.text_input import TextError, read_json
 from robot_runtime.experiments.comm_test.faults import Faults
 from robot_runtime.experiments.comm_test.framings import FRAMINGS, NUMBER_MAX, FramingName
 from robot_runtime.experiments.comm_test.results import Direction, GridCell
@@ -77,10 +78,12 @@ def read_document(text: str) -> list[CommTest]:
     if len(text) > DOCUMENT_BYTES_MAX:
         raise ConfigError(f"the document is larger than {DOCUMENT_BYTES_MAX} bytes")
     try:
-        entries = json.loads(text)
+        entries = read_json(text)
         # JSON can name halves of characters, which no text can hold.
         json.dumps(entries, ensure_ascii=False).encode()
-    except (ValueError, RecursionError) as problem:
+    except TextError as problem:
+        raise ConfigError(f"the document {problem}") from problem
+    except UnicodeEncodeError as problem:
         raise ConfigError(f"the document is not JSON: {problem}") from problem
     if not isinstance(entries, list) or not entries:
         raise ConfigError("the document must be a list of one or more tests")

@@ -24,6 +24,7 @@ import cv2
 from robot_runtime.config import craft_document_in
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.text_input import TextError, decode_text
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
@@ -83,9 +84,12 @@ def main() -> int:
         messages = RunOutput(UnbufferedOutput(stream))
         try:
             file = craft_document_in(options.craft) if options.craft else DEFAULT_DOCUMENT
-            scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"), file.craft)
+            scenario = read_scenario(decode_text(sys.stdin.buffer.read()), file.craft)
         except ConfigError as problem:
             messages.event("refused", problems=problem.texts)
+            return REFUSED
+        except TextError as problem:
+            messages.event("refused", problems=[f"the scenario {problem}"])
             return REFUSED
         run = ScenarioRun(scenario, made[options.board], messages, file)
         for number in (signal.SIGTERM, signal.SIGINT):

@@ -125,12 +125,15 @@ def _rates(runs: "CommTestRuns", name: str) -> "dict[GridPlace, float]":
 
 def _read(file: Path) -> "tuple[str, list[CommTest]]":
     from robot_runtime.contract.limits import ConfigError
+    from robot_runtime.contract.text_input import TextError, load_text
     from robot_runtime.experiments.comm_test.document import read_document
 
     try:
-        text = file.read_text(encoding="utf-8")
+        text = load_text(file)
         return text, read_document(text)
-    except (OSError, UnicodeDecodeError) as problem:
+    except OSError as problem:
         raise SetupError(f"{file} cannot be read: {problem}") from problem
+    except TextError as problem:
+        raise SetupError(f"{file} cannot be read: it {problem}") from problem
     except ConfigError as problem:
         raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.texts])) from problem

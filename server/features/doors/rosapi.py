@@ -17,7 +17,7 @@ from server.features.doors.commands import (
 from server.features.doors.house import Door, Doors
 from server.features.doors.ros2_messages import TRIGGER
 from server.features.doors.ros_channels import stamp, type_name
-from server.features.doors.session import UnusableMessageError, mapping_of, text_of
+from server.features.doors.session import UnusableMessageError, mapping_of, read_json, text_of
 from server.features.doors.twist import TAKEN_IN
 
 NODE = "/mucat"
@@ -135,10 +135,7 @@ class RosApi:
 
     async def _set_parameter(self, said: dict[str, Any]) -> dict[str, Any]:
         name = _parameter(said)
-        try:
-            value = json.loads(text_of(said.get("value"), "value"))
-        except (ValueError, RecursionError) as problem:
-            raise UnusableMessageError("value must be JSON.") from problem
+        value = read_json(text_of(said.get("value"), "value"), "value")
         await self._commands.set_parameters(self._pilot, {name: value})
         return {}
 

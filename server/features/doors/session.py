@@ -5,10 +5,11 @@ answered, nothing more is read, so that the program itself waits.
 """
 
 import asyncio
-import json
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
 
+from robot_runtime.contract import text_input
+from robot_runtime.contract.text_input import TextError
 from server.features.doors.subscriptions import DoorClient
 from server.http.security import POLICY_VIOLATION
 from server.stream.hub import EvictedError
@@ -93,13 +94,9 @@ class DoorSession:
 def read_json(text: str | bytes, name: str) -> Any:
     """The value of a text of JSON. Raises UnusableMessageError."""
     try:
-        return json.loads(text, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as problem:
-        raise UnusableMessageError(f"{name} must be JSON.") from problem
-
-
-def _refuse_constant(name: str) -> None:
-    raise ValueError(f"{name} is no JSON")
+        return text_input.read_json(text)
+    except TextError as problem:
+        raise UnusableMessageError(f"{name} must be JSON: it {problem}.") from problem
 
 
 def text_of(value: object, name: str) -> str:

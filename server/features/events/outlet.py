@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple, Protocol
 
 from robot_runtime.contract.published_events import PublishedEvent
+from robot_runtime.contract.text_input import TextError, decode_text
 
 WAITING_MAX = 200
 """Events that wait while the other end is away; further ones are lost, and counted."""
@@ -13,6 +14,8 @@ CONNECT_SECONDS = 5.0
 CLOSE_SECONDS = 2.0
 """The end of the server waits so long for what is still to be sent."""
 SECRET_BYTES_MAX = 1000
+_DER = b"\x30"
+"""The tag of a sequence, with which a certificate in DER begins."""
 
 
 class OutletError(Exception):
@@ -70,10 +73,12 @@ def read_secret(path: Path) -> str:
     try:
         if path.stat().st_mode & (stat.S_IRWXG | stat.S_IRWXO):
             raise OutletError(f"Other users can read {path}. Mend it with: chmod 600 {path}")
-        with path.open(encoding="utf-8") as file:
-            secret = file.readline(SECRET_BYTES_MAX).strip()
-    except (OSError, UnicodeDecodeError) as problem:
+        with path.open("rb") as file:
+            secret = decode_text(file.readline(SECRET_BYTES_MAX)).strip()
+    except OSError as problem:
         raise OutletError(f"{path} cannot be read: {problem}.") from problem
+    except TextError as problem:
+        raise OutletError(f"{path} cannot be read: it {problem}.") from problem
     if not secret or not secret.isprintable():
         raise OutletError(f"The first line of {path} is empty, or no plain text.")
     return secret
@@ -85,10 +90,19 @@ def make_tls(authority: Path | None) -> ssl.SSLContext:
     Raises OutletError.
     """
     try:
-        return ssl.create_default_context(cafile=authority)
-    except OSError as problem:  # a broken certificate as well
+        return ssl.create_default_context(cadata=_read_authority(authority) if authority else None)
+    except (OSError, ValueError) as problem:  # a broken certificate as well
         named = f"events.ca_file, {authority}," if authority else "The computer's own list of authorities"
         raise OutletError(f"{named} cannot be used: {problem}.") from problem
+
+
+def _read_authority(path: Path) -> str | bytes:
+    """The certificates in a file: PEM as a text, or one in DER, as Windows exports it."""
+    data = path.read_bytes()
+    if data.startswith(_DER):
+        return data
+    # What stands between the certificates may have any letters; OpenSSL takes ASCII alone.
+    return decode_text(data).encode("ascii", "replace").decode("ascii")
 
 
 def name_problem(problem: BaseException) -> str:

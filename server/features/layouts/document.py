@@ -66,8 +66,9 @@ class LayoutDocument(RequestBody):
         if isinstance(document, dict) and document.get("format") == "mucat-layout":
             version = document.get("version")
             if version != VERSION or isinstance(version, bool):
+                named = "names no version" if version is None else f"is of version {str(version)[:20]}"
                 raise _wrong(
-                    f"This layout is of version {str(version)[:20]}; this program reads version {VERSION}. "
+                    f"This layout {named}; this program reads version {VERSION}. "
                     "Arrange the panels again, and save them."
                 )
         return document

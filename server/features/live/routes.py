@@ -13,6 +13,7 @@ from pydantic import StringConstraints, ValidationError
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import DEFINITIONS_HASH
+from robot_runtime.contract.text_input import TextError, read_json
 from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.errors import RefusedError
 from server.features.lease.arbiter import ControlArbiter
@@ -246,9 +247,9 @@ def _read(text: str | None) -> dict[str, Any]:
     if text is None:
         raise InvalidMessageError("Messages must be text, not binary.")
     try:
-        message = json.loads(text, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as problem:
-        raise InvalidMessageError("Messages must be JSON.") from problem
+        message = read_json(text)
+    except TextError as problem:
+        raise InvalidMessageError(f"Messages must be JSON: this one {problem}.") from problem
     if not isinstance(message, dict):
         raise InvalidMessageError("Messages must be JSON objects.")
     return message
@@ -267,7 +268,3 @@ def _drive(message: dict[str, Any]) -> DriveCommand:
         raise InvalidMessageError(
             "A drive needs lease and sequence, whole numbers from 0 on, taken (s), and six axes from -1 to 1."
         ) from problem
-
-
-def _refuse_constant(name: str) -> None:
-    raise ValueError(f"{name} is no JSON")

@@ -158,14 +158,17 @@ def _print_changes(state: dict[str, Any], said: set[tuple[str, str, int]]) -> No
 
 def _read(file: str, settings: Settings) -> "tuple[str, MissionDocument]":
     from robot_runtime.contract.limits import ConfigError
+    from robot_runtime.contract.text_input import TextError, load_text
     from server.features.missions.library import MissionLibrary
 
     library = MissionLibrary(settings.data.missions, settings.missions)
     there = library.texts()
     try:
-        text = there[file] if file in there else Path(file).read_text(encoding="utf-8")
+        text = there[file] if file in there else load_text(Path(file))
         return text, library.read(text)
-    except (OSError, UnicodeDecodeError) as problem:
+    except TextError as problem:
+        raise SetupError(f"{file} cannot be read: it {problem}") from problem
+    except OSError as problem:
         raise SetupError(f"{file} cannot be read: {problem}. Known missions: {', '.join(there)}") from problem
     except ConfigError as problem:
         raise SetupError("\n  ".join([f"{file} cannot be used:", *problem.texts])) from problem

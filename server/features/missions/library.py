@@ -10,6 +10,7 @@ from pydantic import JsonValue
 
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import MissionLimits
+from robot_runtime.contract.text_input import TextError, load_text
 from robot_runtime.contract.toml_text import BYTES_MAX, TomlError, read_toml
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.errors import RefusedError
@@ -185,9 +186,11 @@ def _read_authors(folder: Path) -> dict[str, str]:
 def _read(path: Path) -> str | None:
     try:
         if path.stat().st_size <= BYTES_MAX:
-            return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as problem:
+            return load_text(path)
+    except OSError as problem:
         log.warning("the mission %s cannot be read: %s", path, problem)
+    except TextError as problem:
+        log.warning("the mission %s cannot be read: it %s", path, problem)
     return None
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
+from robot_runtime.contract.text_input import TextError, load_text
 from server.platform.errors import NotFoundError
 
 SCRIPT_BYTES_MAX = 200_000
@@ -45,7 +46,7 @@ def read_panel(folder: Path, name: str) -> OwnPanelScript:
             continue
         if problem := _problem(file):
             raise UnknownPanelError(problem)
-        return OwnPanelScript(name=name, script=file.read_text(encoding="utf-8"))
+        return OwnPanelScript(name=name, script=load_text(file))
     raise UnknownPanelError(f"There is no panel “{name}” in {folder}. GET /api/panels lists the panels.")
 
 
@@ -56,9 +57,9 @@ def _problem(file: Path) -> str:
     try:
         if file.stat().st_size > SCRIPT_BYTES_MAX:
             return f"{file.name} has more than {SCRIPT_BYTES_MAX // 1000} kB."
-        file.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        return f"{file.name} is not a text in UTF-8."
+        load_text(file)
+    except TextError as problem:
+        return f"{file.name} {problem}."
     except OSError as problem:
         return f"{file.name} cannot be read: {problem.strerror}."
     return ""

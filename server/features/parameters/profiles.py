@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from sqlalchemy import Connection, delete
 from sqlmodel import col, select
 
+from robot_runtime.contract.text_input import TextError, read_json
 from robot_runtime.errors import RefusedError
 from server import VERSION
 from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Value, Values
@@ -113,18 +114,17 @@ def file_name(profile: Profile) -> str:
 def read_file(text: str) -> ProfileFile:
     """The profile in a file. Raises ProfileError."""
     try:
-        content: Any = json.loads(text)
-    except (ValueError, RecursionError) as problem:
-        raise ProfileError(f"The file is not a profile: it is not JSON ({problem}).") from problem
+        content: Any = read_json(text)
+    except TextError as problem:
+        raise ProfileError(f"The file is not a profile: it {problem}.") from problem
     if not isinstance(content, dict) or "format" not in content:
         raise ProfileError(
             "The file is not a profile: it has no format. Save a profile here to see its form."
         )
     if content["format"] != FORMAT or isinstance(content["format"], bool):
         raise ProfileError(
-            f"The file is a profile of format {content['format']!r}, written by version "
-            f"{content.get('version')!r}; this version reads format {FORMAT}. Open it with the version "
-            "that wrote it."
+            f"The file is a profile of format {content['format']!r}{_writer(content)}. This is version "
+            f"{VERSION}, which reads format {FORMAT}: open the file with the version that wrote it."
         )
     try:
         return ProfileFile.model_validate(content)
@@ -134,6 +134,11 @@ def read_file(text: str) -> ProfileFile:
             for error in problem.errors()[:5]
         )
         raise ProfileError(f"The profile in the file cannot be used. {words}.") from problem
+
+
+def _writer(content: Mapping[str, Any]) -> str:
+    version = content.get("version")
+    return f", written by version {version} of µ-CAT" if version and isinstance(version, str) else ""
 
 
 def _show(row: ProfileRow) -> Profile:

@@ -70,14 +70,17 @@ def run(
 
 def _read(file: str, own: Path) -> "tuple[str, Scenario]":
     from robot_runtime.contract.limits import ConfigError
+    from robot_runtime.contract.text_input import TextError, load_text
     from robot_runtime.experiments.scenario.document import read_scenario
     from server.features.scenarios.library import list_scenarios
 
     there = {one.name: one.text for one in list_scenarios(own)}
     try:
-        text = there[file] if file in there else Path(file).read_text(encoding="utf-8")
+        text = there[file] if file in there else load_text(Path(file))
         return text, read_scenario(text)
-    except (OSError, UnicodeDecodeError) as problem:
+    except TextError as problem:
+        raise SetupError(f"{file} cannot be read: it {problem}") from problem
+    except OSError as problem:
         known = ", ".join(there)
         raise SetupError(f"{file} cannot be read: {problem}. Known scenarios: {known}") from problem
     except ConfigError as problem:

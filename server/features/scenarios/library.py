@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.text_input import TextError, load_text
 from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.errors import RefusedError
@@ -62,9 +63,11 @@ def _own(folder: Path) -> list[tuple[Path, str]]:
     for file in sorted(folder.glob("*.toml")):
         try:
             if file.stat().st_size <= BYTES_MAX:
-                found.append((file, file.read_text(encoding="utf-8")))
-        except (OSError, UnicodeDecodeError) as problem:
+                found.append((file, load_text(file)))
+        except OSError as problem:
             log.warning("the scenario %s cannot be read: %s", file, problem)
+        except TextError as problem:
+            log.warning("the scenario %s cannot be read: it %s", file, problem)
     return found
 
 

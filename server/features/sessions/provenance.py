@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from robot_runtime.contract.text_input import TextError, load_text
 from robot_runtime.errors import RefusedError
 from robot_runtime.provenance import hash_firmware, hash_software
 from robot_runtime.simulation.boards.firmware import firmware_path
@@ -111,8 +112,10 @@ class ProvenanceWatch:
     async def compare_file(self) -> None:
         """Report a configuration file that is no longer the one in force."""
         try:
-            text = await asyncio.to_thread(self._settings.config.read_text, "utf-8", "replace")
+            text = await asyncio.to_thread(load_text, self._settings.config)
             problem = "was edited" if text != self._now.configuration else ""
+        except TextError:
+            problem = "was edited"
         except OSError as cause:
             problem = f"cannot be read now ({cause.strerror})"
         if problem:

@@ -44,7 +44,7 @@ def test_a_bad_document_is_refused_with_every_problem() -> None:
 def test_bytes_that_are_no_text_are_refused() -> None:
     status, (event,) = run_lab(b"[\xff]", *EMULATED)
     assert (status, event["event"]) == (2, "refused")
-    assert event["problems"][0].startswith("the document is not UTF-8")
+    assert event["problems"][0].startswith("the document has a byte in line 1 that is not UTF-8")
 
 
 def test_cancelled_in_the_middle_of_a_long_cell() -> None:

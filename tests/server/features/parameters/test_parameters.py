@@ -276,12 +276,20 @@ def test_a_profile_is_stored_downloaded_uploaded_restored_and_deleted(settings: 
         ("no JSON", "it is not JSON"),
         ("[1]", "it has no format"),
         ("{}", "it has no format"),
-        ({"format": 2, "version": "9.1"}, "format 2, written by version '9.1'; this version reads format 1"),
+        (
+            {"format": 2, "version": "9.1"},
+            "is a profile of format 2, written by version 9.1 of µ-CAT. This is",
+        ),
         ({"format": True, "name": "a", "parameters": {}}, "format True"),
         ({"format": 1, "name": "a"}, "parameters: Field required"),
         ({"format": 1, "name": "", "parameters": {}}, "name: String should have at least 1"),
         ({"format": 1, "name": "a", "parameters": {"x": [1]}}, "parameters.x"),
-        ('{"format": 1, "name": "a", "parameters": {"x": NaN}}', "parameters.x"),
+        ({"format": 2, "name": "Later", "parameters": {}}, "is a profile of format 2. This is version"),
+        ('{"format": 1, "name": "a", "parameters": {"x": NaN}}', "holds NaN in line 1"),
+        (
+            '{"format": 1, "name": "Twice",\n"parameters": {"depth.pid.kp": 2.0, "depth.pid.kp": 40.0}}',
+            "names the key 'depth.pid.kp' twice, the second time in line 2",
+        ),
         ("[" * 100_000, "it is not JSON"),
     ],
 )
