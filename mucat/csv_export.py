@@ -11,6 +11,7 @@ from pathlib import Path
 
 from mucat.errors import RobotError
 from mucat.tables import SessionTables, TopicTable, si_column, typed_column
+from robot_runtime.zip_members import find_members
 
 HEADED = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>.*)\])?")
 """The head of a column: its name, and its unit."""
@@ -19,10 +20,11 @@ HEADED = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>.*)\])?")
 def read_csv_export(source: Path | bytes) -> SessionTables:
     """The tables of a file, or of its bytes. Raises BadZipFile, KeyError, ValueError, OSError."""
     with _open(source) as files:
-        about = json.loads(files.read("session.json"))
+        members = find_members(files, "session.json")
+        about = json.loads(files.read(members["session.json"]))
         readers: dict[str, Callable[[], TopicTable]] = {
             name.removesuffix(".csv"): partial(_read_member, source, name)
-            for name in files.namelist()
+            for name in members
             if name.endswith(".csv") and "/" not in name
         }
     return SessionTables(about, readers)
@@ -34,7 +36,7 @@ def _open(source: Path | bytes) -> zipfile.ZipFile:
 
 def _read_member(source: Path | bytes, name: str) -> TopicTable:
     try:
-        with _open(source) as files, files.open(name) as opened:
+        with _open(source) as files, files.open(find_members(files, "session.json")[name]) as opened:
             rows = csv.reader(io.TextIOWrapper(opened, "utf-8-sig", newline=""))
             heads = next(rows, [])
             values = [*zip(*rows, strict=True)] or [() for _ in heads]

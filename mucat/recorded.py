@@ -17,6 +17,7 @@ from typing import Any
 
 from mucat.errors import RobotError
 from mucat.tables import SessionTables, TopicTable, si_column, text_of_value, typed_column
+from robot_runtime.zip_members import find_members
 
 DATABASE = "mucat.db"
 ARCHIVE_FORMAT, ARCHIVE_VERSION = "mucat-session", 1
@@ -62,14 +63,15 @@ def read_folder(folder: Path, session: int) -> SessionTables:
 def read_archive(path: Path) -> SessionTables:
     """A session in an archive as tables. Raises RobotError, and BadZipFile, KeyError, ValueError, OSError."""
     with zipfile.ZipFile(path) as files:
-        content = json.loads(files.read("session.json"))
-        names = {name.removeprefix("chunks/") for name in files.namelist() if name.startswith("chunks/")}
+        members = find_members(files, "session.json")
+        content = json.loads(files.read(members["session.json"]))
+        names = {name.removeprefix("chunks/") for name in members if name.startswith("chunks/")}
     if content.get("version") != ARCHIVE_VERSION:
         raise RobotError(f"{path} is an archive of another version. Install the same version of µ-CAT here.")
     session = content["session"]
 
     def chunks(topic: str) -> Iterator[StoredChunk]:
-        with zipfile.ZipFile(path) as files, files.open(f"chunks/{topic}") as file:
+        with zipfile.ZipFile(path) as files, files.open(members[f"chunks/{topic}"]) as file:
             while head := file.read(HEAD.size):
                 *_, size, encoding = HEAD.unpack(head)
                 yield encoding.rstrip(b"\0").decode("ascii"), file.read(size)

@@ -13,6 +13,7 @@ from mucat.errors import RobotError
 from mucat.mcap_export import MAGIC, read_mcap
 from mucat.recorded import ARCHIVE_FORMAT, list_folder, read_archive, read_folder
 from mucat.tables import SessionTables
+from robot_runtime.zip_members import find_members
 
 POLL_SECONDS = 0.2
 
@@ -55,7 +56,8 @@ class Sessions:
                 if opened.read(len(MAGIC)) == MAGIC:
                     return read_mcap(path)
             with zipfile.ZipFile(path) as files:
-                archived = json.loads(files.read("session.json")).get("format") == ARCHIVE_FORMAT
+                described = files.read(find_members(files, "session.json")["session.json"])
+            archived = json.loads(described).get("format") == ARCHIVE_FORMAT
             return read_archive(path) if archived else read_csv_export(path)
         except OSError as problem:
             raise RobotError(f"{file} cannot be read: {problem.strerror}.") from problem

@@ -1,7 +1,8 @@
 """Reads and checks archives, which may be damaged, foreign, cut off or malicious.
 
 The check covers the names of the members, their size when unpacked, the checksums, and the decoding of every
-chunk to the samples that its head announces.
+chunk to the samples that its head announces. An archive that was unpacked and packed again, as Safari and the
+Finder do, has its members compressed in a folder, and others beside them; it is read as well.
 """
 
 import hashlib
@@ -16,6 +17,7 @@ from typing import IO, Any, TypeVar
 
 from pydantic import ValidationError
 
+from robot_runtime.zip_members import find_members
 from server.features.exports.archive import CHECKSUMS, CHUNKS, FORMAT, HEAD, SESSION, VERSION
 from server.features.exports.archive_models import ArchivedChunk, ArchivedDocument
 from server.features.exports.archive_samples import SPAN_MAX, check_chunk, check_document
@@ -27,6 +29,10 @@ DESCRIPTION_BYTES_MAX = 1_000_000
 ROWS_AT_ONCE = 1_000
 """Rows in one line, each of at most 20 kB, and in one transaction."""
 STEP_BYTES = 1 << 20
+METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+GROWTH_MAX = 4
+"""Most bytes of chunks for each byte of the file: they are compressed, and packed again they shrink little."""
+AS_DOWNLOADED = "Was it unpacked and packed again? Send the file as it was downloaded."
 MEMBER = re.compile(r"session\.json|checksums\.json|chunks/[a-z][a-z0-9_]{0,49}")
 
 
@@ -39,13 +45,13 @@ class ArchiveChunks:
 
     def __init__(self, zipped: zipfile.ZipFile, size: int) -> None:
         self._zipped = zipped
-        self._names = self._check_members(size)
-        self.topics = [name.removeprefix(CHUNKS) for name in self._names if name.startswith(CHUNKS)]
+        self._members = self._check_members(size)
+        self.topics = [name.removeprefix(CHUNKS) for name in self._members if name.startswith(CHUNKS)]
 
     def chunks(self, topic: str) -> Iterator[ArchivedChunk]:
         """The chunks of a topic with plausible heads; their data is not checked."""
         number = -1
-        with self._zipped.open(CHUNKS + topic) as file:
+        with self._zipped.open(self._members[CHUNKS + topic]) as file:
             while head := file.read(HEAD.size):
                 if len(head) < HEAD.size:
                     raise ArchiveError(f"The chunks of {topic} are cut off after number {number}.")
@@ -63,21 +69,24 @@ class ArchiveChunks:
                 name = encoding.rstrip(b"\0").decode("ascii", "replace")
                 yield ArchivedChunk(topic, number, first_time, last_time, first, count, name, data)
 
-    def _check_members(self, size: int) -> list[str]:
-        infos = self._zipped.infolist()
-        names = [info.filename for info in infos]
-        strange = [name for name in names if not MEMBER.fullmatch(name)]
+    def _check_members(self, size: int) -> dict[str, zipfile.ZipInfo]:
+        try:
+            members = find_members(self._zipped, SESSION)
+        except ValueError as problem:
+            raise ArchiveError("It holds two members of the same name.") from problem
+        strange = [name for name in members if not MEMBER.fullmatch(name)]
         if strange:
-            raise ArchiveError(f"It holds {strange[0][:100]!r}, which is no part of an archive.")
-        if len(set(names)) < len(names):
-            raise ArchiveError("It holds two members of the same name.")
-        if SESSION not in names or CHECKSUMS not in names:
+            raise ArchiveError(
+                f"It holds {strange[0][:100]!r}, which is no part of an archive. {AS_DOWNLOADED}"
+            )
+        if SESSION not in members or CHECKSUMS not in members:
             raise ArchiveError(f"It holds no {SESSION} or no {CHECKSUMS}, so it is no archive of a session.")
-        if any(info.compress_type != zipfile.ZIP_STORED or info.flag_bits & 1 for info in infos):
-            raise ArchiveError("Its members are compressed or encrypted; an archive stores them unchanged.")
-        if sum(info.file_size for info in infos) > size:
+        if any(info.compress_type not in METHODS or info.flag_bits & 1 for info in members.values()):
+            raise ArchiveError(f"Its members are encrypted, or compressed by another method. {AS_DOWNLOADED}")
+        chunks = sum(info.file_size for name, info in members.items() if name.startswith(CHUNKS))
+        if chunks > GROWTH_MAX * size:
             raise ArchiveError("Its members are larger than the file.")
-        return [name for name in names if name != CHECKSUMS]
+        return members
 
 
 class Archive(ArchiveChunks):
@@ -99,11 +108,11 @@ class Archive(ArchiveChunks):
 
     def verify(self, report: Callable[[float], None]) -> None:
         """Check the checksums, and every chunk's samples. Raises ArchiveError."""
-        total = sum(info.file_size for info in self._zipped.infolist())
+        total = sum(info.file_size for info in self._members.values())
         done = 0
-        for name in self._names:
+        for name in (name for name in self._members if name != CHECKSUMS):
             checksum = hashlib.sha256()
-            with self._zipped.open(name) as file:
+            with self._zipped.open(self._members[name]) as file:
                 while piece := file.read(STEP_BYTES):
                     checksum.update(piece)
                     done += len(piece)
@@ -120,7 +129,7 @@ class Archive(ArchiveChunks):
             report(0.5 + 0.5 * (place + 1) / len(self.topics))
 
     def _read_json(self, name: str) -> Any:
-        with self._zipped.open(name) as file:
+        with self._zipped.open(self._members[name]) as file:
             text = file.read(SESSION_BYTES_MAX + 1)
         if len(text) > SESSION_BYTES_MAX:
             raise ArchiveError(f"{name} is longer than {SESSION_BYTES_MAX} bytes.")

@@ -6,6 +6,7 @@ stored. The retention worker removes what does not become whole.
 
 import asyncio
 import json
+import zipfile
 from collections.abc import AsyncIterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
@@ -81,6 +82,9 @@ class Imports:
             return await self._take(path)
 
     async def _take(self, path: Path) -> int:
+        # The process that checks it gives way to all others: on a busy computer it needs a minute to begin.
+        if not await asyncio.to_thread(zipfile.is_zipfile, path):
+            raise ArchiveError("The archive cannot be imported. It is no zip file, or it is cut off.")
         rows = self._folder / (token_hex(8) + PART)
         try:
             await asyncio.to_thread(make_folder, self._folder)

@@ -16,11 +16,12 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from sqlalchemy import Connection, insert, text
+from sqlalchemy import Connection, insert, text, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.errors import RefusedError
+from server.features.exports import imports
 from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
 from server.features.exports.archive_reader import ArchiveError, examine
 from server.features.exports.imports import Imports
@@ -127,6 +128,21 @@ def change(path: Path, edit: Callable[[Members], None], *, summed: bool = True) 
         zipped.writestr(CHECKSUMS, sums)
 
 
+def repack(path: Path, folder: str, *others: tuple[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> Path:
+    """The archive in a folder, as macOS packs it again."""
+    packed = path.with_name("packed.zip")
+    added = [
+        ("__MACOSX/dive/._session.json", b"\0\5"),
+        (f"{folder}.DS_Store", b"\0"),
+        (f"{folder}chunks/", b""),
+    ]
+    with zipfile.ZipFile(path) as old, zipfile.ZipFile(packed, "w", method) as new:
+        members = [(folder + name, old.read(name)) for name in old.namelist()]
+        for name, data in [*members, *added, *others]:
+            new.writestr(name, data)
+    return packed
+
+
 def tell(**changes: Any) -> Callable[[Members], None]:
     """Change entries of `session.json`, of the archive or of the session."""
 
@@ -230,13 +246,46 @@ def test_a_file_that_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> 
         other.write_bytes(data)
         with pytest.raises(ArchiveError):
             examine(other, other.with_suffix(".rows"))
-    packed = tmp_path / "packed.zip"
-    with zipfile.ZipFile(archive) as old, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as new:
-        for name in old.namelist():
-            new.writestr(name, old.read(name))
-    with pytest.raises(ArchiveError, match="compressed or encrypted"):
-        examine(packed, packed.with_suffix(".rows"))
     examine(archive, archive.with_suffix(".rows"))
+
+
+@pytest.mark.parametrize("folder", ["", "dive.mucat/", "dive/dive.mucat/", "dive.mucat\\"])
+def test_an_archive_that_was_packed_again_is_imported(
+    store: Store, settings: Settings, session: int, archive: Path, folder: str
+) -> None:
+    known = contents(store, session)
+    packed = repack(archive, folder)
+    asyncio.run(store.execute(update(SessionRow).values(identifier="f" * 32)))
+    number = asyncio.run(Imports(settings.data, store).take(packed))
+    assert contents(store, number) == known
+
+
+def test_what_else_was_packed_is_named(archive: Path) -> None:
+    packed = repack(archive, "dive/", ("dive/notes.docx", b"x"))
+    with pytest.raises(
+        ArchiveError, match=r"'notes\.docx', which is no part .* packed again\? Send the file as"
+    ):
+        examine(packed, packed.with_suffix(".rows"))
+    packed = repack(archive, "", method=zipfile.ZIP_BZIP2)
+    with pytest.raises(ArchiveError, match=r"compressed by another method\. .* packed again\?"):
+        examine(packed, packed.with_suffix(".rows"))
+
+
+def test_members_that_grow_much_are_not_unpacked(archive: Path) -> None:
+    packed = repack(archive, "", ("chunks/bomb", bytes(10_000_000)))
+    assert packed.stat().st_size < 100_000
+    with pytest.raises(ArchiveError, match="larger than the file"):
+        examine(packed, packed.with_suffix(".rows"))
+
+
+def test_what_is_no_zip_file_is_refused_before_a_process_is_started(
+    store: Store, settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(imports, "ExportProcess")
+    short = tmp_path / "short.zip"
+    short.write_bytes(b"abc")
+    with pytest.raises(ArchiveError, match="It is no zip file, or it is cut off"):
+        asyncio.run(Imports(settings.data, store).take(short))
 
 
 def test_a_session_that_records_is_not_archived(store: Store, session: int) -> None:

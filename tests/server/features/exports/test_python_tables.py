@@ -21,6 +21,7 @@ from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.doors.rig import imu, rows_block
 from tests.server.features.exports.recordings import record
+from tests.server.features.exports.test_imports import repack
 
 FILES = ("csv", "mcap", "archive")
 
@@ -127,3 +128,11 @@ def test_a_session_of_an_older_version_is_read(tmp_path: Path) -> None:
     assert 0.2 < depth["depth"].max() < 1.5
     assert depth["time"].is_monotonic_increasing
     assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize("kind", ["csv", "archive"])
+def test_a_file_that_was_packed_again_is_read(write: Callable[[Any], Path], kind: str) -> None:
+    path = write(kind)
+    known, packed = Sessions.read(path), Sessions.read(repack(path, "dive/"))
+    assert packed.topics == known.topics
+    pandas.testing.assert_frame_equal(packed.pandas("depth"), known.pandas("depth"))
