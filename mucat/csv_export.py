@@ -5,14 +5,18 @@ import io
 import json
 import re
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from mucat.errors import RobotError
 from mucat.tables import SessionTables, TopicTable, si_column, typed_column
 from robot_runtime.zip_members import find_members
 
+ESCAPED = re.compile(r"'+[=+\-@\t\n＝＋－＠]")
+"""The beginning of a text behind an apostrophe, without which a spreadsheet would calculate it."""
 HEADED = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>.*)\])?")
 """The head of a column: its name, and its unit."""
 
@@ -37,7 +41,10 @@ def _open(source: Path | bytes) -> zipfile.ZipFile:
 def _read_member(source: Path | bytes, name: str) -> TopicTable:
     try:
         with _open(source) as files, files.open(find_members(files, "session.json")[name]) as opened:
-            rows = csv.reader(io.TextIOWrapper(opened, "utf-8-sig", newline=""))
+            text = io.TextIOWrapper(opened, "utf-8-sig", newline="")
+            head = text.readline()
+            comma = head.startswith("time [s];")
+            rows = csv.reader(chain([head], text), delimiter=";" if comma else ",")
             heads = next(rows, [])
             values = [*zip(*rows, strict=True)] or [() for _ in heads]
     except (zipfile.BadZipFile, ValueError, OSError, csv.Error) as problem:
@@ -46,8 +53,22 @@ def _read_member(source: Path | bytes, name: str) -> TopicTable:
     for head, cells in zip(heads, values, strict=True):
         found = HEADED.fullmatch(head)
         assert found is not None
-        name, unit, column = si_column(found["name"], found["unit"] or "", typed_column(cells))
+        read = _read_moments(cells) if head == "utc" else _read_cells(cells, comma)
+        name, unit, column = si_column(found["name"], found["unit"] or "", read)
         columns[name] = column
         if unit:
             units[name] = unit
     return TopicTable(columns, units)
+
+
+def _read_moments(cells: Sequence[str]) -> Sequence[str]:
+    """Times in ISO 8601; for a spreadsheet they are written without letters."""
+    return [one if one.endswith("Z") else one.replace(" ", "T").replace(",", ".") + "Z" for one in cells]
+
+
+def _read_cells(cells: Sequence[str], comma: bool) -> Sequence[Any]:
+    if comma:
+        numbers = typed_column([one.replace(",", ".") for one in cells])
+        if numbers and not isinstance(numbers[0], str):
+            return numbers
+    return typed_column([one[1:] if ESCAPED.match(one) else one for one in cells])

@@ -240,6 +240,8 @@ export interface paths {
         /**
          * Download the entries that fit as CSV, newest first
          * @description Download the entries that fit as CSV, newest first.
+         *
+         *     `spreadsheet` is the decimal sign of the spreadsheet that reads it.
          */
         get: operations["exportAudit"];
         put?: never;
@@ -475,6 +477,8 @@ export interface paths {
         /**
          * Download a run as CSV, a line for each cell
          * @description Download a run as CSV, a line for each cell.
+         *
+         *     `spreadsheet` is the decimal sign of the spreadsheet that reads it.
          */
         get: operations["downloadTestRunCsv"];
         put?: never;
@@ -3831,13 +3835,20 @@ export interface components {
              * Format
              * @enum {string}
              */
-            format: "csv" | "csv-grid" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            format: "csv" | "csv-grid" | "xlsx" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
             /**
              * Period
              * @description s between the lines of csv-grid
              * @default 0.1
              */
             period: number;
+            /**
+             * Spreadsheet
+             * @description none: CSV for programs; point, comma: for a spreadsheet with this decimal sign, with a byte order mark, and for comma with semicolons. For csv and csv-grid
+             * @default none
+             * @enum {string}
+             */
+            spreadsheet: "none" | "point" | "comma";
             /**
              * Start
              * @description s since the session's start; null for its beginning
@@ -4918,7 +4929,7 @@ export interface components {
              * Format
              * @enum {string}
              */
-            format: "csv" | "csv-grid" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            format: "csv" | "csv-grid" | "xlsx" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
             /**
              * Period
              * @description s between the lines of csv-grid
@@ -4927,6 +4938,13 @@ export interface components {
             period: number;
             /** Session */
             session: number;
+            /**
+             * Spreadsheet
+             * @description none: CSV for programs; point, comma: for a spreadsheet with this decimal sign, with a byte order mark, and for comma with semicolons. For csv and csv-grid
+             * @default none
+             * @enum {string}
+             */
+            spreadsheet: "none" | "point" | "comma";
             /**
              * Start
              * @description s since the session's start; null for its beginning
@@ -7586,6 +7604,7 @@ export interface operations {
     exportAudit: {
         parameters: {
             query?: {
+                spreadsheet?: "none" | "point" | "comma";
                 who?: string;
                 what?: string;
                 /** @description s since 1970 */
@@ -8383,7 +8402,9 @@ export interface operations {
     };
     downloadTestRunCsv: {
         parameters: {
-            query?: never;
+            query?: {
+                spreadsheet?: "none" | "point" | "comma";
+            };
             header?: never;
             path: {
                 run: number;

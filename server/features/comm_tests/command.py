@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from robot_runtime.experiments.comm_test.document import CommTest
     from server.features.comm_tests.reference import GridPlace
     from server.features.comm_tests.runs import CommTestRuns
+    from server.platform.csv_cells import Spreadsheet
 
 RUN = click.argument("run", type=int)
 
@@ -92,14 +93,24 @@ def compare(settings: Settings, runs: tuple[str, ...]) -> None:
 @commtest.command()
 @RUN
 @click.option("--format", type=click.Choice(["csv", "json"]), default="csv")
+@click.option(
+    "--spreadsheet",
+    type=click.Choice(["none", "point", "comma"]),
+    default="none",
+    help="The decimal sign of the spreadsheet that reads the CSV.",
+)
 @with_settings
-def export(settings: Settings, run: int, format: str) -> None:  # noqa: A002 - the option's name
+def export(settings: Settings, run: int, format: str, spreadsheet: "Spreadsheet") -> None:  # noqa: A002
     """Write a run to the standard output."""
     from server.features.comm_tests import tables
+    from server.platform.csv_cells import STYLES
 
-    write = tables.write_csv if format == "csv" else tables.write_json
     with _open_runs(settings) as runs:
-        echo(write(runs.find(run), runs.cells(run)), nl=False)
+        found, cells = runs.find(run), runs.cells(run)
+    if format == "csv":
+        echo(tables.write_csv(found, cells, STYLES[spreadsheet]), nl=False)
+    else:
+        echo(tables.write_json(found, cells), nl=False)
 
 
 @contextmanager

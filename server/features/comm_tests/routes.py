@@ -28,6 +28,7 @@ from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
+from server.platform.csv_cells import STYLES, Spreadsheet
 
 router = Operations(prefix="/api/comm-tests", tags=["communication tests"])
 
@@ -91,10 +92,16 @@ def get_test_run(comm_tests: Provided[CommTestRunner], run: Identifier) -> CommT
 @router.operation(
     "GET /runs/{run}/csv", Need.VIEWER, UnknownCommTestRunError, media_type="text/csv", linked=True
 )
-def download_test_run_csv(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
-    """Download a run as CSV, a line for each cell."""
+def download_test_run_csv(
+    comm_tests: Provided[CommTestRunner], run: Identifier, spreadsheet: Spreadsheet = "none"
+) -> Response:
+    """Download a run as CSV, a line for each cell.
+
+    `spreadsheet` is the decimal sign of the spreadsheet that reads it.
+    """
     found = comm_tests.runs.find(run)
-    return _file(tables.write_csv(found, comm_tests.runs.cells(run)), "text/csv", f"comm_test_{run}.csv")
+    text = tables.write_csv(found, comm_tests.runs.cells(run), STYLES[spreadsheet])
+    return _file(text, "text/csv", f"comm_test_{run}.csv")
 
 
 @router.operation(

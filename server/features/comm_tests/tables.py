@@ -1,13 +1,12 @@
 """Runs as text, CSV and JSON."""
 
-import csv
-import io
 import json
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
 from server.features.comm_tests.reference import GridPlace
+from server.platform.csv_cells import CsvStyle, escape_formula
 from server.platform.models import CommTestCell, CommTestRun
 
 COLUMNS = [name for name in CommTestCell.model_fields if name not in ("id", "run_id")]
@@ -79,14 +78,17 @@ def show_comparison(columns: Mapping[str, Mapping[GridPlace, float]]) -> str:
     return _table(header, rows)
 
 
-def write_csv(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
+def write_csv(run: CommTestRun, cells: Sequence[CommTestCell], style: CsvStyle) -> str:
     """A line for each cell, with the run's number, framing and direction; delays and seconds in s."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["run", "framing", "direction", *COLUMNS])
+    lines: list[Sequence[object]] = [["run", "framing", "direction", *COLUMNS]]
     for cell in cells:
-        writer.writerow([run.id, run.framing, run.direction, *(getattr(cell, name) for name in COLUMNS)])
-    return text.getvalue()
+        values = (getattr(cell, name) for name in COLUMNS)
+        lines.append([run.id, run.framing, run.direction, *(_csv_value(one) for one in values)])
+    return style.mark + style.write(lines)
+
+
+def _csv_value(value: object) -> object:
+    return escape_formula(value) if isinstance(value, str) else value
 
 
 def write_json(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:

@@ -10,6 +10,7 @@ ExportOptions as JSON. It prints lines of JSON: {"progress": 0..1}, and last {"b
 
 import json
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -59,6 +60,8 @@ def _write(database: Path, identifier: str, asked: str, path: Path) -> None:
     store, options = Reader(database), ExportOptions.model_validate_json(asked)
     source = ExportSelection(store, find_identified(store, identifier), options, _Progress().tell)
     kind = check(options)
+    # A workbook's sheets are written there first: /tmp may lie in memory.
+    tempfile.tempdir = str(path.parent)
     _report(write_part(path, lambda output: kind.write_unpurged(store, source, output))._asdict())
 
 

@@ -31,7 +31,7 @@ ROWS_AT_ONCE = 1_000
 STEP_BYTES = 1 << 20
 METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 GROWTH_MAX = 4
-"""Most bytes of chunks for each byte of the file: they are compressed, and packed again they shrink little."""
+"""Most bytes of chunks for each byte of the file: they are compressed, so packing them again gains little."""
 AS_DOWNLOADED = "Was it unpacked and packed again? Send the file as it was downloaded."
 MEMBER = re.compile(r"session\.json|checksums\.json|chunks/[a-z][a-z0-9_]{0,49}")
 

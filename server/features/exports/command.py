@@ -13,7 +13,7 @@ from server.platform.running_server import send_file, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
 
-FORMATS = ("csv", "csv-grid", "jsonl", "parquet", "mcap", "archive", "report")
+FORMATS = ("csv", "csv-grid", "xlsx", "jsonl", "parquet", "mcap", "archive", "report")
 IMPORT_SECONDS = 3600.0
 
 
@@ -25,6 +25,11 @@ IMPORT_SECONDS = 3600.0
 @click.option("--start", type=float, metavar="S", help="Begin so many seconds after the session's start.")
 @click.option("--end", type=float, metavar="S", help="End so many seconds after the session's start.")
 @click.option("--period", type=float, metavar="S", help="Seconds between lines of csv-grid. Default: 0.1.")
+@click.option(
+    "--spreadsheet",
+    type=click.Choice(("point", "comma")),
+    help="For csv and csv-grid: as a spreadsheet with this decimal sign reads it.",
+)
 @click.option("--compression", type=click.Choice(("none", "zstd", "lz4")), help="For mcap. Default: none.")
 @click.option("-o", "--output", type=FILE, help="Default: a file here, named after the session.")
 @with_settings

@@ -12,6 +12,7 @@ from server.features.exports.parquet import check_parquet, write_parquet
 from server.features.exports.schemas import ExportOptions, Format
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import write_tables
+from server.features.exports.workbook import require_sheets, write_workbook
 from server.platform.store import Reader
 
 Write = Callable[[Reader, ExportSelection, BinaryIO], None]
@@ -25,6 +26,8 @@ class ExportFormat(NamedTuple):
     media_type: str
     check: Callable[[], None] = lambda: None
     """Raises ExportRequestError if a package for it is missing."""
+    require: Callable[[ExportSelection], None] = lambda _: None
+    """Raises ExportRequestError for more samples than a file of it holds."""
 
     def write_unpurged(self, store: Reader, source: ExportSelection, output: BinaryIO) -> None:
         """Write the session. Raises ExportRequestError where it was purged meanwhile."""
@@ -44,9 +47,11 @@ def write_report(store: Reader, source: ExportSelection, output: BinaryIO) -> No
 
 
 ZIP = "application/zip"
+WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 KINDS: dict[Format, ExportFormat] = {
     "csv": ExportFormat(write_tables, ".csv.zip", ZIP),
     "csv-grid": ExportFormat(write_grid, ".grid.zip", ZIP),
+    "xlsx": ExportFormat(write_workbook, ".xlsx", WORKBOOK, require=require_sheets),
     "jsonl": ExportFormat(write_lines, ".jsonl", "application/jsonl"),
     "parquet": ExportFormat(write_parquet, ".parquet.zip", ZIP, check_parquet),
     "mcap": ExportFormat(write_mcap, ".mcap", "application/octet-stream", check_mcap),
@@ -66,6 +71,8 @@ def check(options: ExportOptions) -> ExportFormat:
         raise ExportRequestError(f"For {options.format} choose {choose}, not topics.")
     if options.format in WHOLE_ONLY and (options.start is not None or options.end is not None):
         raise ExportRequestError(f"The {options.format} holds the whole session; leave start and end out.")
+    if options.spreadsheet != "none" and options.format not in ("csv", "csv-grid"):
+        raise ExportRequestError("A spreadsheet's decimal sign is chosen for csv and csv-grid alone.")
     if options.compression != "none":
         if options.format != "mcap":
             raise ExportRequestError("Compression is chosen for mcap alone.")

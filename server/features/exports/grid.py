@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from server.features.exports.description import write_about
 from server.features.exports.selection import ExportRequestError, ExportSelection
-from server.features.exports.tables import csv_text
 from server.features.exports.zip_stream import ZipWriter
 from server.features.sessions.chunks import row_layout
+from server.platform.csv_cells import STYLES
 from server.platform.store import Reader
 
 if TYPE_CHECKING:
@@ -55,12 +55,14 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
     )
     packing.text("README.txt", readme)
     write_about(store, source, packing)
+    style = STYLES[source.options.spreadsheet]
     with packing.member("grid.csv") as file:
         titles = [title for columns in chosen.values() for title in columns.values()]
-        file.write(csv_text([["time [s]", "utc", *titles]]).encode())
+        file.write((style.mark + style.write([["time [s]", "utc", *titles]])).encode())
         for line in range(0, count, WINDOW_LINES):
             here = range(line, min(count, line + WINDOW_LINES))
-            file.write(_window(source, chosen, limits, [first + one * period for one in here]).encode())
+            lines = _window(source, chosen, limits, [first + one * period for one in here])
+            file.write(style.rewrite(lines).encode())
             source.report(here.stop / count)
     packing.close()
 

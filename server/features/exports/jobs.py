@@ -100,6 +100,7 @@ class Jobs:
         plain = ExportOptions.model_validate(options.model_dump(exclude={"session"}))
         kind = check(plain)
         source = await asyncio.to_thread(ExportSelection, self._store, row, plain)
+        kind.require(source)
         if len(self._jobs) >= JOBS_MAX:
             raise RefusedError(f"There are {JOBS_MAX} exports already. Delete some first.")
         job = Job(

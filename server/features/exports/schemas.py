@@ -6,10 +6,11 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from server.http.request_body import RequestBody
+from server.platform.csv_cells import Spreadsheet
 from server.platform.models import IDENTIFIER_MAX
 
 Compression = Literal["none", "zstd", "lz4"]
-Format = Literal["csv", "csv-grid", "jsonl", "parquet", "mcap", "archive", "report"]
+Format = Literal["csv", "csv-grid", "xlsx", "jsonl", "parquet", "mcap", "archive", "report"]
 State = Literal["waiting", "running", "done", "failed"]
 
 PERIOD_MIN, PERIOD_MAX = 0.001, 3600.0
@@ -36,6 +37,11 @@ class ExportOptions(RequestBody):
     end: Seconds | None = Field(default=None, description="s since the session's start; null for its end")
     period: Annotated[float, Field(ge=PERIOD_MIN, le=PERIOD_MAX)] = Field(
         default=0.1, description="s between the lines of csv-grid"
+    )
+    spreadsheet: Spreadsheet = Field(
+        default="none",
+        description="none: CSV for programs; point, comma: for a spreadsheet with this decimal sign, with a "
+        "byte order mark, and for comma with semicolons. For csv and csv-grid",
     )
     compression: Compression = Field(
         default="none", description="of the chunks of mcap; zstd and lz4 need their packages"

@@ -67,7 +67,9 @@ class ExportSelection(Recording):
         self._steady, self._started = row.started_steady, row.started
         self._started_ns = round(row.started * 1e9)
         self.report = report
-        self._total = sum(there[name] for name in self.names)
+        self.samples = {name: there[name] for name in self.names}
+        """Samples by topic in the chunks that may overlap the range."""
+        self._total = sum(self.samples.values())
         self._seen = 0
 
     @property
@@ -109,6 +111,10 @@ class ExportSelection(Recording):
         """A time of the steady clock as ISO 8601, to the millisecond."""
         moment = datetime.fromtimestamp(self._started + time - self._steady, UTC)
         return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+
+    def date(self, time: float) -> datetime:
+        """A time of the steady clock as a date without a zone, in UTC."""
+        return datetime.fromtimestamp(self._started + time - self._steady, UTC).replace(tzinfo=None)
 
     def utc_ns(self, time: float) -> int:
         """A time of the steady clock in ns since 1970."""

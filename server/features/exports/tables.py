@@ -1,9 +1,7 @@
 """CSV, a table for each topic: units in the header, and numbers that read back exactly."""
 
-import csv
-import io
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from itertools import chain
 from typing import Any, BinaryIO
 
@@ -11,7 +9,7 @@ from server.features.exports.description import write_about
 from server.features.exports.selection import ExportSelection
 from server.features.exports.zip_stream import ZipWriter
 from server.features.sessions.chunks import row_layout
-from server.platform.csv_cells import escape_formula
+from server.platform.csv_cells import STYLES, CsvStyle, escape_formula
 from server.platform.store import Reader
 
 
@@ -20,7 +18,7 @@ def write_tables(store: Reader, source: ExportSelection, output: BinaryIO) -> No
 
     Raises StoreError, RecordingError.
     """
-    packing = ZipWriter(output)
+    packing, style = ZipWriter(output), STYLES[source.options.spreadsheet]
     write_about(store, source, packing)
     for name in source.names:
         if source.topics[name]["kind"] == "picture":
@@ -29,32 +27,27 @@ def write_tables(store: Reader, source: ExportSelection, output: BinaryIO) -> No
                     file.write(jpeg)
             continue
         with packing.member(f"{name}.csv") as file:
-            for lines in _lines(source, name):
+            file.write(style.mark.encode())
+            for lines in _lines(source, name, style):
                 file.write(lines.encode())
     packing.close()
 
 
-def csv_text(lines: Iterable[Iterable[str]]) -> str:
-    """Lines of cells as CSV."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(lines)
-    return text.getvalue()
-
-
-def _lines(source: ExportSelection, name: str) -> Iterator[str]:
+def _lines(source: ExportSelection, name: str, style: CsvStyle) -> Iterator[str]:
     topic = source.topics[name]
     if topic["kind"] == "rows":
         columns, write = _row_writer(source, topic)
-        yield csv_text([["time [s]", "utc", *columns]])
+        yield style.write([["time [s]", "utc", *columns]])
         for rows in source.batches(name):
-            yield write(rows)
+            yield style.rewrite(write(rows))
     else:
         header = [field["name"] for field in topic["fields"] if field["name"] != "time"]
-        yield csv_text([["time [s]", "utc", *header]])
+        yield style.write([["time [s]", "utc", *header]])
         for document in source.documents(name, source.start, source.end):
             time = document["time"]
-            cells = (_cell(document.get(column)) for column in header)
-            yield csv_text([[f"{source.since_start(time):.6f}", source.utc(time), *cells]])
+            cells = (_cell(document.get(column), style) for column in header)
+            seconds = style.number(f"{source.since_start(time):.6f}")
+            yield style.write([[seconds, style.moment(source.utc(time)), *cells]])
 
 
 def _row_writer(
@@ -75,7 +68,9 @@ def _row_writer(
     return layout.columns, write
 
 
-def _cell(value: object) -> str:
+def _cell(value: object, style: CsvStyle) -> str:
     if value is None:
         return ""
+    if isinstance(value, float):
+        return style.number(json.dumps(value))
     return escape_formula(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False)

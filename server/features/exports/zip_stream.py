@@ -15,7 +15,7 @@ class ZipWriter:
 
     def __init__(self, output: BinaryIO, *, packed: bool = True) -> None:
         kind = zipfile.ZIP_DEFLATED if packed else zipfile.ZIP_STORED
-        self._archive = zipfile.ZipFile(_ForwardOnly(output), "w", kind, compresslevel=LEVEL)
+        self._archive = zipfile.ZipFile(ForwardOnly(output), "w", kind, compresslevel=LEVEL)
 
     def text(self, name: str, text: str) -> None:
         """A member of this text."""
@@ -33,7 +33,7 @@ class ZipWriter:
         self._archive.close()
 
 
-class _ForwardOnly(io.RawIOBase):
+class ForwardOnly(io.RawIOBase):
     """A file without seeking, as a download is."""
 
     def __init__(self, output: BinaryIO) -> None:

@@ -1,9 +1,7 @@
 """Operations on the audit log: who did what when. Nobody can change it."""
 
 import asyncio
-import csv
-import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from itertools import islice
 from typing import Annotated
@@ -16,7 +14,7 @@ from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.sign_in.policy import Need
 from server.platform.audit_file import AuditEntry, read_entries
-from server.platform.csv_cells import escape_formula
+from server.platform.csv_cells import STYLES, CsvStyle, Spreadsheet, escape_formula
 
 LISTED_MOST = 200
 WORDS_MAX = 100
@@ -74,9 +72,14 @@ async def list_audit(audit: Provided[AuditLog], chosen: Chosen) -> AuditList:
 
 
 @router.operation("GET /csv", Need.OPERATOR, media_type="text/csv")
-async def export_audit(audit: Provided[AuditLog], chosen: Chosen) -> Response:
-    """Download the entries that fit as CSV, newest first."""
-    text = await asyncio.to_thread(lambda: _write_csv(_find(audit, chosen)))
+async def export_audit(
+    audit: Provided[AuditLog], chosen: Chosen, spreadsheet: Spreadsheet = "none"
+) -> Response:
+    """Download the entries that fit as CSV, newest first.
+
+    `spreadsheet` is the decimal sign of the spreadsheet that reads it.
+    """
+    text = await asyncio.to_thread(lambda: _write_csv(_find(audit, chosen), STYLES[spreadsheet]))
     headers = {"Content-Disposition": 'attachment; filename="mucat-audit.csv"'}
     return Response(text, media_type="text/csv", headers=headers)
 
@@ -85,14 +88,12 @@ def _find(audit: AuditLog, chosen: AuditFilter) -> Iterator[AuditEntry]:
     return (entry for entry in read_entries(audit.folder) if chosen.fits(entry))
 
 
-def _write_csv(entries: Iterator[AuditEntry]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+def _write_csv(entries: Iterator[AuditEntry], style: CsvStyle) -> str:
+    lines: list[Sequence[object]] = [COLUMNS]
     for one in entries:
-        moment = datetime.fromtimestamp(one.time, UTC).isoformat(timespec="milliseconds")
+        moment = style.moment(datetime.fromtimestamp(one.time, UTC).isoformat(timespec="milliseconds"))
         device = "" if one.device is None else one.device
         texts = (one.who, one.role, one.address, one.action, one.about)
         who, role, address, action, about = map(escape_formula, texts)
-        writer.writerow((moment, who, device, role, address, action, about, one.outcome, one.count))
-    return text.getvalue()
+        lines.append((moment, who, device, role, address, action, about, one.outcome, one.count))
+    return style.mark + style.write(lines)

@@ -28,6 +28,10 @@ FILES = ("csv", "mcap", "archive")
 
 @pytest.fixture
 def session(store: Store, settings: Settings) -> int:
+    return record_every_kind(store, settings)
+
+
+def record_every_kind(store: Store, settings: Settings) -> int:
     """Rows with numbers of every kind, NaN among them, lines of text and a document of everything."""
     alarm = Event(time=100.25, kind="leak", severity="alarm", text="water in the hull")
     latencies = (0.01, math.nan, math.inf)
