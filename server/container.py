@@ -110,6 +110,7 @@ class Container:
         self._add_identification()
         self.budgets = Budgets(self.clock)
         self.doors = Doors(settings, self.clock, self.hub, self.budgets)
+        self.changes.listeners.append(self.doors.note_parameters)
         self.commands = CheckedCommands(self.changes, settings, self.alarms)
         self._add_ros2()
         self.heavy_requests = HeavyRequests()

@@ -1,5 +1,6 @@
 """Health of the parts, from living processes and arriving samples."""
 
+import asyncio
 import json
 from collections.abc import Callable
 from typing import Any, Literal
@@ -20,6 +21,9 @@ from server.processes.supervisor import ProcessSupervisor
 
 STATE_SECONDS = 2.5
 """The runtime sends its state every second."""
+CATCH_UP_SECONDS = 0.3
+"""After a command the runtime sends its state at once: after this time it is here, or will not come."""
+CATCH_UP_PAUSE = 0.01
 TRUTH_SECONDS = 2.0
 LINK_SECONDS = 3.0
 GRACE_SECONDS = 10.0
@@ -99,6 +103,14 @@ class HealthMonitor:
     def mission(self) -> dict[str, Any] | None:
         """The newest `mission` document; None without a readable one."""
         return self._document("mission")
+
+    async def catch_up(self, topic: Literal["state", "mission"], moment: float) -> None:
+        """Wait until a document of this moment (s, steady clock) or later is here, or should have come."""
+        while self._clock.now() < moment + CATCH_UP_SECONDS:
+            document = self._document(topic)
+            if document is not None and document.get("time", 0.0) >= moment:
+                return
+            await asyncio.sleep(CATCH_UP_PAUSE)
 
     def _document(self, topic: str) -> dict[str, Any] | None:
         if topic not in self._newest:

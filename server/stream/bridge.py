@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from functools import partial
+from time import monotonic
 from typing import Any
 
 from robot_runtime.contract.packets.layout import LayoutError
@@ -85,6 +86,8 @@ class Bridge:
         """Invalid messages so far."""
         self.on_stop: Callable[[], None] | None = None
         """Called at each STOP."""
+        self.answered = float("-inf")
+        """Time of the runtime's last answer to a command, s, steady clock: older documents may lack it."""
         self.reserved_reason: str | None = None
         """Reason why commands are refused now; None where they are not."""
         self.stopped = False
@@ -184,11 +187,14 @@ class Bridge:
 
         Commands that change parameters go through `Changes`, which records them.
         """
-        if name != "stop":
-            return await self._ask(f"command/{name}", payload, self._commands)
-        if self.on_stop is not None:
-            self.on_stop()
-        return await self._shared_stop.ask()
+        if name == "stop":
+            if self.on_stop is not None:
+                self.on_stop()
+            answer = await self._shared_stop.ask()
+        else:
+            answer = await self._ask(f"command/{name}", payload, self._commands)
+        self.answered = monotonic()
+        return answer
 
     async def disarm(self) -> None:
         """Send a STOP as a step of a scenario, without ending the scenario. Raises RuntimeSilentError."""

@@ -4,6 +4,7 @@ import io
 import json
 import shutil
 import sys
+import time
 import zipfile
 from typing import Any
 
@@ -15,6 +16,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import read_blocks
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
+from server.health import monitor
 from server.openapi import main as print_openapi
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
@@ -69,6 +71,22 @@ def test_the_newest_state_is_shown(settings: Settings) -> None:
         )
         answer = await served.api.get("/robot")
         assert (answer.status_code, answer.json()["set_point_default"]) == (200, 0.75)
+
+    play(settings, scenario)
+
+
+def test_the_state_is_of_after_the_last_command(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(monitor, "CATCH_UP_SECONDS", SECONDS)
+
+    async def scenario(served: Served) -> None:
+        served.runtime.publish(state_block(0, time=time.monotonic()))
+        await until(served.container.monitor.state, "the state")
+        await served.api.post("/robot/commands/arm")
+        asked = asyncio.create_task(served.api.get("/robot"))
+        done, _ = await asyncio.wait({asked}, timeout=0.1)
+        assert not done
+        served.runtime.publish(state_block(1, time=time.monotonic(), armed=True))
+        assert (await asked).json()["armed"] is True
 
     play(settings, scenario)
 

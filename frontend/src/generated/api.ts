@@ -1448,7 +1448,7 @@ export interface paths {
          * Return the robot's newest state
          * @description Return the robot's newest state.
          *
-         *     The runtime sent it at its `time` (s, steady clock).
+         *     The runtime sent it at its `time` (s, steady clock), after the last command that it answered.
          */
         get: operations["getRobot"];
         put?: never;

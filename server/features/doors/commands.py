@@ -118,8 +118,9 @@ class DoorCommands:
             self._arbiter.take(pilot.owner, over=over)
             return "You have control."
         if name == RELEASE:
+            had = self._arbiter.lease.holder == pilot.owner.number
             self._arbiter.release(pilot.owner)
-            return "You do not have control."
+            return "Control is released." if had else "You had no control to release."
         cls = COMMANDS.get(name)
         if cls is None or cls.policy.need is None:
             raise InvalidCallError(f"There is no command {name[:80]!r}; the manual lists them.")
@@ -162,9 +163,3 @@ def read_command(cls: type[RobotCommand], fields: Mapping[str, Any]) -> RobotCom
         place = ".".join(map(str, first["loc"])) or cls.policy.name
         raise InvalidCallError(f"{cls.policy.name}: {place}: {first['msg']}.") from problem
     return command
-
-
-def parameter_values(document: Mapping[str, Any] | None) -> dict[str, Any]:
-    """The values of all parameters by name, of the newest `parameters` document."""
-    listed = (document or {}).get("parameters", [])
-    return {str(one["name"]): one["value"] for one in listed}

@@ -1,12 +1,12 @@
 """The Foxglove WebSocket protocol (foxglove/ws-protocol, version 1) for one program."""
 
 import json
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from struct import Struct, error
 from typing import Any
 
 from server.features.doors.channels import ChannelMessage, DoorChannel, encode_json
-from server.features.doors.commands import REFUSALS, STOP, DoorCommands, DoorPilot, parameter_values
+from server.features.doors.commands import REFUSALS, STOP, DoorCommands, DoorPilot
 from server.features.doors.foxglove_channels import CLOCK, PARAMETERS, schema_text
 from server.features.doors.foxglove_services import SERVICES, advertise_services
 from server.features.doors.graph import Graph, draw_graph, list_changes
@@ -268,8 +268,7 @@ class FoxgloveSession(DoorSession):
         self.begin(self._perform_set(values, said.get("id")))
 
     async def _perform_set(self, values: dict[str, Any], identifier: object) -> None:
-        current = parameter_values(self._doors.document("parameters"))
-        whole = {name for name, value in current.items() if isinstance(value, int)}
+        whole = {name for name, one in self._doors.parameters().items() if one["type"] == "whole"}
         values = {
             name: int(one) if name in whole and isinstance(one, float) and one.is_integer() else one
             for name, one in values.items()
@@ -281,34 +280,33 @@ class FoxgloveSession(DoorSession):
             self._send_parameters([*values], identifier)
             return
         if identifier is not None:
-            listed = [_parameter(name, value) for name, value in values.items()]
-            self._answer(op="parameterValues", parameters=listed, **_with(identifier))
+            self._send_parameters([*values], identifier)
 
     def _watch_parameters(self, said: dict[str, Any]) -> None:
-        current = parameter_values(self._doors.document("parameters"))
+        current = self._doors.parameters()
         # The names of the robot's parameters alone: nobody fills the memory with others.
         added = (set(_names(said)) & current.keys()) - self._watched
         self._watched |= added
         # What the program has not been sent yet of the others stays so.
-        self._known |= {name: current[name] for name in added}
+        self._known |= {name: current[name]["value"] for name in added}
 
     def _forget_parameters(self, said: dict[str, Any]) -> None:
         self._watched -= set(_names(said))
 
     def _parameter_changes(self) -> list[bytes | str]:
-        current = parameter_values(self._doors.document("parameters"))
+        current = self._doors.parameters()
         changed = [
-            _parameter(name, value)
-            for name, value in current.items()
-            if name in self._watched and self._known.get(name) != value
+            _parameter(one)
+            for name, one in current.items()
+            if name in self._watched and self._known.get(name) != one["value"]
         ]
-        self._known = current
+        self._known = {name: one["value"] for name, one in current.items()}
         return [encode_json({"op": "parameterValues", "parameters": changed})] if changed else []
 
     def _send_parameters(self, names: list[str], identifier: object) -> None:
         """The values of these parameters; of all where none is named."""
-        current = parameter_values(self._doors.document("parameters"))
-        listed = [_parameter(name, value) for name, value in current.items() if not names or name in names]
+        current = self._doors.parameters()
+        listed = [_parameter(one) for name, one in current.items() if not names or name in names]
         self._answer(op="parameterValues", parameters=listed, **_with(identifier))
 
     def _watch_graph(self) -> None:
@@ -351,9 +349,9 @@ def _form(number: int) -> Callable[[ChannelMessage], list[bytes | str]]:
     return lambda message: [_MESSAGE.pack(MESSAGE, number, message.time) + message.json.encode()]
 
 
-def _parameter(name: str, value: Any) -> dict[str, Any]:
-    number = isinstance(value, float)
-    return {"name": name, "value": value, **({"type": "float64"} if number else {})}
+def _parameter(one: Mapping[str, Any]) -> dict[str, Any]:
+    number = one["type"] == "number"
+    return {"name": one["name"], "value": one["value"], **({"type": "float64"} if number else {})}
 
 
 def _typed(value: Any) -> Any:

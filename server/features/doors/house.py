@@ -71,6 +71,8 @@ class Doors:
         self._open = any(door.open for door in self.doors.values())
         self._newest: dict[str, Sample] = {}
         self._telling: asyncio.TimerHandle | None = None
+        self._set: dict[str, tuple[float, Any]] = {}
+        """Values of parameters that were set, and when the runtime answered so: its document comes later."""
         self._number = 0
 
     def see(self, block: Block) -> None:
@@ -104,10 +106,24 @@ class Doors:
         """The newest document of each topic of which the newest says everything."""
         return [*self._newest.values()]
 
-    def document(self, name: str) -> Mapping[str, Any] | None:
-        """The newest document of such a topic; None before the first."""
+    def document(self, name: str) -> Mapping[str, Any]:
+        """The newest document of such a topic; an empty one before the first."""
         found = self._newest.get(name)
-        return found.value if found is not None and isinstance(found.value, Mapping) else None
+        return found.value if found is not None and isinstance(found.value, Mapping) else {}
+
+    def note_parameters(self, values: Mapping[str, Any]) -> None:
+        """Note values of which the runtime has answered that they are in force."""
+        now = self._clock.now()
+        self._set |= {name: (now, value) for name, value in values.items()}
+
+    def parameters(self) -> dict[str, Mapping[str, Any]]:
+        """All parameters by name, as documents describe them, with their values in force."""
+        document = self.document("parameters")
+        found = {str(one["name"]): one for one in document.get("parameters", [])}
+        for name, (moment, value) in self._set.items():
+            if name in found and document["time"] < moment:
+                found[name] = {**found[name], "value": value}
+        return found
 
     def utc_ns(self) -> int:
         """The time now, in ns since 1970."""

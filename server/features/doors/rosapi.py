@@ -12,7 +12,6 @@ from server.features.doors.commands import (
     TAKE,
     DoorCommands,
     DoorPilot,
-    parameter_values,
 )
 from server.features.doors.house import Door, Doors
 from server.features.doors.ros2_messages import TRIGGER
@@ -123,7 +122,7 @@ class RosApi:
         return {"success": True, "message": text}
 
     def _parameters(self) -> dict[str, Any]:
-        return parameter_values(self._doors.document("parameters"))
+        return {name: one["value"] for name, one in self._doors.parameters().items()}
 
     def _get_parameter(self, said: dict[str, Any]) -> dict[str, Any]:
         name, values = _parameter(said), self._parameters()

@@ -32,6 +32,7 @@ from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
 from server.platform.disk_space import FileWriteError, check_room
 from server.platform.settings import Settings
+from server.stream.bridge import Bridge
 
 REFUSED = {409: "Refused now", 422: "The mission cannot be used"}
 
@@ -107,8 +108,9 @@ async def start_mission(
 
 
 @router.operation("GET /state", Need.VIEWER)
-async def get_mission_state(monitor: Provided[HealthMonitor]) -> Mission | None:
+async def get_mission_state(monitor: Provided[HealthMonitor], bridge: Provided[Bridge]) -> Mission | None:
     """Return the running mission, or the last one, as on the live socket; null where there was none."""
+    await monitor.catch_up("mission", bridge.answered)
     state = monitor.mission()
     return None if state is None else TypeAdapter(Mission).validate_python(state)
 

@@ -69,11 +69,12 @@ async def get_link_frames(bridge: Provided[Bridge]) -> LinkFrames:
 
 
 @router.operation("GET /robot", Need.VIEWER, UnavailableError, response_model=State, tags=["robot"])
-async def get_robot(monitor: Provided[HealthMonitor]) -> object:
+async def get_robot(monitor: Provided[HealthMonitor], bridge: Provided[Bridge]) -> object:
     """Return the robot's newest state.
 
-    The runtime sent it at its `time` (s, steady clock).
+    The runtime sent it at its `time` (s, steady clock), after the last command that it answered.
     """
+    await monitor.catch_up("state", bridge.answered)
     state = monitor.state()
     if state is None:
         raise UnavailableError("The robot's runtime has sent no state yet. /api/health says why.")

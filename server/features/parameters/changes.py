@@ -56,6 +56,8 @@ class Changes:
         self._bridge = bridge
         self._order = asyncio.Lock()
         """Held from a command's sending until its changes are stored, which keeps the robot's order."""
+        self.listeners: list[Callable[[Mapping[str, Any]], None]] = []
+        """Called with the new values of changed parameters, which the runtime's next document says, too."""
         self._groups: list[_Group] = []
         self._undone: dict[int, str] = {}
         """Names of those who have undone a change, by its number, where that could not be stored."""
@@ -142,7 +144,11 @@ class Changes:
             self._order.release()
 
     async def _send(self, command: RobotCommand) -> Mapping[str, Any]:
-        return await self._bridge.command(command.policy.name, command.payload())
+        answer = await self._bridge.command(command.policy.name, command.payload())
+        values = {name: after for name, (_, after) in answer.get("changed", {}).items()}
+        for listener in self.listeners:
+            listener(values)
+        return answer
 
     async def _note_groups(self) -> None:
         """Store the changes of open groups so far, so that the history stays in order."""

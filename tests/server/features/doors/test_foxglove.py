@@ -192,7 +192,7 @@ def test_a_subscription_before_one_that_is_refused_holds(settings: Settings) -> 
 
 def parameters_block(number: int, **values: float) -> Block:
     """The document of these parameters."""
-    listed = [{"name": name, "value": value} for name, value in values.items()]
+    listed = [{"name": name, "type": "number", "value": value} for name, value in values.items()]
     data = json.dumps([{"time": 1.0, "parameters": listed}]).encode()
     return Block.of(BY_NAME["parameters"], 1, number, data)
 
@@ -209,7 +209,29 @@ def test_a_change_is_sent_also_where_another_parameter_is_watched_before(contain
             return session._parameter_changes()
 
     (changes,) = asyncio.run(scenario())
-    assert json.loads(changes)["parameters"] == [{"name": "a", "value": 2}]
+    assert json.loads(changes)["parameters"] == [{"name": "a", "value": 2, "type": "float64"}]
+
+
+def test_a_parameter_that_was_set_has_its_new_value_before_the_next_document(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        served.runtime.publish(parameters_block(0, a=1.5, b=0))
+        await until(lambda: served.container.doors.parameters(), "the parameters")
+        await served.api.post("/control/release")
+        async with open_foxglove(served, await make_token(served)) as socket:
+            (take,) = (one["id"] for one in advertise_services() if one["name"] == "/mucat/take_control")
+            await socket.send(pack("<BIII", 2, take, 1, 4) + b"json")
+            async for message in socket:
+                if isinstance(message, bytes) and message[0] == 3:
+                    break
+            served.runtime.answer = {"changed": {"a": [1.5, 3]}}
+            asked = {"op": "setParameters", "parameters": [{"name": "a", "value": 3}], "id": "set"}
+            await socket.send(json.dumps(asked))
+            three = [{"name": "a", "value": 3, "type": "float64"}]
+            assert (await next_op(socket, "parameterValues"))["parameters"] == three
+            await socket.send(json.dumps({"op": "getParameters", "parameterNames": ["a"], "id": "get"}))
+            assert (await next_op(socket, "parameterValues"))["parameters"] == three
+
+    play_open(settings, scenario)
 
 
 def test_a_picture_that_is_cut_off_is_a_damaged_block() -> None:

@@ -48,7 +48,7 @@ def test_a_program_drives_with_control_and_not_without(settings: Settings) -> No
             assert served.runtime.driven[0]["axes"] == [0.5, -0.25, 1.0, 0.1, -0.2, -0.3]
             (client,) = await doors_of(served)
             assert client["in_control"] is True
-            assert await call("release_control") == (True, "You do not have control.")
+            assert await call("release_control") == (True, "Control is released.")
             assert served.container.arbiter.lease.holder is None
         expected = {
             ("Lab", "Open a door", "done"),

@@ -11,6 +11,8 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 import server.stream.bridge as bridge_module
 from robot_runtime.contract.packets import Beacon, Depth
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block
 from server.features.doors.rosbridge import FRAGMENT_MIN
 from server.features.doors.session import INVALID_MAX
 from server.platform.settings import Settings
@@ -376,6 +378,14 @@ def test_parameters_are_read_and_set(settings: Settings) -> None:
             answer = await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"})
             assert answer["result"] is True
             assert served.runtime.asked[-1] == ("parameters", {"values": {"depth.kp": 2.5}})
+            listed = [{"name": "depth.kp", "type": "number", "value": 1.0}]
+            document = json.dumps([{"time": 1.0, "parameters": listed}]).encode()
+            served.runtime.publish(Block.of(BY_NAME["parameters"], 1, 0, document))
+            await until(lambda: served.container.doors.parameters(), "the parameters")
+            assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["values"]["value"] == "1.0"
+            served.runtime.answer = {"changed": {"depth.kp": [1.0, 2.5]}}
+            await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"})
+            assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["values"]["value"] == "2.5"
             wrong = await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "{"})
             assert wrong["result"] is False
             assert wrong["values"].startswith("value must be JSON: it is not JSON: Expecting property name")
