@@ -6,6 +6,7 @@ import time
 from collections.abc import AsyncIterator, Generator, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, Literal
+from urllib.parse import quote
 
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
@@ -101,9 +102,9 @@ class Control:
         self._steady = steady
         self._sequence = 0
 
-    def command(self, name: str, **fields: Any) -> Any:
+    def command(self, name: str, /, **fields: Any) -> Any:
         """Send a command of docs/reference/commands.md with its fields. Raises RobotError."""
-        return self._address.ask("POST", f"/robot/commands/{name}", fields, self._key)
+        return self._address.ask("POST", f"/robot/commands/{quote(name, safe='')}", fields, self._key)
 
     def arm(self, mode: Literal["automatic", "manual"] = "automatic") -> None:
         """Arm the robot. Raises RobotError with every reason against it."""

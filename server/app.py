@@ -34,6 +34,7 @@ from server.features.simulator import routes as simulator
 from server.features.tuning import routes as tuning
 from server.features.updates import routes as updates
 from server.features.vision import routes as vision
+from server.http.addresses import make_unknown_router
 from server.http.audit import AuditMiddleware
 from server.http.error_handlers import add_error_handlers
 from server.http.head_requests import HeadRequests
@@ -109,6 +110,7 @@ def create_app(
     app.router.routes.extend(_build_routes())
     for door in doors.open_routes(settings):
         app.router.routes.extend(door.build())
+    app.include_router(make_unknown_router())
     app.include_router(make_help_router(HelpPages(settings.help_pages)))
     app.include_router(make_router(Page(settings.page)))
     return app

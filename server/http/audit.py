@@ -31,6 +31,7 @@ UNCHANGING = frozenset(
         "compareLines",
         "pickColour",
         "readVision",
+        "refuseCommand",
     }
 )
 """Operations that are sent as POST, and change nothing."""

@@ -11,6 +11,7 @@ from starlette.responses import Response
 from starlette.routing import BaseRoute
 
 from robot_runtime.contract.problems import EntryProblem
+from server.http.addresses import refuse_unknown_parameters
 from server.http.json_bodies import JsonRoute
 from server.http.sign_in.confirmation import UnconfirmedError
 from server.http.sign_in.policy import LINKED, Need, needs
@@ -94,6 +95,7 @@ class Operations:
         *errors: Errors,
         media_type: str = "",
         linked: bool = False,
+        lenient: bool = False,
         **options: Any,
     ) -> Callable[[Endpoint], Endpoint]:
         """Add the operation at `place`, such as "GET /things".
@@ -101,6 +103,7 @@ class Operations:
         Its name is the function's, and its summary the first line of the function's docstring. `media_type`
         is that of an answer other than JSON. A function that returns None is answered with 204. `linked` is a
         file, picture or frame that the page names by its address, so that a browser's cookie alone must do.
+        `lenient`: it is carried out also with query parameters that it does not know.
         """
         method, _, path = place.partition(" ")
         texts = {423: "Control is with somebody else"} if need is Need.CONTROL else {}
@@ -111,6 +114,8 @@ class Operations:
         responses: dict[int | str, Any] = {
             status: {"model": Problem, "description": text} for status, text in texts.items()
         }
+        if not lenient:
+            options["dependencies"] = [Depends(refuse_unknown_parameters)]
         if media_type:
             options["response_class"] = Response
             responses[200] = {"content": {media_type: {}}}

@@ -60,13 +60,11 @@ class Page:
 
 
 def make_router(page: Page) -> APIRouter:
-    """Everything that is not under /api."""
+    """Everything that is not under /api, whose routes come before."""
     router = APIRouter(include_in_schema=False)
 
     @router.get("/{path:path}")
     def get_page(request: Request, path: str) -> Response:
-        if path == "api" or path.startswith("api/"):
-            return Response('{"detail":"There is no such address."}', 404, media_type="application/json")
         encodings = [
             one.split(";")[0].strip() for one in request.headers.get("accept-encoding", "").split(",")
         ]

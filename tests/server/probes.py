@@ -64,7 +64,16 @@ STEP: dict[str, Any] = {
 }
 STEP |= {"settle": 10.0, "duration": 20.0}
 
+NO_ADDRESS = Probe(404, words="There is no such address", because="It answers what nothing has.")
 PROBES: dict[tuple[str, str], Probe] = {
+    ("GET", "/api"): NO_ADDRESS,
+    **{
+        (method, "/api/{path:path}"): NO_ADDRESS
+        for method in ("GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
+    },
+    ("POST", "/api/robot/commands/{name}"): Probe(
+        404, words="There is no command 'fly'", because="It answers what nothing has.", named={"name": "fly"}
+    ),
     ("GET", "/help"): Probe(307),
     ("GET", "/api/alive"): Probe(204),
     ("POST", "/api/access/pair"): Probe(body={"code": CODE, "name": "somebody"}),

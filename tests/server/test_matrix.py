@@ -41,9 +41,12 @@ Who = Literal[
     "thief of a cookie",
 ]
 Where = Literal["right", "wrong", "missing"]
+METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
 
 ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/{path:path}"): "anyone",
+    ("GET", "/api"): "viewer",
+    **{(method, "/api/{path:path}"): "viewer" for method in METHODS},
     ("GET", "/help"): "anyone",
     ("GET", "/help/{path:path}"): "anyone",
     ("GET", "/api/openapi.json"): "viewer",
@@ -76,6 +79,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/bring-up/actions"): "control",
     ("POST", "/api/bring-up/hands"): "control",
     ("DELETE", "/api/bring-up"): "operator",
+    ("POST", "/api/robot/commands/{name}"): "viewer",
     ("POST", "/api/robot/commands/acknowledge"): "control",
     ("POST", "/api/robot/commands/arm"): "control",
     ("POST", "/api/robot/commands/mode"): "control",
@@ -211,7 +215,7 @@ ROLES: dict[Who, int] = {
     "thief of a cookie": 0,
 }
 LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3, "administer": 2}
-SAFE = {"GET", "HEAD"}
+SAFE = {"GET", "HEAD", "OPTIONS"}
 NEAR, FAR = "127.0.0.1", "192.0.2.7"
 """Addresses that ask: this computer's own, and one elsewhere."""
 

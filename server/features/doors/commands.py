@@ -13,7 +13,7 @@ from server.features.doors.ros_axes import stick_axes
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.features.lease.driving import DriveCommand
-from server.features.operate.performing import CheckedCommands
+from server.features.operate.performing import CheckedCommands, explain_unknown_command
 from server.http.audit import AuditLog
 from server.http.sign_in.access import Access
 from server.http.sign_in.policy import Need, refusal
@@ -123,7 +123,7 @@ class DoorCommands:
             return "Control is released." if had else "You had no control to release."
         cls = COMMANDS.get(name)
         if cls is None or cls.policy.need is None:
-            raise InvalidCallError(f"There is no command {name[:80]!r}; the manual lists them.")
+            raise InvalidCallError(explain_unknown_command(name))
         self._require(pilot, cls.policy.need)
         await self._commands.perform(pilot.owner.identity.name, read_command(cls, fields))
         return f"Done: {cls.policy.words or cls.policy.name}."

@@ -8,7 +8,11 @@ from pydantic import BaseModel, Field
 from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
 from robot_runtime.contract.documents import State
 from robot_runtime.link.dissection import Dissection
-from server.features.operate.performing import CheckedCommands
+from server.features.operate.performing import (
+    CheckedCommands,
+    UnknownCommandError,
+    explain_unknown_command,
+)
 from server.features.parameters.changes import COMMAND_ERRORS
 from server.features.parameters.schemas import Restored
 from server.health.monitor import Health, HealthMonitor
@@ -81,7 +85,7 @@ async def get_robot(monitor: Provided[HealthMonitor], bridge: Provided[Bridge]) 
     return state
 
 
-@router.operation("POST /robot/stop", Need.VIEWER, RuntimeSilentError, tags=["robot"])
+@router.operation("POST /robot/stop", Need.VIEWER, RuntimeSilentError, lenient=True, tags=["robot"])
 async def stop_robot(bridge: Provided[Bridge]) -> None:
     """Disarm at once.
 
@@ -112,3 +116,9 @@ def _add_command(cls: type[RobotCommand], need: Need) -> None:
 for _cls in http_commands():
     if _cls.policy.need is not None:
         _add_command(_cls, _cls.policy.need)
+
+
+@router.operation("POST /robot/commands/{name}", Need.VIEWER, UnknownCommandError, include_in_schema=False)
+async def refuse_command(name: str) -> None:
+    """Refuse a command that there is not."""
+    raise UnknownCommandError(explain_unknown_command(name))

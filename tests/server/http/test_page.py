@@ -70,13 +70,6 @@ def test_a_missing_asset_is_missing_and_not_the_index(client: Client) -> None:
     assert client.get("/assets/main-old.js").status_code == 404
 
 
-def test_unknown_addresses_of_the_interface_are_missing(client: Client) -> None:
-    for path in ("/api", "/api/nothing"):
-        answer = client.get(path)
-        assert answer.status_code == 404
-        assert "no such address" in answer.json()["detail"]
-
-
 @pytest.mark.parametrize(
     "path",
     [
