@@ -36,6 +36,7 @@ from server.features.updates import routes as updates
 from server.features.vision import routes as vision
 from server.http.addresses import make_unknown_router
 from server.http.audit import AuditMiddleware
+from server.http.description import DescribedApp
 from server.http.error_handlers import add_error_handlers
 from server.http.head_requests import HeadRequests
 from server.http.help_pages import HelpPages, make_help_router
@@ -43,6 +44,7 @@ from server.http.operations import EVERYWHERE
 from server.http.page import Page, make_router
 from server.http.proxies import RequestsOfAddress
 from server.http.security import SecurityMiddleware
+from server.http.sign_in.access import cookie_name
 from server.http.sign_in.middleware import SignInMiddleware
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.http.start_problems import StartProblems, explaining_start
@@ -81,7 +83,8 @@ def create_app(
                     started(container)
                 yield
 
-    app = FastAPI(
+    app = DescribedApp(
+        cookie=cookie_name(settings.port),
         title="µ-CAT",
         version=VERSION,
         description="The server of µ-CAT, a hand-sized underwater robot turtle. Errors say what happened, "

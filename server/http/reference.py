@@ -12,7 +12,9 @@ SOURCE = "the server's OpenAPI document"
 INTRODUCTION = """\
 The page uses nothing else: a program can do what the page does. A program sends a token, see
 [Access](../run/access.md#browsers-programs-the-shell). The running server has this description as OpenAPI at
-`/api/openapi.json`. The live stream is a WebSocket at `/api/live`: [The live socket](live-socket.md).
+`/api/openapi.json`, with the ways to sign in and examples of bodies; `info.version` is that of the software.
+A query parameter or a field that an operation does not know is refused with 422. The live stream is a
+WebSocket at `/api/live`: [The live socket](live-socket.md).
 
 Times are in s, lengths in m and angles in rad, unless a field says otherwise.
 
@@ -34,7 +36,8 @@ must confirm first, `kind` is `confirmation`.
 | --- | --- |
 | 401 | not signed in |
 | 403 | signed in, but not allowed; or a foreign Host or Origin |
-| 404 | no such thing |
+| 404 | no such thing, or no such address |
+| 405 | the address has other methods, which `Allow` names |
 | 409 | refused at present |
 | 413 | a body of more than 64 KiB, or without its length; imports may be larger |
 | 422 | not valid |

@@ -7310,6 +7310,12 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "code": "2345-6789",
+                 *       "name": "Anna's laptop"
+                 *     }
+                 */
                 "application/json": components["schemas"]["Pairing"];
             };
         };
@@ -7442,6 +7448,12 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "name": "notebook",
+                 *       "scope": "operate"
+                 *     }
+                 */
                 "application/json": components["schemas"]["NewToken"];
             };
         };
@@ -8574,6 +8586,17 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "sessions": [
+                 *         1,
+                 *         2
+                 *       ],
+                 *       "signals": [
+                 *         "depth.depth"
+                 *       ]
+                 *     }
+                 */
                 "application/json": components["schemas"]["ComparisonQuery"];
             };
         };
@@ -9148,6 +9171,12 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "format": "csv",
+                 *       "session": 1
+                 *     }
+                 */
                 "application/json": components["schemas"]["NewExport"];
             };
         };
@@ -10245,6 +10274,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "text": "format = 1\nname = \"short_dive\"\ntitle = \"A short dive\"\n\n[mission]\ndo = \"sequence\"\nsteps = [\n  { do = \"dive\", depth = 0.6, timeout = 30 },\n  { do = \"surface\" },\n]\n"
+                 *     }
+                 */
                 "application/json": components["schemas"]["NewMission"];
             };
         };
@@ -10314,6 +10348,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "text": "format = 1\nname = \"short_dive\"\ntitle = \"A short dive\"\n\n[mission]\ndo = \"sequence\"\nsteps = [\n  { do = \"dive\", depth = 0.6, timeout = 30 },\n  { do = \"surface\" },\n]\n"
+                 *     }
+                 */
                 "application/json": components["schemas"]["MissionBody"];
             };
         };
@@ -10421,6 +10460,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "text": "format = 1\nname = \"short_dive\"\ntitle = \"A short dive\"\n\n[mission]\ndo = \"sequence\"\nsteps = [\n  { do = \"dive\", depth = 0.6, timeout = 30 },\n  { do = \"surface\" },\n]\n"
+                 *     }
+                 */
                 "application/json": components["schemas"]["MissionBody"];
             };
         };
@@ -10602,6 +10646,12 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "seeds": 3,
+                 *       "text": "format = 1\nname = \"short_dive\"\ntitle = \"A short dive\"\n\n[mission]\ndo = \"sequence\"\nsteps = [\n  { do = \"dive\", depth = 0.6, timeout = 30 },\n  { do = \"surface\" },\n]\n"
+                 *     }
+                 */
                 "application/json": components["schemas"]["TrialStart"];
             };
         };
@@ -11112,6 +11162,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "change": 3
+                 *     }
+                 */
                 "application/json": components["schemas"]["Undo"];
             };
         };
@@ -11289,6 +11344,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "name": "calm water"
+                 *     }
+                 */
                 "application/json": components["schemas"]["NewProfile"];
             };
         };
@@ -11758,6 +11818,11 @@ export interface operations {
         };
         requestBody?: {
             content: {
+                /**
+                 * @example {
+                 *       "mode": "manual"
+                 *     }
+                 */
                 "application/json": components["schemas"]["ArmCommand"] | null;
             };
         };
@@ -11910,6 +11975,11 @@ export interface operations {
         };
         requestBody?: {
             content: {
+                /**
+                 * @example {
+                 *       "colour": "yellow"
+                 *     }
+                 */
                 "application/json": components["schemas"]["CardCommand"] | null;
             };
         };
@@ -12062,6 +12132,15 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "gains": {
+                 *         "kp": 4
+                 *       },
+                 *       "name": "depth",
+                 *       "set_point": 0.8
+                 *     }
+                 */
                 "application/json": components["schemas"]["LoopCommand"];
             };
         };
@@ -12444,6 +12523,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "mode": "automatic"
+                 *     }
+                 */
                 "application/json": components["schemas"]["ModeCommand"];
             };
         };
@@ -12520,6 +12604,13 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "values": {
+                 *         "depth.pid.kp": 4
+                 *       }
+                 *     }
+                 */
                 "application/json": components["schemas"]["ParametersCommand"];
             };
         };
@@ -12598,6 +12689,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "by": "beacons"
+                 *     }
+                 */
                 "application/json": components["schemas"]["SteeringCommand"];
             };
         };
@@ -12931,6 +13027,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "text": "name = \"short\"\ntitle = \"A short run\"\nduration = 10\n\n[scene]\nkind = \"pool\"\ndepth = 3.0\nlength = 10.0\nwidth = 5.0\n\n[[events]]\nat = 1\ndo = \"arm\"\n"
+                 *     }
+                 */
                 "application/json": components["schemas"]["NewScenario"];
             };
         };
@@ -13047,6 +13148,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "text": "name = \"short\"\ntitle = \"A short run\"\nduration = 10\n\n[scene]\nkind = \"pool\"\ndepth = 3.0\nlength = 10.0\nwidth = 5.0\n\n[[events]]\nat = 1\ndo = \"arm\"\n"
+                 *     }
+                 */
                 "application/json": components["schemas"]["ScenarioDocument"];
             };
         };
@@ -13107,6 +13213,13 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "board": "host",
+                 *       "place": "simulated",
+                 *       "text": "name = \"short\"\ntitle = \"A short run\"\nduration = 10\n\n[scene]\nkind = \"pool\"\ndepth = 3.0\nlength = 10.0\nwidth = 5.0\n\n[[events]]\nat = 1\ndo = \"arm\"\n"
+                 *     }
+                 */
                 "application/json": components["schemas"]["ScenarioStart"];
             };
         };
@@ -13345,6 +13458,12 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "name": "Dive 7",
+                 *       "note": "calm water"
+                 *     }
+                 */
                 "application/json": components["schemas"]["NewSession"];
             };
         };
@@ -13532,6 +13651,14 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "tags": [
+                 *         "calm",
+                 *         "pid"
+                 *       ]
+                 *     }
+                 */
                 "application/json": components["schemas"]["SessionChanges"];
             };
         };
@@ -13674,6 +13801,11 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "text": "here it turned"
+                 *     }
+                 */
                 "application/json": components["schemas"]["NewBookmark"];
             };
         };
@@ -15124,6 +15256,12 @@ export interface operations {
         };
         requestBody: {
             content: {
+                /**
+                 * @example {
+                 *       "x": 0.5,
+                 *       "y": 0.5
+                 *     }
+                 */
                 "application/json": components["schemas"]["PickPlace"];
             };
         };

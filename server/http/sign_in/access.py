@@ -38,6 +38,11 @@ NO_PAGE_SECRET = (
 )
 
 
+def cookie_name(port: int) -> str:
+    """The name of a browser's cookie: browsers keep the cookies of all ports of a computer together."""
+    return f"mucat_{port}"
+
+
 class Access:
     """One for the server; `notify` writes notices, which also get into what is being recorded, and `token` is
     what the shell of this computer is given to prove itself with.
@@ -52,8 +57,7 @@ class Access:
         close_sockets: CloseSockets,
         token: str,
     ) -> None:
-        self.cookie = f"mucat_{settings.port}"
-        """Its name: browsers keep the cookies of all ports of a computer together."""
+        self.cookie = cookie_name(settings.port)
         self.codes = PairingCodes(clock)
         self.confirmations = Confirmations(clock)
         self.devices = Devices(store)
