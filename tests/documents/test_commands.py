@@ -4,6 +4,7 @@ import os
 import re
 import shlex
 import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -12,11 +13,11 @@ import pytest
 from click.exceptions import Exit
 
 from server.cli import mucat
-from tests.documents.blocks import DOCS, read_commands
+from tests.documents.blocks import DOCS, read_blocks, read_commands
 from tests.stack import Stack
 
 ROOT = Path(__file__).parents[2]
-MUCAT = ".venv/bin/mucat"
+MUCAT, PYTHON = ".venv/bin/mucat", ".venv/bin/python"
 
 # Each page begins where the pages before it have left the data folder.
 TUTORIAL = "use/tutorial.md"
@@ -33,6 +34,9 @@ AFTER_IT = (
 )
 # Those of docs/run/packages.md are run by tests/packages and, in other systems, by `make packages`.
 WITH_A_SERVER = ("run/access.md", "use/doors.md")
+OF_DEVELOPERS = ("../README.md", "../CONTRIBUTING.md", "develop/testing.md")
+RUN = (TUTORIAL, *AFTER_IT, *WITH_A_SERVER, *OF_DEVELOPERS)
+"""Every page whose `sh` blocks are run."""
 
 
 def run(commands: list[str], folder: Path) -> list[str]:
@@ -42,6 +46,8 @@ def run(commands: list[str], folder: Path) -> list[str]:
         name, *arguments = shlex.split(command)
         if name == "make":
             line, place = ["make", "--dry-run", *arguments], ROOT
+        elif name == PYTHON:
+            line, place = [str(ROOT / PYTHON), *arguments], ROOT
         else:
             assert name == MUCAT, f"{command} cannot be run by this test"
             line, place = [str(ROOT / MUCAT), *arguments], folder
@@ -67,11 +73,24 @@ def test_the_tutorial_ends_with_a_report_and_a_zip_file(folder: Path) -> None:
     assert (folder / "dive.zip").read_bytes().startswith(b"PK")
 
 
+def test_the_program_of_the_export_reads_the_file_of_the_tutorial(folder: Path) -> None:
+    (block,) = (one for one in read_blocks("use/export.md") if one.language == "python")
+    line = [sys.executable, "-c", block.text]
+    done = subprocess.run(line, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "mean" in done.stdout
+
+
 @pytest.mark.parametrize("page", AFTER_IT)
 def test_the_commands_of_a_page_can_be_run(folder: Path, page: str) -> None:
     commands = read_commands(page)
     assert commands
     run(commands, folder)
+
+
+@pytest.mark.parametrize("page", OF_DEVELOPERS)
+def test_the_commands_of_a_page_for_developers_can_be_run(tmp_path: Path, page: str) -> None:
+    run(read_commands(page), tmp_path)
 
 
 @pytest.mark.stack

@@ -1,0 +1,188 @@
+"""Every block of Python, shell and TOML in the documents is run, or it is on a list with a reason."""
+
+import asyncio
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.config import Config
+from robot_runtime.contract.craft import read_craft
+from robot_runtime.contract.packets import Depth
+from robot_runtime.contract.parsing import parse
+from robot_runtime.contract.problems import DocumentEntry
+from robot_runtime.contract.toml_text import read_toml
+from robot_runtime.missions.document import read_mission
+from server.platform.settings import Settings
+from tests.documents import test_commands, test_recipes
+from tests.documents.blocks import DOCS, Block, read_blocks
+from tests.notebooks.runner import NAMES, read_cells
+from tests.server.conftest import settings as settings
+from tests.server.features.doors.rig import make_token, play_open, rows_block
+from tests.server.serving import Served
+from tests.server.waiting import until
+
+LANGUAGES = frozenset({"py", "python", "sh", "bash", "toml"})
+PYTHON = frozenset({"py", "python"})
+PI_32_BITS = (
+    "sudo apt install python3-venv python3-numpy python3-opencv python3-pydantic python3-libgpiod "
+    "python3-picamera2 avrdude"
+)
+UNRUN = {
+    ("../README.md", "pip install -c constraints.txt ./mucat-*.whl ./mucat_emulator-*_$(uname -m).whl"): (
+        "it installs into the system; tests/packages installs the same wheels"
+    ),
+    ("develop/add-a-topic.md", 'self.bus.publish_document("say", event)'): "a line of a method",
+    ("run/packages.md", "python3 -m venv mucat"): "tests/packages does the same with the wheels",
+    ("run/packages.md", "sudo apt install python3-venv python3-picamera2 avrdude"): "a Raspberry Pi",
+    ("run/packages.md", PI_32_BITS): "a Raspberry Pi of 32 bits",
+    ("run/packages.md", "python3 -m pip download -d wheels -c constraints.txt ./mucat-*.whl"): "the internet",
+    ("run/sd-card.md", "sudo sh mucat-*/install.sh --dry-run"): "an installed robot, see `make services`",
+    ("run/sd-card.md", "sudo mucat doctor"): "an installed robot",
+    ("run/sd-card.md", "sudo mucat record start pool"): "an installed robot",
+    ("run/troubleshoot.md", "systemctl --no-pager --lines 5 status mucat-runtime mucat"): "systemd",
+    ("use/notebooks/index.md", "pip install jupyterlab matplotlib pandas"): "Jupyter and the internet",
+}
+"""Blocks that no test runs, by page and first line, and what they would need. Their syntax is checked.
+Options of `mucat` in them are checked, too (test_commands.py)."""
+
+
+def pages() -> list[str]:
+    found = [str(page.relative_to(DOCS)) for page in sorted(DOCS.rglob("*.md"))]
+    return ["../README.md", "../CONTRIBUTING.md", "../SECURITY.md", *found]
+
+
+def blocks(languages: frozenset[str] = LANGUAGES) -> list[tuple[str, Block]]:
+    return [(page, one) for page in pages() for one in read_blocks(page) if one.language in languages]
+
+
+def named(page: str, block: Block) -> tuple[str, str]:
+    return page, block.text.splitlines()[0]
+
+
+def read_robot_file(text: str) -> None:
+    """Read a part of robot.toml as a server does."""
+    parse(Config, read_toml(text), DocumentEntry("robot.toml"))
+
+
+READERS: dict[str, Callable[[str], object]] = {
+    "reference/craft.md": read_craft,
+    "run/proxy.md": read_robot_file,
+    "use/doors.md": read_robot_file,
+    "use/events.md": read_robot_file,
+    "use/missions.md": read_mission,
+}
+
+
+def is_run(page: str, block: Block) -> bool:
+    """True for a block that some test runs as it stands."""
+    if block.language == "toml":
+        return page in READERS or bool(block.title)
+    if page.startswith("develop/add-a-"):
+        return bool(block.title) or block.language == "sh"
+    if block.language in PYTHON:
+        return page in ON_A_SERVER or page == "use/export.md"
+    return block.language == "sh" and page in test_commands.RUN
+
+
+def test_every_block_is_run_or_on_the_list() -> None:
+    left = {named(page, block) for page, block in blocks() if not is_run(page, block)}
+    assert left == UNRUN.keys()
+
+
+def test_every_recipe_is_followed() -> None:
+    text = Path(test_recipes.__file__).read_text(encoding="utf-8")
+    for page in pages():
+        assert not page.startswith("develop/add-a-") or f'follow("{page}"' in text, page
+
+
+def test_the_syntax_of_what_is_not_run_is_right() -> None:
+    for page, block in blocks():
+        if is_run(page, block):
+            continue
+        if block.language in PYTHON:
+            compile(block.text, page, "exec")
+        else:
+            done = subprocess.run(
+                ["bash", "-n"], input=block.text, text=True, capture_output=True, check=False
+            )
+            assert done.returncode == 0, (page, done.stderr)
+
+
+@pytest.mark.parametrize("page", READERS)
+def test_the_toml_of_a_page_is_read_by_its_reader(page: str) -> None:
+    found = [one for one in read_blocks(page) if one.language == "toml"]
+    assert found
+    for block in found:
+        READERS[page](block.text)
+
+
+NOTEBOOKS = {f"use/notebooks/{name}.md": name for name in NAMES}
+PRELUDE = """
+from mucat import Robot
+robot, best, gains = Robot("http://turtle.local:8000", "mucat_..."), "hard", {"hard": (9.0, 0.4, 2.0)}
+"""
+"""What the cells before have made, for the blocks of a notebook's text."""
+ON_A_SERVER = ("use/doors.md", *NOTEBOOKS)
+
+
+def test_the_cells_of_a_notebook_are_the_blocks_of_its_page() -> None:
+    for page, name in NOTEBOOKS.items():
+        cells = [cell.source.strip() for cell in read_cells(name) if cell.kind == "code"]
+        there = [one.text.strip() for one in read_blocks(page) if one.language in PYTHON]
+        assert [one for one in there if one in cells] == cells
+
+
+def programs() -> list[str]:
+    """The programs of these pages that no notebook runs."""
+    found = []
+    for page in ON_A_SERVER:
+        name = NOTEBOOKS.get(page)
+        cells = [cell.source.strip() for cell in read_cells(name)] if name else []
+        prelude = PRELUDE if name else ""
+        found += [
+            prelude + one.text
+            for one in read_blocks(page)
+            if one.language in PYTHON and one.text.strip() not in cells
+        ]
+    return found
+
+
+@pytest.mark.parametrize("program", programs(), ids=lambda one: one.strip().splitlines()[0])
+def test_a_program_runs(settings: Settings, program: str) -> None:
+    async def scenario(served: Served) -> None:
+        session = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
+        await served.api.post("/control/release")
+        diving = asyncio.create_task(dive(served))
+        await until(lambda: "depth" in served.container.monitor._newest, "the depth")
+        await served.api.post(f"/sessions/{session}/stop")
+        place = f"127.0.0.1:{served.settings.port}"
+        code = program.replace("turtle.local:8000", place).replace("mucat_...", await make_token(served))
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-u", "-c", code, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
+        )
+        assert process.stdout is not None
+        first = await process.stdout.readline() if "print" in code else b""
+        if "roslibpy" in code:
+            # It listens until it is ended.
+            process.terminate()
+        output, problem = await process.communicate()
+        diving.cancel()
+        if "roslibpy" in code:
+            assert float(first) == pytest.approx(1.2)
+        else:
+            assert process.returncode == 0, (output, problem.decode())
+
+    play_open(settings, scenario)
+
+
+async def dive(served: Served) -> None:
+    """A robot at 1.2 m, which sends its depth ten times a second."""
+    number = 0
+    while True:
+        depth = Depth(time=number, depth=1.2, pressure=113_000, temperature=18.5)
+        served.runtime.publish(rows_block("depth", number, (served.container.clock.now(), depth)))
+        number += 1
+        await asyncio.sleep(0.1)
