@@ -122,7 +122,7 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate)
 	$(PYTHON) -m server.openapi --reference
 
-bench: setup-test .venv/.ready-bench ## measure; a part with ONLY=link; against another commit with COMPARE=v0.1.0
+bench: setup-test .venv/.ready-bench host-firmware ## measure; a part with ONLY=link; against another commit with COMPARE=v0.1.0
 	$(PYTHON) -m bench$(if $(COMPARE),.against $(COMPARE))$(if $(LONG), --long) $(ONLY)
 
 proofs: setup-test .venv/.ready-bench host-firmware ## every long proof, with one report in build/proofs; goes on where it stopped

@@ -58,7 +58,7 @@ def _parameters(dependant: Dependant) -> Iterator[str]:
 
 
 def make_unknown_router() -> APIRouter:
-    """What no operation under /api answers: another method of one, or an address that nothing has."""
+    """Answers what no operation under /api does: another method of one, or an address that nothing has."""
     router = APIRouter(include_in_schema=False)
 
     @router.get("/api")
