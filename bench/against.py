@@ -46,7 +46,9 @@ def _check_out(commit: str) -> Path:
     if not tree.exists():
         _run(["git", "worktree", "add", "--detach", str(tree), found], Path.cwd())
     print(f"Setting up {found} in {tree} ...", file=sys.stderr, flush=True)
-    subprocess.run(["make", "--silent", "setup-test", ".venv/.ready-bench", "host-firmware"], cwd=tree, check=True)
+    subprocess.run(
+        ["make", "--silent", "setup-test", ".venv/.ready-bench", "host-firmware"], cwd=tree, check=True
+    )
     return tree
 
 
