@@ -9,9 +9,9 @@ python=${2:-python3}
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null ||
     fail "Python 3.11 or newer is needed, and $python is not. On Debian: apt install python3 python3-venv; for another one: make SYSTEM_PYTHON=python3.12"
 command -v node >/dev/null && command -v npm >/dev/null ||
-    fail "Node 20 or newer, with npm, is needed to build the page. See https://nodejs.org"
-[ "$(node -p 'process.versions.node.split(".")[0]')" -ge 20 ] ||
-    fail "Node 20 or newer is needed to build the page; this machine has $(node --version). See https://nodejs.org"
+    fail "Node 20.19 or newer, with npm, is needed to build the page. See https://nodejs.org"
+[ "$(node -p 'const [a, b] = process.versions.node.split("."); a * 100 + +b')" -ge 2019 ] ||
+    fail "Node 20.19 or newer is needed to build the page; this machine has $(node --version). See https://nodejs.org"
 
 missing=""
 need() { # package, then a file or command that shows it to be there
