@@ -119,6 +119,8 @@ class DataFolder:
         """Your own scenarios."""
         self.missions = path / "missions"
         """Your own missions: a folder each, with their versions."""
+        self.wall_clock = path / "wall-clock.json"
+        """The last known time (platform/wall_clock.py)."""
         self.reserve = path / RESERVE
         """Room on the disk that is given up for deletions (platform/disk_reserve.py)."""
         self.config = path / "robot.toml"

@@ -57,7 +57,7 @@ class Jobs:
         self._folder = folder.exports
         self._database = folder.database
         self._store = store
-        self._wall_clock = WallClock(clock)
+        self._wall_clock = WallClock(clock, folder.wall_clock)
         self._jobs: dict[str, Job] = {}
         self._wake = asyncio.Event()
         self._running: tuple[str, ExportProcess] | None = None

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from sqlalchemy import ColumnElement, Connection, UpdateBase, delete, update
 from sqlmodel import col, select
 
-from robot_runtime.clock import Clock, boot
+from robot_runtime.clock import Clock
 from server.features.sessions.session import HIDDEN, REMOVING
 from server.features.sessions.storage import GIGABYTE, measure
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
@@ -67,7 +67,10 @@ class RetentionWorker:
         self._settings = settings
         self._notices = notices
         self._purged = purged
-        self._wall_clock = WallClock(clock)
+        self._clock = clock
+        self._wall_clock = WallClock(clock, settings.data.wall_clock)
+        self._binned: dict[int, float] = {}
+        """By the numbers of sessions in the bin: when they were seen there first (s, steady clock)."""
         self._requested = asyncio.Event()
         self._out_of_candidates = False
 
@@ -91,7 +94,10 @@ class RetentionWorker:
     async def apply(self, now: float) -> None:
         """Apply the rules once, at this time (UTC, s since 1970). Raises StoreError."""
         rules = self._settings.sessions
-        ages_known = await self._ages_known(now)
+        ages_known = self._wall_clock.knows_ages(now)
+        # A full disk must not hinder what makes room.
+        with suppress(OSError):
+            await asyncio.to_thread(self._wall_clock.store)
         if ages_known:
             await self._empty_bin(now - rules.undo_days * DAY)
         if ages_known and rules.keep_days > 0:
@@ -103,20 +109,6 @@ class RetentionWorker:
             await self._remove(session)
         await self._free_pages()
         await self._store.make_reserve()
-
-    async def _ages_known(self, now: float) -> bool:
-        if self._wall_clock.ahead is None:
-            # It may have jumped before this server was started.
-            self._wall_clock.ahead = await asyncio.to_thread(self._find_ahead)
-        return self._wall_clock.knows_ages(now)
-
-    def _find_ahead(self) -> float | None:
-        """The difference at the newest session since the computer started; None without one."""
-        row = SessionRow
-        query = select(row.started, row.started_steady).where(row.boot == boot(), row.origin != "simulated")
-        with self._store.read() as database:
-            found = database.exec(query.order_by(col(row.id).desc()).limit(1)).first()
-        return None if found is None else found[0] - found[1]
 
     async def _empty_bin(self, before: float) -> None:
         expired = col(SessionRow.deleted).between(SOFTWARE_MADE, before)
@@ -137,7 +129,13 @@ class RetentionWorker:
             self._out_of_candidates = False
             return
         binned = await self._find(col(SessionRow.deleted).is_not(None))
-        settled = [one for one in binned if one.deleted is not None and one.deleted <= settled_before]
+        steady = self._clock.now()
+        self._binned = {one.id: self._binned.get(one.id, steady) for one in binned}
+        settled = [
+            one
+            for one in binned
+            if (one.deleted or now) <= settled_before or steady - self._binned[one.id] >= BIN_SECONDS
+        ]
         going = _first(sorted(settled, key=lambda one: one.deleted or now), needed)
         await self._change(going, state=REMOVING)
         # Sessions that are new in the bin will be removed by the same rule, and free their space.

@@ -25,7 +25,7 @@ from server.platform.models import SessionRow
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.platform.wall_clock import DAY
+from server.platform.wall_clock import DAY, WallClock
 from tests.server.blocks import debug_block, depth_block
 from tests.server.features.exports.recordings import record
 from tests.server.serving import Served, play
@@ -159,6 +159,19 @@ def test_a_jump_of_the_clock_deletes_no_export(settings: Settings, store: Store)
     clock.forward(DAY)
     jobs.delete_old(later + timedelta(days=1))
     assert jobs.list() == []
+
+
+def test_a_jump_of_the_clock_before_a_restart_deletes_no_export(settings: Settings, store: Store) -> None:
+    now = datetime.now(UTC)
+    old = finished(settings, "a" * 16, now)
+    clock = SimulatedClock(50.0)
+    before = WallClock(clock, settings.data.wall_clock)
+    assert before.knows_ages(now.timestamp())
+    before.store()
+    jobs = Jobs(settings.data, store, clock)
+    jobs.open()
+    jobs.delete_old(now + timedelta(days=365))
+    assert jobs.list() == [old]
 
 
 def test_a_job_whose_files_cannot_be_written_or_deleted_fails_and_the_next_is_done(

@@ -133,7 +133,7 @@ def test_for_a_day_after_a_clock_jump_nothing_is_purged_by_age(keep: Keep) -> No
             keeper.clock.forward(passed)
             await keeper.retention.apply(begun + keeper.clock.now() + jumped)
             assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], ["goes"])
-        # A server that is started after the jump sees it by the newest session.
+        # A server that is started after the jump sees it by the last known time.
         another = RetentionWorker(keeper.store, keeper.settings, keeper.notices, keeper.clock)
         await another.apply(begun + keeper.clock.now() + years)
         assert keeper.names(deleted=True) == ["goes"]
