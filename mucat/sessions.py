@@ -6,6 +6,7 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 from mucat.address import RobotAddress
 from mucat.csv_export import read_csv_export
@@ -16,6 +17,8 @@ from mucat.tables import SessionTables
 from robot_runtime.zip_members import find_members
 
 POLL_SECONDS = 0.2
+PAGE = 500
+"""Sessions in one answer of the server, at most."""
 
 
 class Sessions:
@@ -24,10 +27,19 @@ class Sessions:
     def __init__(self, url: str, token: str) -> None:
         self._address = RobotAddress(url, token)
 
-    def list(self) -> "list[dict[str, Any]]":
-        """All sessions, as the server lists them."""
-        found: list[dict[str, Any]] = self._address.ask("GET", "/sessions")
-        return found
+    def list(self, search: str = "") -> "list[dict[str, Any]]":
+        """All sessions, newest first, as the server lists them.
+
+        With `search` those that have each of its words in name, note, tags or scenario.
+        """
+        found: list[dict[str, Any]] = []
+        query = {"search": search, "limit": PAGE}
+        while True:
+            page = self._address.ask("GET", f"/sessions?{urlencode(query)}")
+            found += page
+            if len(page) < PAGE:
+                return found
+            query["before"] = page[-1]["id"]
 
     def load(self, session: int) -> SessionTables:
         """A session as tables. The server writes an export of it, which needs the role of an operator."""

@@ -32,6 +32,8 @@ class HeavyRequests:
     def __init__(self) -> None:
         self._turns: defaultdict[int, asyncio.Lock] = defaultdict(asyncio.Lock)
         self._asked: Counter[int] = Counter()
+        self.recordings = asyncio.Lock()
+        """Held by the request that reads a recording in this process: what each takes would add up."""
 
     @asynccontextmanager
     async def turn(self, device: int, waiting_max: int = WAITING_MAX) -> AsyncIterator[None]:
@@ -62,9 +64,13 @@ async def _take_reading_turn(
     request: Request, caller: Caller, heavy: Provided[HeavyRequests]
 ) -> AsyncIterator[None]:
     async with heavy.turn(caller.device, READING_MAX):
-        if await request.is_disconnected():
-            raise TooManyHeavyError("The request was given up before its turn came.")
+        await _require_connected(request)
         yield
+
+
+async def _require_connected(request: Request) -> None:
+    if await request.is_disconnected():
+        raise TooManyHeavyError("The request was given up before its turn came.")
 
 
 async def while_connected(request: Request, work: Coroutine[Any, Any, T]) -> T:
@@ -93,3 +99,18 @@ Turn = Annotated[None, Depends(_take_turn)]
 """A parameter of a route that may cost seconds: it waits for the turn of its caller's device."""
 ReadingTurn = Annotated[None, Depends(_take_reading_turn)]
 """The same for a route that reads recordings; where its caller has gone meanwhile, nothing is read."""
+
+
+async def _read_recordings(
+    _: ReadingTurn, request: Request, heavy: Provided[HeavyRequests]
+) -> AsyncIterator[None]:
+    async with heavy.recordings:
+        await _require_connected(request)
+        yield
+
+
+RecordingTurn = Annotated[None, Depends(_read_recordings, scope="function")]
+"""The same for a route that reads them in the server's own process: one request of all devices at a time.
+
+The turn ends before the answer is sent, however slowly it is read.
+"""

@@ -172,6 +172,8 @@ def _engine(database: Path, options: str, pool_class: type[pool.Pool]) -> Engine
 
 
 def _configure(connection: sqlite3.Connection, _record: object) -> None:
+    # SQLite's own comparisons ignore case only for ASCII letters.
+    connection.create_function("casefold", 1, str.casefold, deterministic=True)
     connection.execute("PRAGMA foreign_keys = ON")
     connection.execute("PRAGMA busy_timeout = 2000")
     connection.execute(f"PRAGMA cache_size = -{PAGE_CACHE_KIB}")

@@ -115,6 +115,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/storage"): "viewer",
     ("GET", "/api/backup"): "administer",
     ("GET", "/api/sessions"): "viewer",
+    ("GET", "/api/tags"): "viewer",
     ("POST", "/api/sessions"): "operator",
     ("GET", "/api/sessions/{session}"): "viewer",
     ("PATCH", "/api/sessions/{session}"): "operator",

@@ -1915,8 +1915,11 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * List the sessions that match every given condition, newest first
-         * @description List the sessions that match every given condition, newest first.
+         * List the sessions that match every given condition, newest first, a page at a time
+         * @description List the sessions that match every given condition, newest first, a page at a time.
+         *
+         *     The header `Total-Count` says how many match. Where more follow, the header `Link` has the next page's
+         *     address (`rel="next"`): the same with `before` as the last number of this one.
          */
         get: operations["listSessions"];
         put?: never;
@@ -1941,6 +1944,8 @@ export interface paths {
         /**
          * Return a session with everything that is known of it except its samples; also from the bin
          * @description Return a session with everything that is known of it except its samples; also from the bin.
+         *
+         *     Long lists are cut off: `markers` and `gap_count` count all, and an archive of the session has all.
          */
         get: operations["getSession"];
         put?: never;
@@ -2205,6 +2210,26 @@ export interface paths {
          * @description Return the use of the disk that holds the data folder, and the rules of retention.
          */
         get: operations["getStorage"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tags": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the tags of the sessions, those of most sessions first; at most a hundred
+         * @description List the tags of the sessions, those of most sessions first; at most a hundred.
+         */
+        get: operations["listTags"];
         put?: never;
         post?: never;
         delete?: never;
@@ -5945,7 +5970,15 @@ export interface components {
              * @description hash of the firmware, 16 hexadecimal digits; empty where unknown
              */
             firmware: string;
-            /** Gaps */
+            /**
+             * Gap Count
+             * @description number of all gaps
+             */
+            gap_count: number;
+            /**
+             * Gaps
+             * @description in the order of their times, the first 2000
+             */
             gaps: components["schemas"]["SessionGap"][];
             /** Id */
             id: number;
@@ -5966,7 +5999,7 @@ export interface components {
             markers: number;
             /**
              * Marks
-             * @description in the order of their times
+             * @description in the order of their times, the first 2000; `markers` counts all
              */
             marks: components["schemas"]["Bookmark"][];
             /** Name */
@@ -6424,11 +6457,14 @@ export interface components {
              * @description in order of time, the first 2000
              */
             events: components["schemas"]["Moment"][];
-            /** Holes */
+            /**
+             * Holes
+             * @description in order of time, the first 2000
+             */
             holes: components["schemas"]["StateSilence"][];
             /**
              * Markers
-             * @description in order of time
+             * @description in order of time, the first 2000
              */
             markers: components["schemas"]["Bookmark"][];
             /** Name */
@@ -13402,8 +13438,13 @@ export interface operations {
                 /** @description tags that they have, all of them */
                 tag?: string[] | null;
                 origin?: ("operator" | "arming" | "scenario" | "simulated" | "import") | null;
+                state?: ("recording" | "complete" | "interrupted") | null;
                 /** @description those in the bin instead */
                 deleted?: boolean;
+                /** @description only sessions of lower numbers */
+                before?: number | null;
+                /** @description sessions in the answer */
+                limit?: number;
             };
             header?: never;
             path?: never;
@@ -13537,6 +13578,15 @@ export interface operations {
             };
             /** @description There is no such session */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description This device has several such requests under way already */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -14360,6 +14410,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description This device has several such requests under way already */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Something that the server needs does not work */
             503: {
                 headers: {
@@ -14411,6 +14470,15 @@ export interface operations {
             };
             /** @description There is no such session */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description This device has several such requests under way already */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -14543,6 +14611,44 @@ export interface operations {
             };
             /** @description The disk is full */
             507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listTags: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": string[];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };

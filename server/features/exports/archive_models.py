@@ -10,13 +10,19 @@ from server.features.sessions.schemas import GapKind
 
 CODES = "bBhHiIqQfd?"
 TOPICS_MAX = 200
+COLUMNS_MAX = 5000
+"""Columns of all topics together; this version records some 250."""
+TAGS_MAX = 100
+BOOKMARKS_MAX = 10_000
+GAPS_STORED = 10_000
 
 Text = Annotated[str, Field(max_length=1_000_000)]
 Words = Annotated[str, Field(max_length=10_000)]
 Time = Annotated[float, Field(ge=-1e15, le=1e15, allow_inf_nan=False)]
 Date = Annotated[float, Field(ge=0, le=253e9, allow_inf_nan=False)]
 """s since 1970, up to the year 9987."""
-Count = Annotated[int, Field(ge=0, lt=1 << 62)]
+MISSED_MAX = (1 << 62) - 1
+Count = Annotated[int, Field(ge=0, le=MISSED_MAX)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,49}$")]
 
 
@@ -42,6 +48,11 @@ class ArchivedTopic(_Strict):
     kind: Literal["rows", "documents", "picture"]
     row_bytes: int = 0
     fields: Annotated[list[TopicField], Field(max_length=1000)]
+
+    @property
+    def columns(self) -> int:
+        """Columns of its rows, as they are exported."""
+        return sum(field.count for field in self.fields)
 
     @model_validator(mode="after")
     def _agrees(self) -> "ArchivedTopic":
@@ -83,14 +94,14 @@ class ArchivedBookmark(_Strict):
     """The columns of a bookmark (see `BookmarkRow`)."""
 
     time: Time
-    text: Words
+    text: Annotated[str, Field(max_length=1000)]
     made: Date
 
 
 class ArchivedGap(_Strict):
     """The columns of a gap (see `Gap`)."""
 
-    topic: Words
+    topic: Name
     kind: GapKind
     time: Time
     missed: Count
@@ -100,9 +111,10 @@ class ArchivedDocument(_Strict):
     """The content of `session.json`."""
 
     session: ArchivedSession
-    tags: Annotated[list[Annotated[str, Field(min_length=1, max_length=1000)]], Field(max_length=10_000)]
-    markers: Annotated[list[ArchivedBookmark], Field(max_length=100_000)]
+    tags: Annotated[list[Annotated[str, Field(min_length=1, max_length=100)]], Field(max_length=TAGS_MAX)]
+    markers: Annotated[list[ArchivedBookmark], Field(max_length=BOOKMARKS_MAX)]
     gaps: Annotated[list[ArchivedGap], Field(max_length=1_000_000)]
+    """More than `GAPS_STORED` are merged with their neighbours."""
 
 
 class ArchivedChunk(NamedTuple):

@@ -9,19 +9,29 @@ import hashlib
 import json
 import re
 import zipfile
-from collections.abc import Callable, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from math import isfinite
+from math import ceil, isfinite
 from pathlib import Path
-from typing import IO, Any, TypeVar
+from typing import IO, Any, TypeVar, get_args
 
 from pydantic import ValidationError
 
 from robot_runtime.zip_members import find_members
 from server.features.exports.archive import CHECKSUMS, CHUNKS, FORMAT, HEAD, SESSION, VERSION
-from server.features.exports.archive_models import ArchivedChunk, ArchivedDocument
+from server.features.exports.archive_models import (
+    COLUMNS_MAX,
+    GAPS_STORED,
+    MISSED_MAX,
+    TOPICS_MAX,
+    ArchivedChunk,
+    ArchivedDocument,
+    ArchivedGap,
+)
 from server.features.exports.archive_samples import SPAN_MAX, check_chunk, check_document
 from server.features.sessions.chunks import CHUNK_BYTES_MAX
+from server.features.sessions.schemas import GapKind
 from server.platform.errors import InvalidError
 
 SESSION_BYTES_MAX = 32_000_000
@@ -210,14 +220,42 @@ def _describe_rows(archive: Archive) -> Iterator[dict[str, Any]]:
             yield {table: rows[at : at + ROWS_AT_ONCE]}
 
 
+def merge_gaps(gaps: Sequence[ArchivedGap]) -> list[ArchivedGap]:
+    """At most `GAPS_STORED` of these gaps: where they are more, neighbours of one topic and kind become one.
+
+    It is noticed at the first's time, and misses as many samples as all of them. Raises ValueError for more
+    topics than a session may have.
+    """
+    found: defaultdict[tuple[str, str], list[ArchivedGap]] = defaultdict(list)
+    for gap in gaps:
+        found[gap.topic, gap.kind].append(gap)
+    if len(found) > len(get_args(GapKind)) * TOPICS_MAX:
+        raise ValueError(f"its gaps are of more than {TOPICS_MAX} topics")
+    if len(gaps) <= GAPS_STORED:
+        return [*gaps]
+    together = ceil(len(gaps) / (GAPS_STORED - len(found)))
+    merged: list[ArchivedGap] = []
+    for alike in found.values():
+        alike.sort(key=lambda one: one.time)
+        for at in range(0, len(alike), together):
+            some = alike[at : at + together]
+            missed = min(sum(one.missed for one in some), MISSED_MAX)
+            merged.append(some[0].model_copy(update={"missed": missed}))
+    return sorted(merged, key=lambda one: one.time)
+
+
 def _check_session(content: ArchivedDocument, described: dict[str, Any]) -> None:
-    """Raises ValueError where a session has what this version cannot read."""
+    """Merge its gaps. Raises ValueError where a session has what this version cannot read or show."""
     session = content.session
     for name, value in {"topics": described, "robot_state": session.robot_state}.items():
         if len(json.dumps(value)) > DESCRIPTION_BYTES_MAX:
             raise ValueError(f"{name} is longer than {DESCRIPTION_BYTES_MAX} bytes")
     if session.robot_state is not None:
         check_document(session.robot_state, "state")
+    columns = sum(topic.columns for topic in session.topics.values())
+    if columns > COLUMNS_MAX:
+        raise ValueError(f"its topics have {columns} columns; at most {COLUMNS_MAX} can be shown")
+    content.gaps = merge_gaps(content.gaps)
     times = [one.time for one in content.markers] + [one.time for one in content.gaps]
     if any(abs(time - session.started_steady) > SPAN_MAX for time in times):
         raise ValueError("a bookmark or a gap is far from the session")

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
 from math import inf
+from typing import Any
 
 from sqlmodel import col, select
 
@@ -11,7 +12,7 @@ from server.features.exports.schemas import ExportOptions
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import HIDDEN
 from server.platform.errors import InvalidError
-from server.platform.models import Chunk, SessionRow
+from server.platform.models import SessionRow
 from server.platform.store import Reader
 
 BATCH_BYTES = 64_000
@@ -81,7 +82,7 @@ class ExportSelection(Recording):
         """Raise ExportRequestError where the session was purged meanwhile: what was read may lack samples."""
         find_identified(self._store, self.row.identifier)
 
-    def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
+    def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Any]:
         """The chunks of a topic; reading them reports progress."""
         for chunk in super().chunks(topic, start, end):
             yield chunk

@@ -10,7 +10,6 @@ import sqlite3
 import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 from server import VERSION
 from server.platform.last_configuration import read_usable_settings
@@ -57,7 +56,7 @@ def survey(settings: Settings) -> Survey:
         ]
         problem = "; ".join(f"{one['name']}: {one['text']}" for one in wrong) or problem
         running = str(health["version"])
-        recording = any(one["state"] == "recording" for one in _list_sessions(settings.data))
+        recording = bool(ask(settings.data, "GET", "/sessions?state=recording"))
     except SetupError as failure:
         problem = problem or str(failure)
     return Survey(
@@ -69,11 +68,6 @@ def survey(settings: Settings) -> Survey:
         copy=copy,
         firmware=_sum_firmware(settings),
     )
-
-
-def _list_sessions(folder: DataFolder) -> list[dict[str, Any]]:
-    sessions: list[dict[str, Any]] = ask(folder, "GET", "/sessions")
-    return sessions
 
 
 def _look_at_database(folder: DataFolder) -> tuple[bool, str]:

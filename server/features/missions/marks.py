@@ -9,8 +9,7 @@ from robot_runtime.transport.blocks import Block
 from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder
-from server.platform.errors import NotFoundError
-from server.platform.store import StoreError
+from server.platform.errors import ApiError
 
 log = logging.getLogger(__name__)
 
@@ -46,5 +45,5 @@ class MissionMarks:
         try:
             if await self._bookmarks.add_once(session, moment, text):
                 self._catalogue.notify(session)
-        except (StoreError, NotFoundError) as problem:
+        except ApiError as problem:
             log.warning("the mark %r of a mission is not stored: %s", text, problem)

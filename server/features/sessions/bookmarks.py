@@ -1,15 +1,14 @@
 """Bookmarks: moments of a session with a text, made while it records or later."""
 
-from collections.abc import Iterable
 from datetime import UTC, datetime
 from time import time
 
 from sqlalchemy import Connection, delete, update
-from sqlmodel import col, select
+from sqlmodel import Session, col, func, select
 
 from robot_runtime.clock import Clock
 from server.features.sessions.recorder import Recorder
-from server.features.sessions.schemas import Bookmark
+from server.features.sessions.schemas import SHOWN_MAX, Bookmark
 from server.features.sessions.session import SessionStateError, require
 from server.platform.errors import NotFoundError
 from server.platform.models import BookmarkRow, SessionRow
@@ -24,7 +23,7 @@ class Bookmarks:
     """The bookmarks of all sessions. Times are in s since the session's start.
 
     Every method raises StoreError, UnknownSessionError, UnknownBookmarkError, and SessionStateError for a
-    time beyond the session's end.
+    time beyond the session's end, and where the session has `SHOWN_MAX` already.
     """
 
     def __init__(self, store: Store, clock: Clock, recorder: Recorder) -> None:
@@ -39,9 +38,11 @@ class Bookmarks:
         def write(connection: Connection) -> Bookmark:
             start, duration = _span(connection, session)
             steady = _place(moment, start, duration, now)
-            row = BookmarkRow(session_id=session, time=steady, text=text, made=time())
-            row.id = insert_row(connection, BookmarkRow, row.model_dump(exclude={"id"}))
-            return describe_bookmarks([row], start)[0]
+            _require_room(connection, session)
+            made = time()
+            values = {"session_id": session, "time": steady, "text": text, "made": made}
+            number = insert_row(connection, BookmarkRow, values)
+            return _describe(number, steady - start, text, made)
 
         return await self._store.write(write)
 
@@ -58,8 +59,9 @@ class Bookmarks:
             )
             if steady < start or connection.execute(there).first() is not None:
                 return False
-            row = BookmarkRow(session_id=session, time=steady, text=text, made=time())
-            insert_row(connection, BookmarkRow, row.model_dump(exclude={"id"}))
+            _require_room(connection, session)
+            values = {"session_id": session, "time": steady, "text": text, "made": time()}
+            insert_row(connection, BookmarkRow, values)
             return True
 
         return await self._store.write(write)
@@ -78,7 +80,7 @@ class Bookmarks:
             connection.execute(
                 update(BookmarkRow).where(col(BookmarkRow.id) == mark).values(time=row.time, text=row.text)
             )
-            return describe_bookmarks([row], start)[0]
+            return _describe(mark, row.time - start, row.text, row.made)
 
         return await self._store.write(write)
 
@@ -98,17 +100,16 @@ class Bookmarks:
         return self._clock.now() if active is not None and active.id == session else None
 
 
-def describe_bookmarks(bookmarks: Iterable[BookmarkRow], start: float) -> list[Bookmark]:
-    """The bookmarks by time, of a session that began at `start` (s, steady clock)."""
-    return [
-        Bookmark(
-            id=one.id or 0,
-            time=one.time - start,
-            text=one.text,
-            made=datetime.fromtimestamp(one.made, UTC),
-        )
-        for one in sorted(bookmarks, key=lambda one: (one.time, one.id or 0))
-    ]
+def select_bookmarks(database: Session, session: int | None, start: float) -> list[Bookmark]:
+    """The first `SHOWN_MAX` bookmarks by time, of a session that began at `start` (s, steady clock)."""
+    row = BookmarkRow
+    query = select(row.id, row.time, row.text, row.made).where(row.session_id == session)
+    found = database.exec(query.order_by(col(row.time), col(row.id)).limit(SHOWN_MAX))
+    return [_describe(number or 0, time - start, text, made) for number, time, text, made in found]
+
+
+def _describe(number: int, time: float, text: str, made: float) -> Bookmark:
+    return Bookmark(id=number, time=time, text=text, made=datetime.fromtimestamp(made, UTC))
 
 
 def _find_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
@@ -119,6 +120,12 @@ def _find_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
     if found is None:
         raise UnknownBookmarkError(f"Session {session} has no bookmark {mark}.")
     return BookmarkRow(id=mark, session_id=session, time=found.time, text=found.text, made=found.made)
+
+
+def _require_room(connection: Connection, session: int) -> None:
+    count = select(func.count()).select_from(BookmarkRow).where(BookmarkRow.session_id == session)
+    if connection.execute(count).scalar_one() >= SHOWN_MAX:
+        raise SessionStateError(f"This session has {SHOWN_MAX} bookmarks, the most it may. Remove one first.")
 
 
 def _span(connection: Connection, session: int) -> tuple[float, float]:

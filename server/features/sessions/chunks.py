@@ -13,6 +13,7 @@ import json
 import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
+from io import BytesIO
 from math import isfinite
 from struct import Struct
 from typing import Any
@@ -123,7 +124,7 @@ def encode_documents(payloads: Sequence[bytes], count: int) -> tuple[bytes, floa
 
 def decode_documents(data: bytes) -> Iterator[dict[str, Any]]:
     """The objects of a chunk. Raises ValueError or zlib.error where it is damaged."""
-    for line in unpack(data).splitlines():
+    for line in BytesIO(unpack(data)):
         yield json.loads(line)
 
 
@@ -168,15 +169,24 @@ def row_layout(topic: dict[str, Any]) -> RowLayout:
     names: list[str] = []
     columns: list[str] = []
     for field in topic["fields"]:
-        name, code, count, scale = field["name"], field["code"], field["count"], field["scale"]
+        code, count, scale = field["code"], field["count"], field["scale"]
         unit = f" [{field['unit']}]" if field["unit"] else ""
         codes += code * count
         scales += [scale] * count
         formats += [DIGITS.get(code, "%d" if scale == 1 else SCALED_DIGITS)] * count
-        own = [f"{name}_{place}" for place in range(count)] if count > 1 else [name]
+        own = [*row_names(field)]
         names += own
         columns += [one + unit for one in own]
     return RowLayout(Struct(codes), tuple(scales), ",".join(formats), tuple(names), tuple(columns))
+
+
+def row_names(field: dict[str, Any]) -> Iterator[str]:
+    """Names of the columns of a field of rows, such as "position_2"."""
+    name, count = field["name"], field["count"]
+    if count == 1:
+        yield name
+    else:
+        yield from (f"{name}_{place}" for place in range(count))
 
 
 def _describe(topic: Topic) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
-    from server.features.sessions.catalogue import Listing
+    from server.features.sessions.listing import Listing
     from server.features.sessions.schemas import Session, SessionDetail
 
 SESSION = click.argument("session", type=int)
@@ -45,7 +45,8 @@ def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ..
     With WORDS, only those that have each of them in name, note, tags or scenario.
     """
     with _open_listing(settings) as listing:
-        echo(_tabulate(listing.list(" ".join(words), tag, deleted=deleted)))
+        for page in listing.pages(" ".join(words), tag, deleted=deleted):
+            echo(_tabulate(page))
 
 
 @sessions.command()
@@ -115,7 +116,7 @@ def start(settings: Settings, name: str, note: str) -> None:
 def stop(settings: Settings) -> None:
     """End the present recording."""
     with _open_listing(settings) as listing:
-        recording = [one.id for one in listing.list() if one.state == "recording"]
+        recording = [one.id for one in listing.page(state="recording").sessions]
     if not recording:
         raise SetupError("Nothing is being recorded.")
     session = ask(settings.data, "POST", f"/sessions/{recording[0]}/stop")
@@ -124,7 +125,7 @@ def stop(settings: Settings) -> None:
 
 @contextmanager
 def _open_listing(settings: Settings) -> "Iterator[Listing]":
-    from server.features.sessions.catalogue import Listing
+    from server.features.sessions.listing import Listing
     from server.platform.shell_store import open_reader
 
     with open_reader(settings.data) as store:
@@ -180,6 +181,10 @@ def _describe(session: "SessionDetail") -> str:
         f"craft: {describe_crafts(session.water, session.crafts) or '-'}",
     ]
     lines += [f"  mark  {mark.time:10.1f} s  {mark.text}" for mark in session.marks]
+    if session.markers > len(session.marks):
+        lines.append(f"  {session.markers - len(session.marks)} more bookmarks")
     lines += [f"  gap   {gap.time:10.1f} s  {gap.topic}: {gap.kind}, {gap.missed}" for gap in session.gaps]
+    if session.gap_count > len(session.gaps):
+        lines.append(f"  {session.gap_count - len(session.gaps)} more gaps")
     lines += [f"  topic {topic.name:12} {topic.count:9} samples" for topic in session.topics]
     return "\n".join(lines)

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from itertools import islice
 from typing import Any, Literal
 
 import tomli_w
@@ -11,6 +12,8 @@ from robot_runtime.contract.craft import ORIGIN_MAX, TITLE_MAX
 from server.features.sessions.recording import Recording, reading_content
 
 _LIST = re.compile(r"\[\n([^\[\]]*),\n\s*\]")
+CRAFTS_MAX = 100
+"""Crafts that are described, the first of a session: a simulator gets another by hand."""
 Water = Literal["simulated", "real", "unknown"]
 
 
@@ -38,7 +41,7 @@ def read_crafts(recording: Recording) -> list[RecordedCraft]:
                 origin=str(document["origin"]),
                 file=_file(document),
             )
-            for document in recording.changes("craft")
+            for document in islice(recording.changes("craft"), CRAFTS_MAX)
         ]
 
 

@@ -3,7 +3,7 @@
 import json
 import logging
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import groupby, islice
 from math import inf
@@ -45,6 +45,8 @@ _NEWEST = (
     .limit(1)
 )
 """The newest chunk that begins at or before a time; made once, since that takes longer than to run it."""
+_COLUMNS = select(*(getattr(Chunk, name) for name in Chunk.model_fields))
+_DATA = select(Chunk.number, Chunk.encoding, Chunk.data)
 
 
 class RecordingError(ApiError):
@@ -101,9 +103,9 @@ class Recording:
         with self._store.read() as database:
             return [(first, last, count) for first, last, count in database.exec(query)]
 
-    def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
-        """The chunks that may have samples between `start` and `end`, in order."""
-        return self._found(select(Chunk), Session.exec, CHUNKS_AT_ONCE, topic, start, end)
+    def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Any]:
+        """The columns of the chunks that may have samples between `start` and `end`, in order."""
+        return self._found(_COLUMNS, CHUNKS_AT_ONCE, topic, start, end)
 
     def numbers(self, database: Session, topic: str, start: float, end: float) -> tuple[int, int]:
         """The first and the last number of the chunks that may have samples between these times.
@@ -131,15 +133,13 @@ class Recording:
         """The documents between `start` and `end`."""
         for chunk in self.chunks(topic, start, end):
             with _reading(chunk, topic, DOCUMENTS_ENCODING):
-                documents = list(decode_documents(chunk.data))
-            yield from (one for one in documents if start <= one["time"] <= end)
+                yield from (one for one in decode_documents(chunk.data) if start <= one["time"] <= end)
 
     def pictures(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[tuple[float, bytes]]:
         """The pictures between `start` and `end`: their times and their JPEG files."""
         for chunk in self.chunks(topic, start, end):
             with _reading(chunk, topic, PICTURES_ENCODING):
-                pictures = list(decode_pictures(chunk.data))
-            yield from (one for one in pictures if start <= one[0] <= end)
+                yield from (one for one in decode_pictures(chunk.data) if start <= one[0] <= end)
 
     def columns(
         self, topic: str, names: Sequence[str], start: float = -inf, end: float = inf
@@ -228,23 +228,20 @@ class Recording:
 
     def _data(self, topic: str, start: float, end: float) -> Iterator[Any]:
         """Number, encoding and data of such chunks; as objects of a Session they would take twice as long."""
-        query = select(Chunk.number, Chunk.encoding, Chunk.data)
-
-        def execute(database: Session, query: Any) -> Any:
-            return database.connection().execute(query)
-
-        return self._found(query, execute, DATA_AT_ONCE, topic, start, end)
+        return self._found(_DATA, DATA_AT_ONCE, topic, start, end)
 
     def _found(
         self,
         query: Any,
-        execute: Callable[[Session, Any], Any],
         limit: int,
         topic: str,
         start: float,
         end: float,
     ) -> Iterator[Any]:
-        """Rows that `query` selects from chunks that may have samples in this range, `limit` at a time."""
+        """Rows that `query` selects from chunks that may have samples in this range.
+
+        At most `limit` are read at a time, and not many more bytes than `CHUNK_BYTES_MAX`.
+        """
         with self._store.read() as database:
             first, last = self.numbers(database, topic, start, end)
         query = query.where(Chunk.session_id == self.row.id, Chunk.topic == topic)
@@ -252,11 +249,26 @@ class Recording:
         query = query.order_by(col(Chunk.number)).limit(limit)
         while first <= last:
             with self._store.read() as database:
-                found = execute(database, query.where(col(Chunk.number).between(first, last))).all()
-            yield from found
-            if len(found) < limit:
+                rows = database.connection().execute(query.where(col(Chunk.number).between(first, last)))
+                found = read_some(rows)
+            if not found:
                 return
+            yield from found
             first = found[-1].number + 1
+
+
+def read_some(rows: Iterable[Any]) -> list[Any]:
+    """The first of these rows of chunks, with not many more bytes of `data` than `CHUNK_BYTES_MAX`.
+
+    Chunks of a foreign archive may be so large that a few fill the memory.
+    """
+    found, size = [], 0
+    for row in rows:
+        found.append(row)
+        size += len(row.data)
+        if size >= CHUNK_BYTES_MAX:
+            break
+    return found
 
 
 @contextmanager
@@ -278,7 +290,7 @@ def depth_loop(state: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 @contextmanager
-def _reading(chunk: Chunk, topic: str, encoding: str) -> Iterator[None]:
+def _reading(chunk: Any, topic: str, encoding: str) -> Iterator[None]:
     if chunk.encoding != encoding:
         raise _wrong_encoding(chunk, topic)
     try:
@@ -287,9 +299,9 @@ def _reading(chunk: Chunk, topic: str, encoding: str) -> Iterator[None]:
         raise _damaged(chunk, topic, problem) from problem
 
 
-def _wrong_encoding(chunk: Chunk, topic: str) -> RecordingError:
+def _wrong_encoding(chunk: Any, topic: str) -> RecordingError:
     return RecordingError(f"chunk {chunk.number} of {topic} is encoded as {chunk.encoding!r}")
 
 
-def _damaged(chunk: Chunk, topic: str, problem: Exception) -> RecordingError:
+def _damaged(chunk: Any, topic: str, problem: Exception) -> RecordingError:
     return RecordingError(f"chunk {chunk.number} of {topic} is damaged: {problem}")

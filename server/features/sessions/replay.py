@@ -7,7 +7,7 @@ that the page's charts and lists show.
 import json
 import logging
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from math import inf
 from typing import Any
@@ -27,7 +27,7 @@ from server.features.sessions.chunks import (
     describe_topics,
     unpack,
 )
-from server.features.sessions.recording import Recording
+from server.features.sessions.recording import Recording, read_some
 from server.features.sessions.upgrade import NoCounterpartError, rewrite_document, rewrite_rows
 from server.platform.errors import InvalidError
 from server.platform.models import Chunk
@@ -38,6 +38,7 @@ HISTORY_MAX = CHART_SECONDS
 """s before the start of which an answer holds samples for charts."""
 BYTES_MAX = 16_000_000
 """Largest size of one answer; two minutes at the robot's full rate are 2 MB."""
+BLOCKS_MAX = 50_000
 LISTED_CHUNKS = 300
 STATE = BY_NAME["state"]
 
@@ -60,6 +61,7 @@ class ReplayBlocks:
 class _StoredChunk:
     """The fields of a chunk that a replay needs."""
 
+    number: int
     first_time: float
     last_time: float
     first: int
@@ -98,22 +100,23 @@ def read_blocks_between(
     if end - start > RANGE_MAX:
         raise InvalidError(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
     ranges = {name: _range(name, start, end, history) for name in recording.topics}
-    found = _find(recording, ranges)
     described = describe_topics()
     left_out, size = 0, 0
     timed: list[tuple[float, Block]] = []
-    for name, chunks in found.items():
+    for name, limits in ranges.items():
+        chunks = _find(recording, name, limits)
         recorded, topic = recording.topics[name], BY_NAME.get(name)
         if topic is None or recorded["kind"] != topic.kind.name.lower():
             left_out += sum(chunk.count for chunk in chunks if start <= chunk.first_time < end)
             continue
         same = recording.row.version == VERSION and recorded == described[name]
         reader = _Reader(topic, None if same else recorded)
-        for time, block in reader.read(chunks, ranges[name]):
+        for time, block in reader.read(chunks, limits):
             size += len(block.data)
-            if size > BYTES_MAX:
+            if size > BYTES_MAX or len(timed) >= BLOCKS_MAX:
                 raise InvalidError(
-                    f"One answer holds at most {BYTES_MAX / 1e6:g} MB; ask for a shorter time."
+                    f"One answer holds at most {BYTES_MAX / 1e6:g} MB in {BLOCKS_MAX} blocks; "
+                    "ask for a shorter time."
                 )
             timed.append((time, block))
         left_out += reader.left_out
@@ -141,17 +144,21 @@ def _range(name: str, start: float, end: float, history: float | None) -> _Range
     return _Range(since, start, end, newest=True)
 
 
-def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_StoredChunk]]:
-    found: dict[str, list[_StoredChunk]] = {}
+def _find(recording: Recording, name: str, limits: _Range) -> Iterator[_StoredChunk]:
+    """The chunks of a topic that may have samples of the range, in order."""
+    since = limits.start if limits.since == -inf else limits.since
     with recording.read() as database:
-        for name, limits in ranges.items():
-            since = limits.start if limits.since == -inf else limits.since
-            first, last = recording.numbers(database, name, since, limits.end)
-            if limits.since == -inf:
-                first = max(0, first - LISTED_CHUNKS)
-            which = {"session": recording.row.id, "topic": name, "first": first, "last": last}
-            found[name] = [_StoredChunk(*row) for row in database.connection().execute(_CHUNKS, which)]
-    return found
+        first, last = recording.numbers(database, name, since, limits.end)
+    if limits.since == -inf:
+        first = max(0, first - LISTED_CHUNKS)
+    while first <= last:
+        which = {"session": recording.row.id, "topic": name, "first": first, "last": last}
+        with recording.read() as database:
+            found = [_StoredChunk(*row) for row in read_some(database.connection().execute(_CHUNKS, which))]
+        if not found:
+            return
+        yield from found
+        first = found[-1].number + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +206,7 @@ class _Reader:
         self._given_as = BY_NAME["picture"] if topic.kind is Kind.PICTURE else topic
         self._recorded = recorded
 
-    def read(self, chunks: list[_StoredChunk], limits: _Range) -> Iterator[tuple[float, Block]]:
+    def read(self, chunks: Iterable[_StoredChunk], limits: _Range) -> Iterator[tuple[float, Block]]:
         """The blocks, each with the time of its first sample."""
         earlier: tuple[_StoredChunk, int] | None = None
         has_earlier = not limits.newest
@@ -267,7 +274,8 @@ def _count_before(samples: _Samples, chunk: _StoredChunk, time: float) -> int:
         return chunk.count
     if chunk.first_time >= time:
         return 0
-    return next(place for place in range(chunk.count) if samples.time(place) >= time)
+    # Times of the samples may lie about those of their chunk.
+    return next((place for place in range(chunk.count) if samples.time(place) >= time), chunk.count)
 
 
 def _rewrite_lines(lines: list[bytes], topic: Topic) -> Iterator[bytes]:

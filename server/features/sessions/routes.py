@@ -10,6 +10,7 @@ from fastapi.responses import Response
 from robot_runtime.clock import Clock
 from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.listing import PAGE, PAGE_MAX
 from server.features.sessions.missions import RecordedMission, read_missions
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.recording import Recording, reading_content
@@ -24,16 +25,18 @@ from server.features.sessions.schemas import (
     Session,
     SessionChanges,
     SessionDetail,
+    State,
 )
 from server.features.sessions.session import UnknownSessionError, find_row, new_row
 from server.features.sessions.storage import Storage, measure
 from server.features.sessions.timeline import Timeline, read_timeline
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
-from server.http.heavy_requests import ReadingTurn, TooManyHeavyError
+from server.http.heavy_requests import RecordingTurn, TooManyHeavyError
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 from server.platform.errors import ConflictError, InvalidError, NotFoundError
+from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.stream.bridge import Bridge
@@ -41,6 +44,8 @@ from server.stream.bridge import Bridge
 SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
 """The header that says how many samples could not be given."""
+TOTAL_COUNT = "Total-Count"
+"""The header that says how many sessions match."""
 
 router = Operations(prefix="/api", tags=["sessions"])
 
@@ -60,15 +65,37 @@ OpenRecording = Annotated[Recording, Depends(_open)]
 @router.operation("GET /sessions", Need.VIEWER)
 def list_sessions(
     catalogue: Provided[Catalogue],
+    request: Request,
+    response: Response,
     search: Annotated[
         str, Query(max_length=200, description="words that name, note, tags or scenario have")
     ] = "",
     tag: Annotated[list[str] | None, Query(description="tags that they have, all of them")] = None,
     origin: Origin | None = None,
+    state: State | None = None,
     deleted: Annotated[bool, Query(description="those in the bin instead")] = False,
+    before: Annotated[
+        int | None, Query(ge=1, le=IDENTIFIER_MAX, description="only sessions of lower numbers")
+    ] = None,
+    limit: Annotated[int, Query(ge=1, le=PAGE_MAX, description="sessions in the answer")] = PAGE,
 ) -> list[Session]:
-    """List the sessions that match every given condition, newest first."""
-    return catalogue.list(search, tag or (), origin, deleted=deleted)
+    """List the sessions that match every given condition, newest first, a page at a time.
+
+    The header `Total-Count` says how many match. Where more follow, the header `Link` has the next page's
+    address (`rel="next"`): the same with `before` as the last number of this one.
+    """
+    page = catalogue.page(search, tag or (), origin, state=state, deleted=deleted, before=before, limit=limit)
+    response.headers[TOTAL_COUNT] = str(page.total)
+    if page.following is not None:
+        following = request.url.include_query_params(before=page.following)
+        response.headers["Link"] = f'<{following.path}?{following.query}>; rel="next"'
+    return page.sessions
+
+
+@router.operation("GET /tags", Need.VIEWER)
+def list_tags(catalogue: Provided[Catalogue]) -> list[str]:
+    """List the tags of the sessions, those of most sessions first; at most a hundred."""
+    return catalogue.tags()
 
 
 @router.operation("POST /sessions", Need.OPERATOR, ConflictError, status_code=201)
@@ -88,9 +115,12 @@ async def start_session(
     return await recorder.start(row)
 
 
-@router.operation("GET /sessions/{session}", Need.VIEWER, UnknownSessionError)
-def get_session(catalogue: Provided[Catalogue], session: Identifier) -> SessionDetail:
-    """Return a session with everything that is known of it except its samples; also from the bin."""
+@router.operation("GET /sessions/{session}", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
+def get_session(_: RecordingTurn, catalogue: Provided[Catalogue], session: Identifier) -> SessionDetail:
+    """Return a session with everything that is known of it except its samples; also from the bin.
+
+    Long lists are cut off: `markers` and `gap_count` count all, and an archive of the session has all.
+    """
     return catalogue.detail(session)
 
 
@@ -136,10 +166,12 @@ async def purge_session(
     "GET /sessions/{session}/thumbnail",
     Need.VIEWER,
     UnknownSessionError,
+    TooManyHeavyError,
     media_type="image/jpeg",
     linked=True,
 )
 def get_thumbnail(
+    _: RecordingTurn,
     request: Request,
     recording: OpenRecording,
     time: Annotated[
@@ -155,7 +187,7 @@ def get_thumbnail(
     headers = {"cache-control": "private, no-cache", "etag": tag}
     if request.headers.get("if-none-match") == tag:
         return Response(status_code=304, headers=headers)
-    for _, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):
+    for _moment, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):
         return Response(jpeg, media_type="image/jpeg", headers=headers)
     raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")
 
@@ -192,15 +224,15 @@ async def remove_mark(
     catalogue.notify(session)
 
 
-@router.operation("GET /sessions/{session}/timeline", Need.VIEWER, UnknownSessionError)
-def get_timeline(recording: OpenRecording) -> Timeline:
+@router.operation("GET /sessions/{session}/timeline", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
+def get_timeline(_: RecordingTurn, recording: OpenRecording) -> Timeline:
     """Return a session's events, bookmarks and gaps."""
     with reading_content(recording.row):
         return read_timeline(recording)
 
 
 @router.operation("GET /sessions/{session}/missions", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
-def list_session_missions(_: ReadingTurn, recording: OpenRecording) -> list[RecordedMission]:
+def list_session_missions(_: RecordingTurn, recording: OpenRecording) -> list[RecordedMission]:
     """List the missions of a session: document, last state, and when each step began."""
     with reading_content(recording.row):
         return read_missions(recording)
@@ -214,7 +246,7 @@ def list_session_missions(_: ReadingTurn, recording: OpenRecording) -> list[Reco
     media_type="application/octet-stream",
 )
 def get_blocks(
-    _: ReadingTurn,
+    _: RecordingTurn,
     recording: OpenRecording,
     start: Seconds,
     end: Seconds,

@@ -12,6 +12,8 @@ State = Literal["recording", "complete", "interrupted"]
 GapKind = Literal["missed", "restarted", "not stored", "damaged"]
 Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
 
+SHOWN_MAX = 2000
+"""Bookmarks, and gaps, that an answer about one session holds."""
 
 Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
 Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=10_000)]
@@ -97,8 +99,11 @@ class SessionDetail(Session):
         description="the simulated ones, in order of time; none of real water, and of older versions"
     )
     robot_state: dict[str, Any] | None = Field(description="the `state` document at the start")
-    marks: list[Bookmark] = Field(description="in the order of their times")
-    gaps: list[SessionGap]
+    marks: list[Bookmark] = Field(
+        description=f"in the order of their times, the first {SHOWN_MAX}; `markers` counts all"
+    )
+    gap_count: int = Field(description="number of all gaps")
+    gaps: list[SessionGap] = Field(description=f"in the order of their times, the first {SHOWN_MAX}")
     topics: list[RecordedTopic]
 
 

@@ -1,8 +1,9 @@
 """The row of a session: creation, search, and its form in the interface."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from typing import Any
 
 from sqlalchemy import Connection
 from sqlmodel import col, select
@@ -24,6 +25,8 @@ IMPORTING = "importing"
 """State of a row whose samples are still being imported."""
 HIDDEN = (REMOVING, IMPORTING)
 """States of rows that count as sessions only for retention and import."""
+COLUMNS = tuple(name for name in Session.model_fields if name in SessionRow.model_fields)
+"""Columns of a row that `from_columns` needs; not its long texts."""
 REAL_ORIGINS = ("operator", "arming", "scenario")
 """Origins of sessions in real time, whose steady times are those of this computer; the server itself computes
 those in simulated time."""
@@ -77,15 +80,13 @@ def new_row(
 
 def from_row(row: SessionRow, tags: Sequence[str] = (), markers: int = 0) -> Session:
     """The session of a row."""
-    values = row.model_dump(include=set(Session.model_fields) - {"started", "ended", "deleted"})
-    return Session(
-        **values,
-        tags=sorted(tags, key=str.casefold),
-        markers=markers,
-        started=datetime.fromtimestamp(row.started, UTC),
-        ended=_moment(row.ended),
-        deleted=_moment(row.deleted),
-    )
+    return from_columns({name: getattr(row, name) for name in COLUMNS}, tags, markers)
+
+
+def from_columns(columns: Mapping[str, Any], tags: Sequence[str] = (), markers: int = 0) -> Session:
+    """The session of a row's `COLUMNS`."""
+    dates = {name: _moment(columns[name]) for name in ("started", "ended", "deleted")}
+    return Session(**{**columns, **dates}, tags=sorted(tags, key=str.casefold), markers=markers)
 
 
 def find_row(store: Reader, session: int) -> SessionRow:

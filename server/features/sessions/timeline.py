@@ -1,6 +1,6 @@
 """Content of a session's seek bar: events, bookmarks and gaps."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain, islice, pairwise
@@ -10,11 +10,11 @@ from sqlmodel import col, select
 
 from robot_runtime.contract.documents import Event, Severity
 from robot_runtime.contract.topics import TOPICS
-from server.features.sessions.bookmarks import describe_bookmarks
+from server.features.sessions.bookmarks import select_bookmarks
 from server.features.sessions.recording import Recording
-from server.features.sessions.schemas import Bookmark, State
+from server.features.sessions.schemas import SHOWN_MAX, Bookmark, State
 from server.features.sessions.session import from_row
-from server.platform.models import BookmarkRow, Chunk
+from server.platform.models import Chunk
 
 EVENTS_MAX = 2000
 SILENCE_SECONDS = 3.0
@@ -47,20 +47,23 @@ class Timeline(BaseModel):
     started_steady: float = Field(description="the same moment on the steady clock of its samples, s")
     duration: float = Field(description="s, up to the last samples that are stored")
     events: list[Moment] = Field(description=f"in order of time, the first {EVENTS_MAX}")
-    markers: list[Bookmark] = Field(description="in order of time")
-    holes: list[StateSilence]
+    markers: list[Bookmark] = Field(description=f"in order of time, the first {SHOWN_MAX}")
+    holes: list[StateSilence] = Field(description=f"in order of time, the first {SHOWN_MAX}")
 
 
 def read_timeline(recording: Recording) -> Timeline:
     """The timeline of a session. Raises StoreError, RecordingError."""
     row = recording.row
     with recording.read() as database:
-        bookmarks = database.exec(select(BookmarkRow).where(BookmarkRow.session_id == row.id)).all()
-        spans = database.exec(
+        markers = select_bookmarks(database, row.id, row.started_steady)
+        spans = database.connection().execute(
             select(Chunk.first_time, Chunk.last_time)
             .where(Chunk.session_id == row.id, Chunk.topic == "state")
-            .order_by(col(Chunk.number))
-        ).all()
+            .order_by(col(Chunk.first_time), col(Chunk.last_time))
+        )
+        # Read one by one: a session of a day has tens of thousands.
+        silences = _find_silences(((first, last) for first, last in spans), row.started_steady, row.duration)
+        holes = list(islice(silences, SHOWN_MAX))
     session = from_row(row)
     return Timeline(
         name=session.name,
@@ -69,8 +72,8 @@ def read_timeline(recording: Recording) -> Timeline:
         started_steady=row.started_steady,
         duration=session.duration,
         events=read_events(recording, EVENTS_MAX),
-        markers=describe_bookmarks(bookmarks, row.started_steady),
-        holes=_find_silences(spans, row.started_steady, row.duration),
+        markers=markers,
+        holes=holes,
     )
 
 
@@ -86,13 +89,12 @@ def read_events(recording: Recording, most: int) -> list[Moment]:
     return sorted(found, key=lambda one: one.time)[:most]
 
 
-def _find_silences(spans: Sequence[tuple[float, float]], start: float, duration: float) -> list[StateSilence]:
-    """The long times between these spans; all in s of one clock."""
-    if not spans:
-        return []
-    edges = [(start, start), *spans, (start + duration, start + duration)]
-    return [
-        StateSilence(start=end - start, end=begin - start)
-        for (_, end), (begin, _) in pairwise(edges)
-        if begin - end > SILENCE_SECONDS
-    ]
+def _find_silences(
+    spans: Iterator[tuple[float, float]], start: float, duration: float
+) -> Iterator[StateSilence]:
+    """The long times between these spans, in order of time; all in s of one clock. None without a span."""
+    for first in islice(spans, 1):
+        edges = chain([(start, start), first], spans, [(start + duration, start + duration)])
+        for (_, end), (begin, _) in pairwise(edges):
+            if begin - end > SILENCE_SECONDS:
+                yield StateSilence(start=end - start, end=begin - start)

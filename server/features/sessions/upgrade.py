@@ -3,14 +3,19 @@
 A document that lacks a required number is left out. In rows, which cannot express "unknown", it is 0.
 """
 
-from collections.abc import Mapping
-from dataclasses import MISSING, fields, is_dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import MISSING, asdict, dataclass, fields, is_dataclass
 from functools import cache
+from math import copysign, inf, isnan
+from struct import Struct, calcsize
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import Topic
+from robot_runtime.contract.topics import TIME, Topic
+
+FLOAT_MAX = 3.4028235e38
+"""The largest number of four bytes."""
 
 
 class NoCounterpartError(ValueError):
@@ -25,31 +30,70 @@ def rewrite_rows(rows: bytes, recorded: Mapping[str, Any], topic: Topic) -> byte
     """The rows as this version's `topic` has them; `recorded` is what `chunks.describe_topics` said of them.
 
     Fields go by name, values by scale, rounded to what the field can hold. A field that was not there, or had
-    another unit, is 0.
+    another unit, is 0. Columns that are the same are copied whole, without NumPy: it costs a small computer
+    memory, and its libraries may end the process.
     """
-    import numpy as np  # only where definitions differ: it costs a small computer memory
-
     assert topic.record is not None
     assert issubclass(topic.record, Record)
-    wires = topic.record.wires
-    then = {field["name"]: field for field in recorded["fields"]}
-    # Struct's codes mean the same to NumPy. Several records have a field of their own named time.
-    old_fields = [(f"field {name}", "<" + field["code"], (field["count"],)) for name, field in then.items()]
-    new_fields = [(f"field {name}", "<" + wire.code, (wire.count,)) for name, wire in wires.items()]
-    old = np.frombuffer(rows, np.dtype([("time", "<f8"), *old_fields]))
-    new = np.zeros(len(old), np.dtype([("time", "<f8"), *new_fields]))
-    new["time"] = old["time"]
-    for name, wire in wires.items():
-        field = then.get(name)
-        if field is None or field["unit"] != wire.unit:
+    then = {column.name: column for column in _columns(recorded["fields"])}
+    old_size, new_size = _row_bytes(then.values()), topic.row_bytes
+    count, rest = divmod(len(rows), old_size)
+    if rest:
+        raise ValueError(f"{len(rows)} bytes are not whole rows of {old_size}")
+    new = bytearray(count * new_size)
+    for place in range(TIME.size):
+        new[place::new_size] = rows[place::old_size]
+    for column in _columns([{"name": name, **asdict(wire)} for name, wire in topic.record.wires.items()]):
+        old = then.get(column.name)
+        if old is None or old.unit != column.unit:
             continue
-        shared = min(field["count"], wire.count)
-        values = old[f"field {name}"][:, :shared].astype(np.float64) * (field["scale"] / wire.scale)
-        if wire.code not in "fd":
-            limits = np.iinfo(new[f"field {name}"].dtype)
-            values = np.clip(np.round(np.nan_to_num(values)), limits.min, limits.max)
-        new[f"field {name}"][:, :shared] = values
-    return new.tobytes()
+        if (old.code, old.scale) == (column.code, column.scale):
+            for byte in range(calcsize(f"<{column.code}")):
+                new[column.offset + byte :: new_size] = rows[old.offset + byte :: old_size]
+        else:
+            _convert(rows, old_size, old, new, new_size, column)
+    return bytes(new)
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """A number in a row: its bytes begin at `offset`; times `scale` it is in its unit."""
+
+    name: tuple[str, int]
+    code: str
+    scale: float
+    unit: str
+    offset: int
+
+
+def _columns(fields_of_rows: Iterable[Mapping[str, Any]]) -> Iterator[_Column]:
+    offset = TIME.size
+    for field in fields_of_rows:
+        for place in range(field["count"]):
+            yield _Column((field["name"], place), field["code"], field["scale"], field["unit"], offset)
+            offset += calcsize(f"<{field['code']}")
+
+
+def _row_bytes(columns: Iterable[_Column]) -> int:
+    return max((one.offset + calcsize(f"<{one.code}") for one in columns), default=TIME.size)
+
+
+def _convert(
+    rows: bytes, old_size: int, old: _Column, new: bytearray, new_size: int, column: _Column
+) -> None:
+    """Write a column of other type or scale, number by number."""
+    one, packed = Struct(f"<{old.code}"), Struct(f"<{column.code}")
+    ratio, whole = old.scale / column.scale, column.code not in "fd"
+    most, lowest = (1 << 8 * packed.size) - 1, 0
+    if column.code.islower():
+        most, lowest = most >> 1, -(most >> 1) - 1
+    for place in range(len(rows) // old_size):
+        value = one.unpack_from(rows, place * old_size + old.offset)[0] * ratio
+        if whole:
+            value = 0 if isnan(value) else round(min(max(value, lowest), most))
+        elif column.code == "f" and abs(value) > FLOAT_MAX:
+            value = copysign(inf, value)
+        packed.pack_into(new, place * new_size + column.offset, value)
 
 
 def rewrite_document(document: Mapping[str, Any], topic: Topic) -> dict[str, Any]:

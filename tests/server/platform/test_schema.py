@@ -122,7 +122,7 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
     assert schema.read_revision(copy) == revision
     with closing(Store(settings.data.database)) as store:
         catalogue = Catalogue(store)
-        (found,) = catalogue.list("COLD")
+        (found,) = catalogue.page("COLD").sessions
         assert (found.name, found.origin, found.tags, found.kept, found.deleted) == (
             "old",
             "operator",

@@ -18,7 +18,7 @@ import pytest
 from migrations import HEAD
 from server.cli import main
 from server.features.backup import command as backup_command
-from server.features.sessions.catalogue import Listing
+from server.features.sessions.listing import Listing
 from server.platform import database_copies
 from server.platform.schema import prepare, read_revision
 from server.platform.settings import DataFolder, Settings
@@ -43,7 +43,7 @@ def fill(settings: Settings, *names: str) -> None:
 
 def names(database: Path) -> list[str]:
     with closing(Reader(database)) as reader:
-        return [session.name for session in Listing(reader).list()]
+        return [session.name for session in Listing(reader).page().sessions]
 
 
 def test_a_backup_is_complete_private_and_has_a_checksum(

@@ -23,7 +23,8 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.errors import RefusedError
 from server.features.exports import imports
 from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
-from server.features.exports.archive_reader import ArchiveError, examine
+from server.features.exports.archive_models import GAPS_STORED, ArchivedGap
+from server.features.exports.archive_reader import ArchiveError, examine, merge_gaps
 from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
@@ -307,7 +308,7 @@ def test_a_failed_import_leaves_nothing_and_is_never_visible(
 
         async def failing(change: Any, rows: Any = None) -> int:
             count = await real(change, rows)
-            seen.extend(one.id for one in Catalogue(store).list())
+            seen.extend(one.id for one in Catalogue(store).page().sessions)
             if change.table.name == "chunk":
                 raise StoreError("the disk is full")
             return count
@@ -365,10 +366,10 @@ def test_an_archive_larger_than_the_free_space_is_refused_before_reading(
     imports = Imports(settings.data, store)
     with pytest.raises(FileWriteError, match="Free some space"):
         asyncio.run(imports.take(archive))
-    assert [one.id for one in Catalogue(store).list()] == [session]
+    assert [one.id for one in Catalogue(store).page().sessions] == [session]
     disk.free += 1
     asyncio.run(imports.take(archive))
-    assert len(Catalogue(store).list()) == 2
+    assert len(Catalogue(store).page().sessions) == 2
 
 
 def test_a_half_imported_session_of_a_killed_server_is_removed(
@@ -384,3 +385,22 @@ def test_a_half_imported_session_of_a_killed_server_is_removed(
     assert list(settings.data.imports.iterdir()) == []
     with store.read() as database:
         assert database.exec(select(SessionRow.state)).all() == [REMOVING]
+
+
+def test_gaps_beyond_what_can_be_shown_are_merged_and_nothing_of_them_is_lost() -> None:
+    gaps = [
+        ArchivedGap(topic=topic, kind="missed", time=100.0 + place, missed=2)
+        for place in range(15_000)
+        for topic in ("depth", "imu")
+    ]
+    merged = merge_gaps(gaps)
+    assert len(merged) <= GAPS_STORED
+    for topic in ("depth", "imu"):
+        own = [one for one in merged if one.topic == topic]
+        assert sum(one.missed for one in own) == 30_000
+        assert own[0].time == 100.0
+    few = gaps[:GAPS_STORED]
+    assert merge_gaps(few) == few
+    strange = [ArchivedGap(topic=f"t{n}", kind="missed", time=1.0, missed=1) for n in range(2000)]
+    with pytest.raises(ValueError, match="more than 200 topics"):
+        merge_gaps(strange)

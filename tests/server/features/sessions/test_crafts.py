@@ -21,7 +21,7 @@ from server.features.exports.formats import check
 from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
-from server.features.sessions.catalogue import Listing
+from server.features.sessions.listing import Listing
 from server.features.sessions.recorder import STANDING_SECONDS
 from server.features.sessions.recording import Recording, RecordingError
 from server.features.sessions.session import find_row

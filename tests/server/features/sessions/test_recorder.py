@@ -177,7 +177,7 @@ def test_a_session_counts_its_stored_samples(rig: RecorderRig) -> None:
         rig.recorder.add(debug_block(0, "a", "b"))
         rig.clock.forward(2.5)
         await rig.recorder.flush()
-        (shown,) = Catalogue(rig.store).list()
+        (shown,) = Catalogue(rig.store).page().sessions
         assert (shown.samples, shown.duration, shown.state, shown.ended) == (7, 2.5, "recording", None)
         assert shown.bytes == sum(len(chunk.data) for chunk in rig.chunks() + rig.chunks("debug"))
         assert shown == rig.recorder.session
@@ -185,7 +185,7 @@ def test_a_session_counts_its_stored_samples(rig: RecorderRig) -> None:
         done = await rig.recorder.stop(session)
         assert (done.state, done.duration) == ("complete", 3.5)
         assert done.ended is not None
-        assert done == Catalogue(rig.store).list()[0]
+        assert done == Catalogue(rig.store).page().sessions[0]
         row = find_row(rig.store, session)
         assert row.configuration == rig.settings.config.read_text()
         assert rig.told == ["Recording of “first” has begun.", "Recording of “first” has ended."]
@@ -367,13 +367,13 @@ def test_a_session_interrupted_by_a_crash_is_marked_and_keeps_its_chunks(rig: Re
         left = await after.recorder.recover()
         assert left is not None
         await after.recorder.resume(left, {})
-        (session,) = Catalogue(rig.store).list()
+        (session,) = Catalogue(rig.store).page().sessions
         assert (session.state, session.samples, session.duration) == ("interrupted", 5, 4)
         assert session.ended is not None
         assert (session.ended - session.started).total_seconds() == pytest.approx(4, abs=1e-5)
         assert after.numbers() == list(range(5))
         await after.start("next")
-        assert [one.state for one in Catalogue(rig.store).list()] == ["recording", "interrupted"]
+        assert [one.state for one in Catalogue(rig.store).page().sessions] == ["recording", "interrupted"]
 
     play(scenario)
 

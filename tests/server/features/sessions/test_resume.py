@@ -94,7 +94,7 @@ class Wreck:
 
     @property
     def state(self) -> str:
-        (session,) = Catalogue(self.after.store).list()
+        (session,) = Catalogue(self.after.store).page().sessions
         return session.state
 
 

@@ -69,7 +69,7 @@ class Keeper:
         await self.store.write(lambda connection: connection.exec_driver_sql(statement))
 
     def names(self, *, deleted: bool = False) -> list[str]:
-        return [session.name for session in self.catalogue.list(deleted=deleted)]
+        return [session.name for session in self.catalogue.page(deleted=deleted).sessions]
 
     def count(self, table: Any) -> int:
         with self.store.read() as database:
