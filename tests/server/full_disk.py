@@ -25,6 +25,7 @@ from server.features.backup.command import back_up
 from server.features.comm_tests.runs import CommTestStore
 from server.features.scenarios.library import _shipped, keep_scenario
 from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.listing import Listing
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.session import new_row
@@ -140,7 +141,7 @@ async def purge(data: DataFolder, config: Path) -> dict[str, Any]:
     await catalogue.purge(sessions[0])
     await retention.apply(time())
     given_up = not data.reserve.exists()
-    listed = [one.id for one in catalogue.list()]
+    listed = [one.id for one in Listing(store).page().sessions]
     (data.path / "ballast").unlink()
     await recorder.stop(sessions[1])
     await catalogue.delete(sessions[1])

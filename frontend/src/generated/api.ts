@@ -14656,6 +14656,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {

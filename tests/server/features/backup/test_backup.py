@@ -238,11 +238,11 @@ def test_no_number_returns_with_a_backup(settings: Settings, tmp_path: Path, rev
         assert run(settings, "backup", str(path)) == 0
     fill(settings, "two", "three")
     with closing(Reader(settings.data.database)) as reader:
-        last = max(session.id for session in Listing(reader).list())
+        last = max(session.id for session in Listing(reader).page().sessions)
     assert run(settings, "restore", str(path)) == 0
     fill(settings, "four")
     with closing(Reader(settings.data.database)) as reader:
-        (newest, *_) = Listing(reader).list()
+        (newest, *_) = Listing(reader).page().sessions
     assert (newest.name, newest.id) == ("four", last + 1)
 
 
