@@ -26,7 +26,7 @@ class Robot:
         return {"number": number}
 
 
-def test_ten_thousand_that_wait_are_one_stop() -> None:
+def test_a_hundred_that_wait_are_one_stop() -> None:
     async def scenario() -> None:
         robot = Robot()
         shared = SharedStop(robot.stop)
@@ -34,7 +34,7 @@ def test_ten_thousand_that_wait_are_one_stop() -> None:
         for number in range(1, AT_ONCE + 1):
             first.append(asyncio.create_task(shared.ask()))
             await until(lambda begun=number: robot.begun == begun, "the first ones to begin")  # type: ignore[misc]
-        others = [asyncio.create_task(shared.ask()) for _ in range(10_000)]
+        others = [asyncio.create_task(shared.ask()) for _ in range(100)]
         await asyncio.sleep(0)
         robot.may_answer.set()
         answers = await asyncio.gather(*first, *others)

@@ -8,11 +8,13 @@ from contextlib import ExitStack, suppress
 import pytest
 import zenoh
 
+from server.container import Container
 from server.features.doors import ros2_door
 from server.features.doors.ros2_messages import PAYLOAD_MAX
 from server.features.doors.ros2_names import Endpoint
-from server.features.doors.ros2_node import read_payload
-from server.features.doors.ros2_session import Ros2Session
+from server.features.doors.ros2_node import Incoming, read_payload
+from server.features.doors.ros2_session import WAITING_MAX, Ros2Session
+from server.features.doors.twist import CMD_VEL, STOP_TOPIC
 from server.platform.settings import Settings
 from tests.server.blocks import picture_block
 from tests.server.features.doors.fuzz_rig import join_door
@@ -175,6 +177,27 @@ def test_a_subscriber_that_comes_while_its_program_is_disconnected_gets_nothing(
             assert door.publisher.sources() == frozenset()
 
     play_ros2(settings, scenario)
+
+
+def test_of_a_flood_of_stops_as_many_wait_as_of_other_messages(container: Container) -> None:
+    async def scenario() -> None:
+        with join_door(container, "ros2") as (client, pilot, commands):
+
+            async def writable() -> None:
+                pass
+
+            session = Ros2Session(client, pilot, container.doors, commands, writable)
+            drive, stop = (Endpoint("MS", name, "", "", 1, False) for name in (CMD_VEL, STOP_TOPIC))
+            for _ in range(1000):
+                session.receive(Incoming(drive, True, b"", b""))
+            for _ in range(1000):
+                session.receive(Incoming(stop, True, b"", b""))
+            await asyncio.sleep(0)
+            waiting = [session._waiting.get_nowait() for _ in range(session._waiting.qsize())]
+            assert [one.endpoint for one in waiting] == [drive] * WAITING_MAX + [stop] * WAITING_MAX
+            assert client.refused == 2 * (1000 - WAITING_MAX)
+
+    asyncio.run(scenario())
 
 
 def test_a_message_that_is_too_large_is_not_read() -> None:
