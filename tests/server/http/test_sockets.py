@@ -13,7 +13,7 @@ from websockets.exceptions import ConnectionClosedOK
 
 from server.http.listener import open_socket
 from server.http.serving import make_server
-from server.http.websocket_protocol import PARTS_MAX, PIECE_BYTES, WebSocketProtocol
+from server.http.websocket_protocol import PARTS_MAX, PIECE_BYTES, UNREAD_MAX, WebSocketProtocol
 
 SIZES = (0, 1, 125, 126, 65_535, 65_536, 300_000)
 
@@ -101,7 +101,21 @@ def test_the_server_ends_in_order_while_a_page_that_has_left_still_has_unread_da
     assert ended == [True]
 
 
-def test_a_burst_of_small_messages_is_taken_in_pieces() -> None:
+@pytest.fixture
+def protocols(monkeypatch: pytest.MonkeyPatch) -> list[WebSocketProtocol]:
+    """The server's ends of the sockets that were opened."""
+    found: list[WebSocketProtocol] = []
+    opened = WebSocketProtocol.connection_made
+
+    def note(protocol: WebSocketProtocol, transport: Any) -> None:
+        found.append(protocol)
+        opened(protocol, transport)
+
+    monkeypatch.setattr(WebSocketProtocol, "connection_made", note)
+    return found
+
+
+def test_a_burst_of_small_messages_is_taken_in_pieces(protocols: list[WebSocketProtocol]) -> None:
     sent, most = 20_000, 0
     app, done = FastAPI(), asyncio.Event()
     numbers: list[int] = []
@@ -116,21 +130,12 @@ def test_a_burst_of_small_messages_is_taken_in_pieces() -> None:
             most = max(most, protocol.queue.qsize())
         done.set()
 
-    protocols: list[WebSocketProtocol] = []
-    opened = WebSocketProtocol.connection_made
-
-    def note(protocol: WebSocketProtocol, transport: Any) -> None:
-        protocols.append(protocol)
-        opened(protocol, transport)
-
     async def scenario(url: str) -> None:
         async with connect(url) as client:
             client.transport.write(b"".join(_frame(str(number).encode()) for number in range(sent)))
             await done.wait()
 
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(WebSocketProtocol, "connection_made", note)
-        asyncio.run(_serve(app, scenario))
+    asyncio.run(_serve(app, scenario))
     assert numbers == list(range(sent))
     assert most <= PIECE_BYTES / len(_frame(b"1"))
 
@@ -164,7 +169,10 @@ def test_others_have_a_turn_after_each_message() -> None:
     assert len(set(turns)) == len(turns)
 
 
-def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_disconnected() -> None:
+def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_disconnected(
+    protocols: list[WebSocketProtocol],
+) -> None:
+    most = 0
     app, left = FastAPI(), asyncio.Event()
 
     @app.websocket("/")
@@ -175,17 +183,20 @@ def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_disconnected
         left.set()
 
     async def scenario(url: str) -> None:
+        nonlocal most
         client = await connect(url, ping_interval=None)
         client.transport.pause_reading()
         pings = _frame(bytes(125), 9) * 1000
-        while not left.is_set() and not client.transport.is_closing():
-            client.transport.write(pings)
-            while client.transport.get_write_buffer_size() and not left.is_set():
-                await asyncio.sleep(0)
-        await left.wait()
+        while not left.is_set() and most < 2 * UNREAD_MAX:
+            if not client.transport.get_write_buffer_size():
+                client.transport.write(pings)
+            await asyncio.sleep(0)
+            most = max(most, protocols[0].transport.get_write_buffer_size())
         client.transport.abort()
+        await left.wait()
 
     asyncio.run(_serve(app, scenario))
+    assert most < 2 * UNREAD_MAX
 
 
 def test_a_message_without_an_end_is_ended() -> None:
