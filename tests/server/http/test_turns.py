@@ -90,6 +90,7 @@ def test_where_memory_is_short_the_robot_is_operated(caller: Identity, path: str
 def test_where_memory_is_short_everything_else_is_refused_in_words(path: str) -> None:
     async def scenario() -> None:
         crowd = Crowd(short=True)
+        crowd.may_end.set()
         await asyncio.gather(crowd.ask(VIEWER, path), crowd.ask(SHELL, path))
         assert crowd.answers == [503, 503]
         assert not crowd.begun

@@ -154,7 +154,9 @@ def test_a_server_that_has_served_is_started_again_however_it_ended(
 ) -> None:
     (tmp_path / "exit").write_text(how)
     with ending(Family(tmp_path)) as family:
-        wait(lambda: family.whole() and len(family.servers) == 2, "the next server")
+        wait(lambda: family.started.poll() is not None or len(family.servers) == 2, "the next server")
+        assert family.started.poll() is None
+        wait(family.whole, "the next server")
         ended = family.servers[1][1]
         assert described in ended
         assert ended.endswith("Its last words: Memory allocation still failed, giving up.")
