@@ -23,7 +23,7 @@ from server.features.exports.files import put_in_place
 from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions, Job, NewExport
 from server.features.exports.selection import ExportSelection
-from server.platform.disk_space import FileWriteError, explain_write_error
+from server.platform.disk_space import FileWriteError, explain_write_error, require_free
 from server.platform.errors import NotFoundError
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder
@@ -33,8 +33,8 @@ from server.platform.wall_clock import WallClock
 log = logging.getLogger(__name__)
 
 RETENTION_DAYS = 7
-JOBS_MAX = 200
-"""Waiting, running and stored."""
+JOBS_MAX, OPERATORS_ONLY = 200, 50
+"""Waiting, running and stored; of these places so many are for operators alone."""
 CLEAN_SECONDS = 3600.0
 DESCRIBED = ".json"
 ENDED = "The server ended before the file was complete. Export the session again."
@@ -91,8 +91,8 @@ class Jobs:
         """The path of a job's file."""
         return self._folder / job.id
 
-    async def add(self, row: SessionRow, options: NewExport) -> Job:
-        """Queue an export.
+    async def add(self, row: SessionRow, options: NewExport, most: int = JOBS_MAX) -> Job:
+        """Queue an export, where there are fewer than `most`.
 
         Raises ExportRequestError for options that do not fit, RefusedError if there are too many jobs, and
         FileWriteError if the disk is full.
@@ -101,8 +101,9 @@ class Jobs:
         kind = check(plain)
         source = await asyncio.to_thread(ExportSelection, self._store, row, plain)
         kind.require(source)
-        if len(self._jobs) >= JOBS_MAX:
-            raise RefusedError(f"There are {JOBS_MAX} exports already. Delete some first.")
+        if len(self._jobs) >= most:
+            raise RefusedError(f"There are {most} exports already. Delete some first.")
+        require_free(self._folder.parent, 0)
         job = Job(
             id=token_hex(8),
             session=options.session,

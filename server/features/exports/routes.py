@@ -9,7 +9,7 @@ from starlette.responses import FileResponse
 from server.features.exports.archive_reader import ArchiveError
 from server.features.exports.formats import KINDS
 from server.features.exports.imports import Imports
-from server.features.exports.jobs import Jobs, UnknownExportError
+from server.features.exports.jobs import JOBS_MAX, OPERATORS_ONLY, Jobs, UnknownExportError
 from server.features.exports.schemas import Job, NewExport
 from server.features.exports.selection import ExportRequestError
 from server.features.lease.admission import read_admitted
@@ -18,6 +18,7 @@ from server.features.sessions.session import UnknownSessionError, find_row, from
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Operations
+from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
 from server.http.uploads import InvalidUploadError
 from server.platform.disk_space import FileWriteError
@@ -44,9 +45,10 @@ async def list_exports(jobs: Provided[Jobs]) -> list[Job]:
     FileWriteError,
     status_code=201,
 )
-async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewExport) -> Job:
+async def start_export(store: Provided[Store], jobs: Provided[Jobs], caller: Caller, body: NewExport) -> Job:
     """Export a session to a file, in a process beside the server; GET returns the progress."""
-    return await jobs.add(await run_in_threadpool(find_row, store, body.session), body)
+    most = JOBS_MAX if caller.role == "operator" else JOBS_MAX - OPERATORS_ONLY
+    return await jobs.add(await run_in_threadpool(find_row, store, body.session), body, most)
 
 
 @router.operation("GET /exports/{export}", Need.VIEWER, UnknownExportError)

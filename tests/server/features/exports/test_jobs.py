@@ -18,7 +18,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.durable_files import PART
 from server.features.exports import export_process as child_module
 from server.features.exports import jobs as jobs_module
-from server.features.exports.jobs import JOBS_MAX, RETENTION_DAYS, Jobs
+from server.features.exports.jobs import JOBS_MAX, OPERATORS_ONLY, RETENTION_DAYS, Jobs
 from server.features.exports.schemas import ExportOptions, Job, NewExport
 from server.features.sessions.session import find_row
 from server.platform.models import SessionRow
@@ -421,6 +421,22 @@ def test_an_unknown_export_is_not_found(settings: Settings) -> None:
             assert (answer.status_code, "There is no export" in answer.json()["detail"]) == (404, True)
         for strange in ("x", "..%2f..%2fmucat.db", "0" * 17):
             assert (await served.api.get(f"/exports/{strange}/file")).status_code in (404, 422)
+
+    play(settings, scenario)
+
+
+def test_viewers_leave_places_for_the_exports_of_operators(settings: Settings, session: int) -> None:
+    for number in range(JOBS_MAX - OPERATORS_ONLY):
+        finished(settings, f"{number:016x}", datetime.now(UTC))
+
+    async def scenario(served: Served) -> None:
+        program = {"name": "Program", "scope": "read"}
+        token = (await served.api.post("/access/tokens", json=program)).raise_for_status().json()["token"]
+        said, viewer = {"session": session, "format": "csv"}, {"authorization": f"Bearer {token}"}
+        async with AsyncClient(base_url=served.api.base_url, headers=viewer) as client:
+            answer = await client.post("/exports", json=said)
+        assert (answer.status_code, "Delete some first" in answer.json()["detail"]) == (409, True)
+        assert (await served.api.post("/exports", json=said)).status_code == 201
 
     play(settings, scenario)
 
