@@ -41,8 +41,10 @@ def main(open_camera: Callable[[], Camera] | None = None) -> int:
         signal.signal(number, signal.SIG_IGN)
     end_with_parent(number=signal.SIGKILL)
     limit_memory(BYTES_MAX)
-    os.nice(NICENESS)
-    _OOM_SCORE.write_text(_OOM_FIRST, "ascii")
+    # Some containers and sandboxes forbid it; vision is of use all the same.
+    with suppress(OSError):
+        os.nice(NICENESS)
+        _OOM_SCORE.write_text(_OOM_FIRST, "ascii")
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     messages = MessageSocket(socket.socket(fileno=sys.stdin.fileno()))
     try:
