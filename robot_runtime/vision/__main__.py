@@ -19,7 +19,7 @@ from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.lifetime import end_with_parent, limit_memory
 from robot_runtime.vision.camera import Camera, CameraError
-from robot_runtime.vision.interface import VisionOutputs
+from robot_runtime.vision.interface import STARTING, VisionOutputs
 from robot_runtime.vision.messages import MessageSocket
 from robot_runtime.vision.node import VisionNode
 from robot_runtime.vision.process import ALIVE_SECONDS, BYTES_MAX, EXHAUSTED, LOAD_SECONDS
@@ -72,7 +72,7 @@ class PictureLoop:
         self._robot, self._endpoint = start["robot"], start["endpoint"]
         self._zenoh: ZenohTransport | None = None
         self._watched: list[str] = []
-        self._text = "starting"
+        self._text = STARTING
         self._sent = self._clock.now()
         self._ending = False
         settings = parse(VisionSettings, start["settings"])

@@ -13,6 +13,8 @@ from robot_runtime.errors import RefusedError
 
 NO_PICTURE = "no picture: "
 """The beginning of the text on a camera that fails."""
+STARTING = "starting"
+"""The text on a camera of which there was no picture yet."""
 WATCHABLE = ("picture", "mask", "balanced")
 """The topics whose pictures are made only while somebody watches them."""
 

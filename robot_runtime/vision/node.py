@@ -14,7 +14,7 @@ from robot_runtime.contract.limits import VISION_RATE
 from robot_runtime.contract.parsing import parse
 from robot_runtime.errors import RefusedError
 from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
-from robot_runtime.vision.interface import NO_PICTURE, Vision, VisionOutputs
+from robot_runtime.vision.interface import NO_PICTURE, STARTING, Vision, VisionOutputs
 from robot_runtime.vision.sightings import Sightings
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class VisionNode(Vision):
         """Description of the camera, or of its failure."""
         if self._failure is not None:
             return f"{NO_PICTURE}{self._failure}"
-        return str(self._camera) if self._camera else "starting"
+        return str(self._camera) if self._camera else STARTING
 
     def pick(self, question: dict[str, Any]) -> dict[str, Any]:
         """Returns the colour range around a point of the newest picture, after the white balance."""

@@ -25,7 +25,7 @@ from robot_runtime.config import VisionConfig
 from robot_runtime.contract.documents import Detection, Event, Severity
 from robot_runtime.contract.parsing import parse
 from robot_runtime.errors import RefusedError
-from robot_runtime.vision.interface import NO_PICTURE, WATCHABLE, Vision, VisionOutputs
+from robot_runtime.vision.interface import NO_PICTURE, STARTING, WATCHABLE, Vision, VisionOutputs
 from robot_runtime.vision.messages import MessageError, MessageSocket, VisionMessage
 
 log = logging.getLogger(__name__)
@@ -72,7 +72,7 @@ class VisionProcess(Vision):
         self._clock = clock
         self._zenoh = {"robot": robot, "endpoint": endpoint}
         self._program = program
-        self._camera = "starting"
+        self._camera = STARTING
         self._failure = ""
         self._failure_reported = False
         self._loading = False
@@ -196,7 +196,7 @@ class VisionProcess(Vision):
             except OSError:
                 messages.close()
                 raise
-        self._camera, self._watched, self._load_seconds = "starting", [], 0.0
+        self._camera, self._watched, self._load_seconds = STARTING, [], 0.0
         self._started = self._clock.now()
         config = {name: getattr(self._config, name) for name in ("camera", "file", "width", "height")}
         # Settings that change meanwhile come after these.
@@ -261,7 +261,7 @@ class VisionProcess(Vision):
 
     def _take_camera(self, text: str) -> None:
         self._camera = text
-        if text != "starting":
+        if text != STARTING:
             self._failure = ""
 
     def _take_answer(self, number: int, table: dict[str, Any]) -> None:
@@ -301,12 +301,11 @@ class VisionProcess(Vision):
 
     def _recover(self) -> None:
         """Reports the end of a failure once it is past, so that a series of crashes is reported once."""
-        if self._failure_reported and not self._failure:
-            if self._clock.now() - self._started < STEADY_SECONDS:
-                return
+        if not self._failure_reported or self.text.startswith((NO_PICTURE, STARTING)):
+            return
+        if self._clock.now() - self._started >= STEADY_SECONDS:
             self._failure_reported = False
-            if not self._camera.startswith(NO_PICTURE):
-                self._report("info", f"Camera: {self._camera}.")
+            self._report("info", f"Camera: {self.text}.")
 
     def _report(self, severity: Severity, text: str) -> None:
         event = Event(time=self._clock.now(), kind="camera", severity=severity, text=text)
