@@ -180,9 +180,9 @@ class DeviceRow(SQLModel, table=True):
     """A browser or a program that may come in. Times are UTC (s since 1970); `seen` is kept to the hour.
 
     `secret` is the SHA-256 of what it proves itself with. Kinds: "browser" (a cookie), "program" (a bearer
-    token). `page_secret` is the SHA-256 of a browser's second secret, which its page keeps; a browser that
-    was paired before there was one has None, and signs in again.
-    `limited` is a token that may not administer, in any role; it never ends where `ends` is None.
+    token), "removed" (no secret; browsers do not get its name). `page_secret` is the SHA-256 of a browser's
+    second secret, which its page keeps; a browser that was paired before there was one has None, and signs
+    in again. `limited` is a token that may not administer, in any role; it never ends where `ends` is None.
     """
 
     __tablename__ = "device"

@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from hmac import compare_digest
 from math import inf
 
-from sqlalchemy import delete, update
+from sqlalchemy import Connection, delete, update
 from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
@@ -29,6 +29,10 @@ CLOCK_NOT_SET = (
     "sudo date -u -s '2026-11-24 12:00'."
 )
 DEVICES_MAX = 200
+REMOVED = "removed"
+"""Kind of a row that is no device any more."""
+FORMER_MAX = 1000
+"""Removed devices whose names are remembered, the newest."""
 SEEN_SECONDS = 3600.0
 """Interval of storing the last visit; a shorter one would wear out the SD card."""
 DAY_SECONDS = 86400.0
@@ -103,6 +107,8 @@ class Devices:
         self._steady = steady
         self._devices: dict[int, Device] = {}
         self._by_secret: dict[str, int] = {}
+        self._former: list[str] = []
+        """Names of removed devices, which no new browser gets."""
         self._writing: set[asyncio.Task[None]] = set()
         self._naming = asyncio.Lock()
         """Held from the look at the names there are until a new one is stored."""
@@ -112,7 +118,10 @@ class Devices:
         with self._store.read() as session:
             for row in session.exec(select(DeviceRow)):
                 assert row.id is not None
-                self._keep(row.id, row)
+                if row.kind == REMOVED:
+                    self._former.append(row.name)
+                else:
+                    self._keep(row.id, row)
 
     def all(self) -> list[Device]:
         """All devices, by number."""
@@ -170,12 +179,12 @@ class Devices:
     async def add_browser(self, name: str, role: Role) -> tuple[Device, BrowserSecrets]:
         """A new browser, and its secrets, which are not stored.
 
-        Its name gets a number where it looks like another's. Raises RefusedError where there are too many
-        devices, StoreError.
+        Its name gets a number where it looks like that of another, or of a removed one. Raises RefusedError
+        where there are too many devices, StoreError.
         """
         page = make_token()
         async with self._naming:
-            name = number_name(name, self._list_names())
+            name = number_name(name, [*self._list_names(), *self._former])
             device, cookie = await self._add(name, role, "browser", page_secret=digest(page))
         return device, BrowserSecrets(cookie, page)
 
@@ -258,12 +267,19 @@ class Devices:
 
     async def remove(self, number: int) -> None:
         """Remove a device; its secret is invalid at once. Raises UnknownDeviceError, StoreError."""
-        self.get(number)
+        name = self.get(number).name
         self._by_secret = {secret: one for secret, one in self._by_secret.items() if one != number}
-        await self._store.write(
-            lambda connection: connection.execute(delete(DeviceRow).where(col(DeviceRow.id) == number))
-        )
-        self._devices.pop(number, None)
+
+        def forget(connection: Connection) -> None:
+            # No digest of a secret is such a text.
+            values = {"kind": REMOVED, "secret": f"removed {number}", "page_secret": None}
+            connection.execute(update(DeviceRow).where(col(DeviceRow.id) == number).values(values))
+            old = col(DeviceRow.kind) == REMOVED, col(DeviceRow.id) <= number - FORMER_MAX
+            connection.execute(delete(DeviceRow).where(*old))
+
+        await self._store.write(forget, frees=True)
+        if self._devices.pop(number, None) is not None:
+            self._former.append(name)
 
     def see(self, device: Device) -> None:
         """Note a request of the device."""

@@ -4,9 +4,14 @@ import asyncio
 from unicodedata import normalize
 
 import pytest
+from sqlmodel import select
 
+from server.http.sign_in import devices as devices_module
+from server.http.sign_in.devices import Devices
 from server.http.sign_in.names import LOOK_ALIKES, NAME_LENGTH_MAX, clean_name, find_alike, number_name
+from server.platform.models import DeviceRow
 from server.platform.settings import Settings
+from server.platform.store import Store
 from tests.server.serving import Served, play
 from tests.server.sign_in.browsers import browser, new_code
 
@@ -93,3 +98,29 @@ def test_a_chosen_name_that_looks_like_another_s_is_refused_with_that(settings: 
             assert len((await one.api.get("/access/devices")).json()) == 2
 
     play(settings, scenario)
+
+
+def test_no_browser_gets_the_name_of_a_removed_one(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario() -> None:
+        devices = Devices(store)
+        one, secrets = await devices.add_browser("Chrome on Linux", "viewer")
+        other, _ = await devices.add_browser("Chrome on Linux", "viewer")
+        await devices.remove(one.id)
+        await devices.remove(other.id)
+        assert devices.find(secrets.cookie, "browser") is None
+        third, _ = await devices.add_browser("Chrome on Linux", "viewer")
+        # As a server that is started again knows them.
+        again = Devices(store)
+        again.load()
+        assert [device.id for device in again.all()] == [third.id]
+        assert again.find(secrets.cookie, "browser") is None
+        fourth, _ = await again.add_browser("Chrome on Linux", "viewer")
+        assert [third.name, fourth.name] == ["Chrome on Linux 3", "Chrome on Linux 4"]
+        # A person may choose a name that is free again.
+        await again.rename(fourth.id, "Chrome on Linux")
+        monkeypatch.setattr(devices_module, "FORMER_MAX", 1)
+        await again.remove(fourth.id)
+        with store.read() as database:
+            assert database.exec(select(DeviceRow.kind)).all() == ["browser", "removed"]
+
+    asyncio.run(scenario())
