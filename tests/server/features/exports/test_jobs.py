@@ -330,6 +330,7 @@ def test_exports_of_a_purged_session_fail_and_the_next_session_has_another_numbe
         running, waiting = await start(served.api, session), await start(served.api, session, format="jsonl")
         await until(lambda: jobs.find(running["id"]).progress == 0.25, "progress")
         await purge(served, session)
+        assert jobs.find(waiting["id"]).state == "failed"
         following = await asyncio.to_thread(record, served.container.store, settings, [depth_block(0, 10)])
         assert following > session
         texts = [(await ended(served, job))["problem"] for job in (running, waiting)]
