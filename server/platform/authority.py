@@ -9,12 +9,11 @@ from typing import NamedTuple
 
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY, SIMULATORS
-from server.platform.openssl import Signer, make_certificate
+from server.platform.openssl import LEAF, SIGNS, Signer, make_certificate
 from server.platform.settings import Settings, SetupError
 
 AUTHORITY_KEY = "authority.key"
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
-_LEAF = "basicConstraints=critical,CA:FALSE"
 
 
 def check_name(name: str) -> None:
@@ -54,9 +53,8 @@ class Authority:
             part.mkdir(mode=0o700)
             (part / SIMULATORS).mkdir(mode=0o700)
             signer = Signer(part / AUTHORITY, part / AUTHORITY_KEY)
-            authority = ("basicConstraints=critical,CA:TRUE", "keyUsage=critical,keyCertSign")
-            make_certificate(signer.certificate, signer.key, f"{self._robot} authority", authority)
-            own = (f"subjectAltName=DNS:{self._robot}", "extendedKeyUsage=serverAuth", _LEAF)
+            make_certificate(signer.certificate, signer.key, f"{self._robot} authority", SIGNS)
+            own = (f"subjectAltName=DNS:{self._robot}", "extendedKeyUsage=serverAuth", *LEAF)
             make_certificate(part / CERTIFICATE, part / KEY, self._robot, own, signer)
             part.rename(self._folder)
         except OSError as problem:
@@ -86,7 +84,7 @@ class Authority:
         try:
             destination.mkdir(mode=0o700)
             made = destination / CERTIFICATE
-            extensions = (*extensions, "extendedKeyUsage=clientAuth", _LEAF)
+            extensions = (*extensions, "extendedKeyUsage=clientAuth", *LEAF)
             make_certificate(made, destination / KEY, common_name, extensions, self._signer)
             shutil.copyfile(self._signer.certificate, destination / AUTHORITY)
         except OSError as problem:

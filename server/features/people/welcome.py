@@ -30,6 +30,8 @@ def welcome(
             "Browsers will not know its certificate. Compare the SHA-256 fingerprint before you trust it:",
             f"  {certificate.fingerprint}",
         ]
+        if certificate.renewed:
+            lines.append("It was renewed: whatever trusted the one before must trust it anew.")
     if settings.only_here or not access.devices.operators:
         code = access.codes.make("operator")
         links = [pairing_link(url, code) for url in settings.base_urls()]

@@ -14,7 +14,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from server.platform.certificate import prepare_certificate
+from server.platform.certificate import AUTHORITY, prepare_certificate
+from server.platform.openssl import CERTIFICATE, KEY, LEAF, make_certificate, read_validity
 from server.platform.running_server import announce, ask
 from server.platform.settings import Settings, SetupError
 from tests.server.serving import Served, next_text, serve
@@ -99,7 +100,8 @@ def test_the_shell_reaches_the_server_also_while_the_clock_is_not_set(
 def test_the_certificate_is_created_once_and_is_private(encrypted: Settings) -> None:
     made = prepare_certificate(encrypted)
     assert made == prepare_certificate(encrypted)
-    der = ssl.PEM_cert_to_DER_cert(made.file.read_text())
+    own = made.file.read_text().partition(ssl.PEM_FOOTER)
+    der = ssl.PEM_cert_to_DER_cert(own[0] + own[1])
     assert made.fingerprint.replace(":", "").lower() == hashlib.sha256(der).hexdigest()
     assert made.key.stat().st_mode & 0o777 == 0o600
     assert made.key.parent.stat().st_mode & 0o777 == 0o700
@@ -123,3 +125,66 @@ def test_a_certificate_that_cannot_be_made_or_read_is_reported(
     made.file.write_text("no certificate")
     with pytest.raises(SetupError, match="cannot be had"):
         prepare_certificate(encrypted)
+
+
+def text_of(certificate: Path) -> str:
+    command = ["openssl", "x509", "-in", str(certificate), "-noout", "-text"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def age(settings: Settings, days: int, *extensions: str) -> None:
+    """Replace the certificate by one of the same key that is valid for so many days."""
+    folder = settings.data.tls
+    make_certificate(folder / CERTIFICATE, folder / KEY, settings.robot, extensions, days=days)
+
+
+def test_the_certificate_signs_no_other_and_lasts_no_longer_than_browsers_accept(encrypted: Settings) -> None:
+    made = prepare_certificate(encrypted)
+    valid = read_validity(made.file)
+    assert (valid.ends - valid.begins) / 86_400 <= 825
+    text = text_of(made.file)
+    assert "CA:FALSE" in text
+    assert "Key Usage: critical\n                Digital Signature\n" in text
+    assert "TLS Web Server Authentication" in text
+    assert "DNS:localhost, IP Address:127.0.0.1" in text
+    assert not made.renewed
+    # Who trusts its authority trusts it, by its name, and nothing else: the authority's key is nowhere.
+    authority = made.file.with_name(AUTHORITY)
+    assert "CA:TRUE, pathlen:0" in text_of(authority)
+    valid = read_validity(authority)
+    assert (valid.ends - valid.begins) / 86_400 <= 825
+    check = ["openssl", "verify", "-x509_strict", "-CAfile", str(authority), "-verify_hostname", "localhost"]
+    subprocess.run([*check, str(made.file)], check=True, capture_output=True)
+    assert [one.name for one in authority.parent.iterdir() if "PRIVATE" in one.read_text()] == [KEY]
+
+
+@pytest.mark.parametrize(
+    ("days", "extensions", "renewed"),
+    [
+        (36_500, ("basicConstraints=critical,CA:TRUE",), True),
+        (820, ("basicConstraints=critical,CA:TRUE",), True),
+        (900, LEAF, True),
+        (89, LEAF, True),
+        (91, LEAF, False),
+    ],
+)
+def test_a_certificate_is_renewed_with_its_key(
+    encrypted: Settings, days: int, extensions: tuple[str, ...], renewed: bool
+) -> None:
+    made = prepare_certificate(encrypted)
+    key = made.key.read_bytes()
+    age(encrypted, days, *extensions)
+    again = prepare_certificate(encrypted)
+    assert again.renewed is renewed
+    assert again.key.read_bytes() == key
+    assert {one.name for one in again.file.parent.iterdir()} == {AUTHORITY, CERTIFICATE, KEY}
+    assert read_validity(again.file).is_leaf
+    once_more = prepare_certificate(encrypted)
+    assert (once_more.renewed, once_more.fingerprint) == (False, again.fingerprint)
+    ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(again.file, again.key)
+
+
+def test_a_clock_that_is_not_set_renews_nothing(encrypted: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = prepare_certificate(encrypted)
+    monkeypatch.setattr(time, "time", lambda: 300.0)
+    assert prepare_certificate(encrypted) == made
