@@ -24,6 +24,7 @@ export default ts.config(
     plugins: { house },
     rules: {
       'house/rooms': 'error',
+      'house/number-input': 'error',
       'house/component-once': 'error',
       'house/texts-apart': 'error',
       'house/sentences-apart': 'error',

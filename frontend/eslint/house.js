@@ -24,7 +24,7 @@ const LAYERS = [
   ['app'],
 ];
 /** Files beside the rooms' folders. */
-const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'shortcuts', 'storage', 'theme'];
+const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'shortcuts', 'storage', 'theme'];
 const APP = ['App', 'Root', 'lazyPages', 'main'];
 /** A single panel is reached through the registry (panels/registry.ts) alone. */
 const DOORS = { 'panels/*': ['panels'] };
@@ -101,4 +101,16 @@ const componentOnce = {
   },
 };
 
-export const house = { rules: { rooms, 'component-once': componentOnce, 'texts-apart': textsApart, 'sentences-apart': sentencesApart } };
+const FIELD = 'src/parts/NumberInput.svelte: a browser drops the comma of another language, and gives 6 for 0,6';
+
+const numberInput = {
+  meta: { type: 'problem', messages: { browser: 'Numbers are typed into {{ field }}.' }, schema: [] },
+  create(context) {
+    return {
+      "SvelteAttribute[key.name='type'] > SvelteLiteral[value='number']": (node) => context.report({ node, messageId: 'browser', data: { field: FIELD } }),
+      "SvelteAttribute[key.name='type'] Literal[value='number']": (node) => context.report({ node, messageId: 'browser', data: { field: FIELD } }),
+    };
+  },
+};
+
+export const house = { rules: { rooms, 'number-input': numberInput, 'component-once': componentOnce, 'texts-apart': textsApart, 'sentences-apart': sentencesApart } };

@@ -13,9 +13,10 @@ import {
   problemsByField,
   problemsOfAll,
   readDocument,
+  readEntry,
   readList,
-  readNumber,
   sentences,
+  unreadable,
   writeDocument,
   type Fields,
 } from '../src/pages/comm_tests/document';
@@ -63,7 +64,8 @@ describe('the form', () => {
   });
 
   it('reads lists as they are typed', () => {
-    expect(readList('0, 0.5 ;1\n2')).toEqual([0, 0.5, 1, 2]);
+    expect(readList('0, 0.5 1\n2')).toEqual([0, 0.5, 1, 2]);
+    expect(readList('0; 0,5; 1')).toEqual([0, 0.5, 1]);
     expect(readList('0, ')).toEqual([0]);
     expect(readList('')).toEqual([]);
     expect(readList('1e3')).toEqual([1000]);
@@ -71,11 +73,15 @@ describe('the form', () => {
   });
 
   it('leaves what is no number to the server, which names it', () => {
-    expect(readList('9600, fast')).toEqual([9600, 'fast']);
+    expect(readList('9600, fast')).toEqual(['9600, fast']);
+    expect(unreadable(['9600, fast'])).toEqual(['“fast” is not a number.']);
     expect(readList('Infinity')).toEqual(['Infinity']);
+    expect(readList('0,6')).toEqual(['0,6']);
     expect(listText([9600, 'fast'])).toBe('9600, fast');
-    expect(readNumber('ten')).toBe('ten');
-    expect(readNumber('  ')).toBeUndefined();
+    expect(readEntry('ten')).toBe('ten');
+    expect(unreadable('1,234')).toEqual(['“1,234” can be 1.234 or 1234: enter one of these.']);
+    expect(unreadable([0, 0.5])).toEqual([]);
+    expect(readEntry('  ')).toBeUndefined();
   });
 
   it('says the last number where the thesis says the first that is not sent', () => {

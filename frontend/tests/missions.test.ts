@@ -24,7 +24,7 @@ import {
   type Path,
   type Table,
 } from '../src/pages/missions/cards';
-import { fieldText, fieldWords, readField, unknownFields } from '../src/pages/missions/fields';
+import { fieldText, fieldWords, numberProblem, readField, unknownFields } from '../src/pages/missions/fields';
 import { amend, begin, go, record } from '../src/pages/missions/history';
 import { HEAD, ofField, placeProblems, problemsAt } from '../src/pages/missions/problems';
 import { writeMission } from '../src/pages/missions/toml';
@@ -267,7 +267,15 @@ describe('problems', () => {
 describe('fields', () => {
   it('are read as they are typed, and what is no number stays', () => {
     expect(readField('number', '0,5')).toBe(0.5);
+    expect(readField('number', '0,5 m', 'm')).toBe(0.5);
     expect(readField('number', 'deep')).toBe('deep');
+    for (const text of ['1,234', '0x10', '1,2,3']) {
+      expect(readField('number', text)).toBe(text);
+      expect(readField('value', text)).toBe(text);
+      expect(numberProblem(field('depth', { kind: 'number' }), text)).not.toBe('');
+    }
+    expect(numberProblem(field('value', { kind: 'value' }), '1,234')).toContain('1.234 or 1234');
+    expect(numberProblem(field('value', { kind: 'value' }), 'red')).toBe('');
     expect(readField('number', '')).toBeUndefined();
     expect(readField('text', '5')).toBe('5');
     expect([readField('value', 'true'), readField('value', '2'), readField('value', '"2"'), readField('value', 'red')]).toEqual([true, 2, '2', 'red']);

@@ -1,3 +1,4 @@
+import { alike, orderProblem } from '../src/pages/sessions/export/formats';
 import { describe, expect, it } from 'vitest';
 import type { Session, SessionDetail } from '../src/api';
 import { asked, frames } from '../src/pages/sessions/film';
@@ -68,5 +69,18 @@ describe('words and addresses', () => {
     expect(replayLink(7, 12.34)).toBe('#/replay/7/12.3');
     expect(replayLink(7, -0.2)).toBe('#/replay/7/0.0');
     expect(compareLink([7, 9])).toBe('#/sessions/compare/7,9');
+  });
+});
+
+describe('an export', () => {
+  it('that ends before it starts is refused in words', () => {
+    expect(orderProblem(5, 2)).toBe('The end, 2 s, must be after the start, 5 s.');
+    expect([orderProblem(5, null), orderProblem(null, 2), orderProblem(2, 5)]).toEqual(['', '', '']);
+  });
+
+  it('is like another one whose file would be the same', () => {
+    expect(alike({ format: 'csv', start: null }, { format: 'csv', compression: 'none', period: 0.1 })).toBe(true);
+    expect(alike({ format: 'csv', start: 1 }, { format: 'csv' })).toBe(false);
+    expect(alike({ format: 'csv-grid', period: 0.2 }, { format: 'csv-grid' })).toBe(false);
   });
 });

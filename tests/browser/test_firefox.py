@@ -53,3 +53,16 @@ def test_firefox_opens_every_page(firefox: Firefox, stack: Stack) -> None:
         # Firefox complains of fonts and sockets that are still under way when a page is left.
         firefox.wait_for("document.fonts.status === 'loaded'")
         firefox.wait_for(CONNECTED)
+
+
+def test_firefox_reads_a_decimal_comma_and_drops_no_character(firefox: Firefox, stack: Stack) -> None:
+    firefox.open("about:blank")
+    firefox.open(f"{stack.url}/#/tune/parameters")
+    fields = "[...document.querySelectorAll('[role=spinbutton]')]"
+    find = f"{fields}.find((one) => one.labels[0]?.textContent === 'control.set_point')"
+    firefox.wait_for(find)
+    for typed, invalid in (("0,6", "false"), ("1,234", "true"), ("0.6 m", "false")):
+        firefox.evaluate(f"{find}.focus(), {find}.select()")
+        for key in typed:
+            firefox.press_key(key)
+        firefox.wait_for(f"{find}.value === '{typed}' && {find}.ariaInvalid === '{invalid}'")

@@ -41,7 +41,7 @@ export const compare = {
   notAligned: { title: 'No session can be aligned', text: 'No session has the selected moment. Align at the start instead.' },
   noSignal: { title: 'No signal selected', text: 'Select signals under “Signals…”.' },
   noSuchSignal: { title: 'No session has these signals', text: 'Select others under “Signals…”.' },
-  range: { from: 'From', to: 'to', whole: 'Whole time' },
+  range: { label: 'Time range', from: 'From', to: 'to', whole: 'Whole time', endsFirst: (start: string, end: string) => `The end, ${end} s, must be after the start, ${start} s.` },
   save: {
     label: 'Save as',
     png: 'PNG',

@@ -107,7 +107,6 @@ export const vision = {
     },
     numbers: 'Accepted numbers',
     all: 'all',
-    invalidNumbers: (most: number) => `Enter whole numbers from 0 to ${most}, separated by commas.`,
   },
   actions: {
     title: 'Depth by colour',
@@ -126,7 +125,6 @@ export const vision = {
     marker: 'a marker',
     markerNumber: 'Marker number',
     add: 'Add',
-    depthRange: (most: number) => `0 to ${most} m`,
   },
   filters: {
     title: 'Patch filters',

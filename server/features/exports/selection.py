@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
-from math import inf
+from math import ceil, inf
 from typing import Any
 
 from sqlmodel import col, select
@@ -39,6 +39,19 @@ def find_identified(store: Reader, identifier: str) -> SessionRow:
     return row
 
 
+def _check_range(row: SessionRow, options: ExportOptions) -> None:
+    """Raises ExportRequestError for a range that is empty or not within the session."""
+    start, end = options.start, options.end
+    if start is not None and end is not None and start >= end:
+        raise ExportRequestError(f"The end, {end:g} s, must be after the start, {start:g} s.")
+    # Whole seconds, since people enter a duration that was rounded for them. One that is 0 is not known.
+    longest = ceil(row.duration) if row.state != "recording" and row.duration > 0.0 else inf
+    for name, seconds in (("start", start), ("end", end)):
+        if seconds is not None and not 0.0 <= seconds <= longest:
+            within = "it begins at 0 s" if seconds < 0.0 else f"it ends at {row.duration:g} s"
+            raise ExportRequestError(f"The {name}, {seconds:g} s, lies outside of the session: {within}.")
+
+
 class ExportSelection(Recording):
     """The chosen part of a session. `start` and `end` are on the session's steady clock (s).
 
@@ -52,8 +65,7 @@ class ExportSelection(Recording):
         self.options = options
         self.start = -inf if options.start is None else row.started_steady + options.start
         self.end = inf if options.end is None else row.started_steady + options.end
-        if self.start >= self.end:
-            raise ExportRequestError("The range ends before it starts. Choose an end after the start.")
+        _check_range(row, options)
         there = self.counts(self.start, self.end)
         unknown = [name for name in options.topics or () if name not in self.topics]
         if unknown:

@@ -1,5 +1,6 @@
 /** The test document as text and as tests: what the form shows and changes is the text, and nothing beside it. */
 import type { EntryProblem } from '../../api';
+import { readNumber, readNumbers, type NumberRules } from '../../number';
 import { commTests as texts } from '../../texts/comm_tests';
 
 /** One test with its fields as they stand, also those that the server will refuse. */
@@ -73,22 +74,25 @@ function entryText(value: unknown): string {
   return typeof value === 'string' ? value : JSON.stringify(value);
 }
 
-/** What was typed as a list; what is no number stays as it is, for the server to name it. */
-export function readList(text: string): (number | string)[] {
-  return text
-    .split(/[\s,;]+/)
-    .filter((word) => word !== '')
-    .map(readEntry);
+/** What was typed as a list; what cannot be read stays as it is, and the server refuses it, too. */
+export function readList(text: string, rules: NumberRules = {}): (number | string)[] {
+  const { values, problem } = readNumbers(text, rules);
+  return problem === '' ? [...values] : [text];
 }
 
 /** What was typed as one number; undefined where nothing was. */
-export function readNumber(text: string): number | string | undefined {
-  return text.trim() === '' ? undefined : readEntry(text.trim());
+export function readEntry(text: string, rules: NumberRules = {}): number | string | undefined {
+  return text.trim() === '' ? undefined : (readNumber(text, rules).value ?? text);
 }
 
-function readEntry(word: string): number | string {
-  const number = Number(word);
-  return Number.isFinite(number) ? number : word;
+/** Why a list of numbers, or one number, cannot be read as it stands; none where it can, or where there is none. */
+export function unreadable(value: unknown, rules: NumberRules = {}): string[] {
+  const entries: readonly unknown[] = Array.isArray(value) ? value : [value];
+  return entries.flatMap((one) => {
+    if (typeof one !== 'string' || one === '') return [];
+    const { problem } = Array.isArray(value) ? readNumbers(one, rules) : readNumber(one, rules);
+    return problem === '' ? [] : [problem];
+  });
 }
 
 /** The first and the last number of a test; `to_val` is the first that is not sent. */
@@ -110,10 +114,17 @@ export function changeFault(test: Fields, name: string, value: unknown): Fields 
   return Object.keys(faults).length > 0 ? faults : undefined;
 }
 
+/** One entry of `test.faults`, or what is at a place of its pair. */
+export function faultValue(test: Fields, name: string, place?: number): unknown {
+  const value = isFields(test.faults) ? test.faults[name] : undefined;
+  if (place === undefined) return value;
+  const pair: readonly unknown[] = Array.isArray(value) ? value : [];
+  return pair[place];
+}
+
 /** One entry of `test.faults`, as it is typed. */
 export function faultText(test: Fields, name: string, place?: number): string {
-  const value = isFields(test.faults) ? test.faults[name] : undefined;
-  const one: unknown = place === undefined ? value : Array.isArray(value) ? value[place] : undefined;
+  const one = faultValue(test, name, place);
   return one === undefined || one === null ? '' : entryText(one);
 }
 

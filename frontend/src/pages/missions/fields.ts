@@ -1,5 +1,6 @@
 /** Values of fields as they are typed. */
 import type { MissionNodeKind } from '../../api';
+import { readNumber } from '../../number';
 import type { Card, Table } from './cards';
 
 export type StepField = MissionNodeKind['fields'][number];
@@ -13,13 +14,13 @@ export function fieldText(kind: FieldKind, value: unknown): string {
 }
 
 /** What was typed; undefined where nothing was. What is no number stays a text, for the server to name it. */
-export function readField(kind: FieldKind, typed: string): unknown {
+export function readField(kind: FieldKind, typed: string, unit = ''): unknown {
   if (typed === '') return undefined;
-  if (kind === 'number' || kind === 'whole') return readNumber(typed) ?? typed;
+  if (kind === 'number' || kind === 'whole') return readNumber(typed, { unit }).value ?? typed;
   if (kind !== 'value') return typed;
   if (typed === 'true' || typed === 'false') return typed === 'true';
   const quoted = /^"(.*)"$/.exec(typed)?.[1];
-  return quoted === undefined ? (readNumber(typed) ?? typed) : unquote(typed, quoted);
+  return quoted === undefined ? (readNumber(typed, { unit }).value ?? typed) : unquote(typed, quoted);
 }
 
 function unquote(typed: string, inside: string): string {
@@ -30,11 +31,10 @@ function unquote(typed: string, inside: string): string {
   }
 }
 
-/** A number, with a decimal comma too. */
-function readNumber(typed: string): number | undefined {
-  const trimmed = typed.trim().replace(',', '.');
-  const number = Number(trimmed);
-  return trimmed === '' || !Number.isFinite(number) ? undefined : number;
+/** Why a text in a field for numbers, or one that begins as a number, is none; '' where it is a number, or is meant as a text. */
+export function numberProblem({ kind, unit }: StepField, value: unknown): string {
+  if (typeof value !== 'string' || !(kind === 'number' || kind === 'whole' || (kind === 'value' && /^\W?\d[\d.,\s]*$/.test(value)))) return '';
+  return readNumber(value, { unit, whole: kind === 'whole' }).problem;
 }
 
 /** A number in as few digits as say it to four decimals. */

@@ -282,6 +282,25 @@ def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings)
     assert "control: 0.5 s" in readme
 
 
+@pytest.mark.parametrize(
+    ("wanted", "words"),
+    [
+        ({"start": -5.0}, "The start, -5 s, lies outside of the session: it begins at 0 s"),
+        ({"end": 99999.0}, "The end, 99999 s, lies outside of the session: it ends at 1.9 s"),
+        ({"start": 3.0, "end": 4.0}, "The start, 3 s, lies outside"),
+        ({"start": 1.0, "end": 1.0}, "The end, 1 s, must be after the start, 1 s"),
+    ],
+)
+def test_a_range_outside_of_the_session_is_refused(
+    store: Store, session: int, wanted: dict[str, float], words: str
+) -> None:
+    row = find_row(store, session)
+    row.duration = 1.9
+    with pytest.raises(ExportRequestError, match=words):
+        ExportSelection(store, row, ExportOptions(format="csv", **wanted))
+    ExportSelection(store, row, ExportOptions(format="csv", start=0.0, end=2.0))
+
+
 def test_the_grid_reports_its_progress(store: Store, session: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(grid, "WINDOW_LINES", 5)
     shares: list[float] = []
@@ -306,7 +325,7 @@ def test_an_export_is_limited_to_its_range_and_topics(store: Store, session: int
     ("wanted", "words"),
     [
         ({"format": "csv", "topics": ["dephts"]}, "no topic dephts; it has imu, depth"),
-        ({"format": "csv", "start": 2, "end": 1}, "ends before it starts"),
+        ({"format": "csv", "start": 2, "end": 1}, "must be after the start"),
         ({"format": "csv", "columns": ["depth.depth"]}, "for csv-grid alone"),
         ({"format": "csv-grid", "topics": ["depth"]}, "choose columns"),
         ({"format": "csv-grid", "columns": ["depth.dep"]}, "no column depth.dep; there are depth.time"),

@@ -398,7 +398,7 @@ def test_a_full_disk_is_reported_and_no_data_is_lost(
         ({"session": 1, "format": "csv", "topics": []}, 422, "topics"),
         ({"session": 1, "format": "csv", "topics": ["../x"]}, 422, "no topic ../x"),
         ({"session": 1, "format": "csv-grid", "period": 0}, 422, "period"),
-        ({"session": 1, "format": "csv", "start": 2, "end": 1}, 422, "ends before it starts"),
+        ({"session": 1, "format": "csv", "start": 2, "end": 1}, 422, "must be after the start"),
         ({"session": 1, "format": "csv", "path": "/etc"}, 422, "path"),
         ({"session": 9, "format": "csv"}, 404, "no session 9"),
     ],

@@ -1,5 +1,6 @@
 /** The formats, in the order in which they are offered. */
-import type { ExportCompression, ExportFormat } from '../../../api';
+import type { ExportCompression, ExportFormat, NewExport } from '../../../api';
+import { numberText } from '../../../number';
 import { sessions as texts } from '../../../texts/sessions';
 
 export interface Choice {
@@ -28,7 +29,14 @@ export function titleOf(format: ExportFormat): string {
   return texts.exporting.formats[format].title;
 }
 
-/** A number of seconds that somebody typed; null where the field is empty, NaN where it holds no number. */
-export function seconds(text: string): number | null {
-  return text.trim() === '' ? null : Number(text.replace(',', '.'));
+/** Why a range (s) cannot be exported; null: from the beginning, or to the end. */
+export function orderProblem(start: number | null, end: number | null): string {
+  return start !== null && end !== null && start >= end ? texts.exporting.endsFirst(numberText(start), numberText(end)) : '';
+}
+
+/** Whether two exports give the same file of an unchanged session; what is left out is null or empty. */
+export function alike(one: Partial<NewExport>, other: Partial<NewExport>): boolean {
+  const facts = ({ format, topics, columns, start, end, period, compression }: Partial<NewExport>) =>
+    JSON.stringify([format, topics ?? null, columns ?? null, start ?? null, end ?? null, format === 'csv-grid' ? (period ?? 0.1) : null, compression ?? 'none']);
+  return facts(one) === facts(other);
 }

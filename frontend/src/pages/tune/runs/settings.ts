@@ -1,7 +1,7 @@
 /** What an experiment is to be, in the shown unit, as the forms hold it and the server takes it. */
 import type { LoopName, TuningStart } from '../../../api';
 import { tune as texts } from '../../../texts/tune';
-import { loopOf } from './loops';
+import { loopOf, type Loop } from './loops';
 
 export interface StepForm {
   start: number;
@@ -31,6 +31,12 @@ export interface FieldSpec<Name> {
   /** null: as set points of the loop */
   readonly range: readonly [number, number] | null;
   readonly hint: string;
+  readonly whole?: boolean;
+}
+
+/** The range of a field's numbers, in the loop's unit. */
+export function rangeOf({ range }: FieldSpec<string>, loop: Loop): readonly [number, number] {
+  return range ?? [loop.least, loop.most];
 }
 
 export const STEP_FIELDS: readonly FieldSpec<keyof StepForm>[] = [
@@ -49,7 +55,7 @@ export const STEP_MORE: readonly FieldSpec<keyof StepForm>[] = [
 export const RELAY_FIELDS: readonly FieldSpec<keyof RelayForm>[] = [
   { name: 'set_point', ...texts.fields.centre, unit: null, range: null },
   { name: 'amplitude', ...texts.fields.amplitude, unit: '%', range: [10, 100] },
-  { name: 'cycles', ...texts.fields.cycles, unit: '', range: [3, 20] },
+  { name: 'cycles', ...texts.fields.cycles, unit: '', range: [3, 20], whole: true },
 ];
 
 export const RELAY_MORE: readonly FieldSpec<keyof RelayForm>[] = [
