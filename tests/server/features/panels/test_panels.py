@@ -34,7 +34,8 @@ def test_scripts_in_the_folder_are_panels(tmp_path: Path) -> None:
         "Climb rate": "",
         "gone": "gone.js cannot be read: No such file or directory.",
         "large": "large.js has more than 200 kB.",
-        "latin": "latin.js is not a text in UTF-8.",
+        "latin": "latin.js has a byte in line 1 that is not UTF-8; it is probably saved as Windows-1252 or "
+        "Latin-1: save it as UTF-8.",
         "ünï": "ünï.js needs another name: up to 40 letters without accents, digits, spaces, - and _.",
     }
     assert "export default" in read_panel(folder, "Climb rate").script
