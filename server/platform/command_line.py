@@ -1,6 +1,7 @@
 """The parts that the commands of `mucat` share."""
 
 import os
+import re
 from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
@@ -23,6 +24,23 @@ config_option = click.option(
     envvar="MUCAT_CONFIG",
     help="The robot's configuration.  [default: $MUCAT_CONFIG, or robot.toml here or in the data folder]",
 )
+
+
+class NumberType(click.ParamType[float]):
+    """A number with a decimal point; Python's own notations, such as 1_0 and nan, are none."""
+
+    name = "float"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number, or fail with what to write instead."""
+        if isinstance(value, float):
+            return value
+        if not re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?", str(value), re.IGNORECASE):
+            self.fail(f"{value!r} is not a number. Write a decimal point, not a comma: 1.5.", param, ctx)
+        return float(value)
+
+
+NUMBER = NumberType()
 
 
 class CommandError(click.ClickException):

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from server.platform.command_line import FILE, RowCommand, name_error, with_settings
+from server.platform.command_line import FILE, NUMBER, RowCommand, name_error, with_settings
 from server.platform.folder_lock import claim, record_command
 from server.platform.running_server import send_file, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
@@ -22,9 +22,9 @@ IMPORT_SECONDS = 3600.0
 @click.option("--format", type=click.Choice(FORMATS), default="csv")
 @click.option("--topics", multiple=True, metavar="TOPIC...", help="Default: all.")
 @click.option("--columns", multiple=True, metavar="TOPIC.COLUMN...", help="For csv-grid. Default: all.")
-@click.option("--start", type=float, metavar="S", help="Begin so many seconds after the session's start.")
-@click.option("--end", type=float, metavar="S", help="End so many seconds after the session's start.")
-@click.option("--period", type=float, metavar="S", help="Seconds between lines of csv-grid. Default: 0.1.")
+@click.option("--start", type=NUMBER, metavar="S", help="Begin so many seconds after the session's start.")
+@click.option("--end", type=NUMBER, metavar="S", help="End so many seconds after the session's start.")
+@click.option("--period", type=NUMBER, metavar="S", help="Seconds between lines of csv-grid. Default: 0.1.")
 @click.option(
     "--spreadsheet",
     type=click.Choice(("point", "comma")),

@@ -94,3 +94,11 @@ def test_impossible_requests_are_refused_with_the_reason(
 
 def test_the_shell_knows_every_format() -> None:
     assert set(FORMATS) == set(get_args(Format))
+
+
+@pytest.mark.parametrize("typed", ["1,5", "1_0", "nan", "1.234,5", "0x1"])
+def test_a_number_in_another_notation_is_refused_in_words(
+    settings: Settings, session: int, typed: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(settings, "export", str(session), "--start", typed) == 2
+    assert "is not a number. Write a decimal point" in " ".join(capsys.readouterr().err.split())

@@ -292,7 +292,7 @@ def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings)
     ],
 )
 def test_a_range_outside_of_the_session_is_refused(
-    store: Store, session: int, wanted: dict[str, float], words: str
+    store: Store, session: int, wanted: dict[str, Any], words: str
 ) -> None:
     row = find_row(store, session)
     row.duration = 1.9
