@@ -36,7 +36,7 @@ export function orderProblem(start: number | null, end: number | null): string {
 
 /** Whether two exports give the same file of an unchanged session; what is left out is null or empty. */
 export function alike(one: Partial<NewExport>, other: Partial<NewExport>): boolean {
-  const facts = ({ format, topics, columns, start, end, period, compression }: Partial<NewExport>) =>
-    JSON.stringify([format, topics ?? null, columns ?? null, start ?? null, end ?? null, format === 'csv-grid' ? (period ?? 0.1) : null, compression ?? 'none']);
+  const facts = ({ format, topics, columns, start, end, period, compression, spreadsheet }: Partial<NewExport>) =>
+    JSON.stringify([format, topics ?? null, columns ?? null, start ?? null, end ?? null, format === 'csv-grid' ? (period ?? 0.1) : null, compression ?? 'none', spreadsheet ?? 'none']);
   return facts(one) === facts(other);
 }
