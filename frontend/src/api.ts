@@ -102,6 +102,19 @@ export type WantedComparison = Schemas['ComparisonQuery'];
 export type Timeline = Schemas['Timeline'];
 export type RecordedMission = Schemas['RecordedMission'];
 
+export interface SessionQuery {
+  readonly search?: string;
+  readonly tags?: readonly string[];
+  readonly deleted?: boolean;
+  readonly before?: Session['id'];
+}
+
+/** Some of the sessions that match, and how many match. */
+export interface SessionsPage {
+  readonly sessions: readonly Session[];
+  readonly total: number;
+}
+
 /** Blocks as on the live socket, and how many samples could not be given. */
 export interface Stretch {
   readonly blocks: ArrayBuffer;
@@ -119,6 +132,10 @@ const TIMEOUT_COMM_TEST = 120_000;
 const TIMEOUT_MISSION = 30_000;
 /** ms; hours of recordings are read */
 const TIMEOUT_COMPARE = 60_000;
+
+async function readSessions(response: Response): Promise<SessionsPage> {
+  return { sessions: (await response.json()) as Session[], total: Number(response.headers.get('Total-Count')) };
+}
 
 async function readStretch(response: Response): Promise<Stretch> {
   return { blocks: await response.arrayBuffer(), leftOut: Number(response.headers.get('Left-Out')) };
@@ -180,7 +197,13 @@ export const api = {
     ),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
-  sessions: (deleted = false) => request<Session[]>('GET', `/sessions?deleted=${deleted}`),
+  /** some sessions, newest first; with `before` those of lower numbers */
+  sessions: ({ tags = [], ...query }: SessionQuery = {}) => {
+    const fields = Object.entries(query).map(([name, value]) => [name, String(value)]);
+    const written = new URLSearchParams([...fields, ...tags.map((tag) => ['tag', tag])]);
+    return send('GET', `/sessions?${written.toString()}`, undefined, undefined, readSessions);
+  },
+  tags: () => request<string[]>('GET', '/tags'),
   session: (id: Session['id']) => request<SessionDetail>('GET', `/sessions/${id}`),
   changeSession: (id: Session['id'], said: SessionChanges) => request<Session>('PATCH', `/sessions/${id}`, said),
   deleteSession: (id: Session['id']) => request<Session>('DELETE', `/sessions/${id}`),

@@ -1,36 +1,10 @@
 import { alike, orderProblem } from '../src/pages/sessions/export/formats';
 import { describe, expect, it } from 'vitest';
-import type { Session, SessionDetail } from '../src/api';
+import type { SessionDetail } from '../src/api';
 import { asked, frames } from '../src/pages/sessions/film';
-import { find, tagsOf, toggle, withTags } from '../src/pages/sessions/find';
+import { toggle, withTags } from '../src/pages/sessions/find';
 import { compareLink, replayLink } from '../src/pages/sessions/links';
 import { gapWords } from '../src/pages/sessions/words';
-
-const session = (name: string, more: Partial<Session> = {}) =>
-  ({ name, note: '', scenario_name: '', tags: [], ...more }) as unknown as Session;
-const names = (sessions: readonly Session[]) => sessions.map(({ name }) => name);
-
-describe('find', () => {
-  const all = [
-    session('Hover', { note: 'im KÄLTEN Becken', tags: ['pool', 'thesis'] }),
-    session('Dive', { scenario_name: 'figure_14', tags: ['pool'] }),
-    session('Sea'),
-  ];
-
-  it('wants every word, wherever it stands', () => {
-    expect(names(find(all, '  kälten HOVER ', []))).toEqual(['Hover']);
-    expect(names(find(all, 'figure', []))).toEqual(['Dive']);
-    expect(names(find(all, 'pool', []))).toEqual(['Hover', 'Dive']);
-    expect(names(find(all, 'hover dive', []))).toEqual([]);
-    expect(names(find(all, '', []))).toEqual(['Hover', 'Dive', 'Sea']);
-  });
-
-  it('wants every tag', () => {
-    expect(names(find(all, '', ['pool']))).toEqual(['Hover', 'Dive']);
-    expect(names(find(all, '', ['pool', 'thesis']))).toEqual(['Hover']);
-    expect(tagsOf(all)).toEqual(['pool', 'thesis']);
-  });
-});
 
 describe('tags', () => {
   it('are added once, whatever their letters', () => {

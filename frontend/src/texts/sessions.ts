@@ -50,6 +50,7 @@ export const sessions = {
   },
   gaps: {
     title: 'Missing samples',
+    first: (shown: string, all: string) => `The first ${shown} of ${all} gaps. An archive has all.`,
     samples: (one: boolean, count: string) => (one ? '1 sample' : `${count} samples`),
     missed: (samples: string, topic: string) => `${samples} of ${topic} never arrived`,
     restarted: (topic: string) => `the source of ${topic} restarted`,
@@ -88,6 +89,7 @@ export const sessions = {
   },
   bookmarks: {
     title: 'Bookmarks',
+    first: (shown: string, all: string) => `The first ${shown} of ${all} bookmarks. An archive has all.`,
     none: 'No bookmarks. Add one while recording (Mark button or key M) or during replay.',
     noText: 'no text',
     edit: (time: string) => `Edit bookmark at ${time}`,
