@@ -6364,6 +6364,16 @@ export interface components {
              */
             keep_free: number;
             /**
+             * Removing
+             * @description number of sessions that are being removed for good
+             */
+            removing: number;
+            /**
+             * Removing Bytes
+             * @description bytes of these that are still to be removed
+             */
+            removing_bytes: number;
+            /**
              * Reusable
              * @description of these, bytes that are free for reuse
              */

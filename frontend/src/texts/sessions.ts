@@ -12,6 +12,7 @@ export const sessions = {
     backups: 'Backups',
     other: 'Other files',
     free: 'Free',
+    removing: (count: number, left: string) => `Deleting ${count === 1 ? '1 session' : `${count} sessions`} permanently: ${left} left.`,
     olderGo: (days: number) => `Sessions older than ${days} days are moved to the bin.`,
     oldestGo: (gigabytes: number) => `Under ${gigabytes} GB free, oldest sessions are deleted, except kept and tagged ones.`,
   },

@@ -14,7 +14,7 @@ from time import time
 from typing import NamedTuple
 
 from sqlalchemy import ColumnElement, Connection, UpdateBase, delete, update
-from sqlmodel import col, select
+from sqlmodel import col, func, select
 
 from robot_runtime.clock import Clock
 from server.features.sessions.session import HIDDEN, REMOVING
@@ -31,6 +31,8 @@ log = logging.getLogger(__name__)
 PERIOD = 60.0
 """s between two runs."""
 CHUNKS_AT_ONCE = 32
+ROWS_AT_ONCE = 1000
+"""Gaps or bookmarks."""
 PAGES_AT_ONCE = 64
 PAUSE = 0.02
 """s between two such steps, which leave the disk to the recorder."""
@@ -198,13 +200,25 @@ class RetentionWorker:
         return await asyncio.to_thread(read)
 
     async def _remove(self, session: int) -> None:
-        some = select(Chunk.id).where(Chunk.session_id == session).limit(CHUNKS_AT_ONCE)
-        while await self._store.execute(delete(Chunk).where(col(Chunk.id).in_(some))) > 0:
+        def remove_chunks(connection: Connection) -> int:
+            some = select(Chunk.id, func.length(Chunk.data)).where(Chunk.session_id == session)
+            found = connection.execute(some.limit(CHUNKS_AT_ONCE)).all()
+            connection.execute(delete(Chunk).where(col(Chunk.id).in_([number for number, _ in found])))
+            # What is left shows on the page how far it is.
+            left = col(SessionRow.bytes) - sum(size for _, size in found)
+            row = update(SessionRow).where(col(SessionRow.id) == session)
+            connection.execute(row.values(bytes=func.max(left, 0)))
+            return len(found)
+
+        while await self._store.write(remove_chunks) > 0:
             await asyncio.sleep(PAUSE)
+        for table in (Gap, BookmarkRow):
+            rows = select(table.id).where(table.session_id == session).limit(ROWS_AT_ONCE)
+            while await self._store.execute(delete(table).where(col(table.id).in_(rows))) > 0:
+                await asyncio.sleep(PAUSE)
 
         def remove_rest(connection: Connection) -> None:
-            for table in (Gap, BookmarkRow, SessionTag):
-                connection.execute(delete(table).where(col(table.session_id) == session))
+            connection.execute(delete(SessionTag).where(col(SessionTag.session_id) == session))
             connection.execute(delete(SessionRow).where(col(SessionRow.id) == session))
 
         await self._store.write(remove_rest, frees=True)

@@ -6,7 +6,7 @@ from pathlib import Path
 from pydantic import BaseModel, Field
 from sqlmodel import col, func, select
 
-from server.features.sessions.session import HIDDEN
+from server.features.sessions.session import HIDDEN, REMOVING
 from server.platform.models import SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -27,6 +27,8 @@ class Storage(BaseModel):
     sessions_bytes: int
     bin: int = Field(description="number of sessions in the bin")
     bin_bytes: int
+    removing: int = Field(description="number of sessions that are being removed for good")
+    removing_bytes: int = Field(description="bytes of these that are still to be removed")
     undo_days: float = Field(description="days in the bin before a session is removed")
     keep_days: float = Field(description="days after which a session is moved to the bin; 0: never")
     keep_free: float = Field(description="GB to keep free by removing the oldest sessions; 0: no such rule")
@@ -43,6 +45,8 @@ def measure(store: Store, settings: Settings) -> Storage:
         size = connection.exec_driver_sql("PRAGMA page_size").scalar_one()
         rows = database.exec(query.where(col(SessionRow.state).not_in(HIDDEN)).group_by(binned))
         found = {bool(deleted): (count, total) for deleted, count, total in rows}
+        going = select(func.count(), func.coalesce(func.sum(SessionRow.bytes), 0))
+        removing, removing_bytes = database.exec(going.where(SessionRow.state == REMOVING)).one()
     disk = shutil.disk_usage(folder.path)
     sessions, sessions_bytes = found.get(False, (0, 0))
     in_bin, bin_bytes = found.get(True, (0, 0))
@@ -57,6 +61,8 @@ def measure(store: Store, settings: Settings) -> Storage:
         sessions_bytes=sessions_bytes,
         bin=in_bin,
         bin_bytes=bin_bytes,
+        removing=removing,
+        removing_bytes=removing_bytes,
         undo_days=rules.undo_days,
         keep_days=rules.keep_days,
         keep_free=rules.keep_free,

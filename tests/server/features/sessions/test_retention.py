@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import pytest
+from sqlalchemy import insert
 from sqlmodel import func, select
 
 import server.features.sessions.retention as tidying_module
@@ -19,7 +20,7 @@ from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.retention import BIN_SECONDS, RetentionWorker
 from server.features.sessions.session import REMOVING, new_row
-from server.platform.models import Chunk, SessionRow
+from server.platform.models import Chunk, Gap, SessionRow
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -326,3 +327,34 @@ def test_the_worker_ends_also_where_it_is_asked_to_run_at_that_moment(
         assert done
 
     asyncio.run(scenario())
+
+
+def test_the_bytes_that_are_still_to_be_removed_become_fewer(
+    keep: Keep, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tidying_module, "CHUNKS_AT_ONCE", 1)
+    monkeypatch.setattr(tidying_module, "ROWS_AT_ONCE", 2)
+
+    async def scenario(keeper: Keeper) -> None:
+        store = keeper.store
+        session = await keeper.record("goes", DAY)
+        gap = {"session_id": session, "topic": "depth", "kind": "missed", "time": 1.0, "missed": 1}
+        await store.write(lambda connection: connection.execute(insert(Gap), [gap] * 5))
+        await keeper.catalogue.delete(session)
+        await keeper.catalogue.purge(session)
+        left: list[tuple[int, int]] = []
+        write = store.write
+
+        async def watch(*change: Any, **options: Any) -> Any:
+            storage = storage_module.measure(store, settings)
+            left.append((storage.removing, storage.removing_bytes))
+            return await write(*change, **options)
+
+        monkeypatch.setattr(store, "write", watch)
+        await keeper.retention.apply(NOW)
+        sizes = [size for count, size in left if count == 1]
+        assert sizes == sorted(sizes, reverse=True)
+        assert len(set(sizes)) == 4
+        assert (sizes[-1], left[-1], keeper.count(Gap)) == (0, (0, 0), 0)
+
+    keep(NO_RULES, scenario)
