@@ -27,6 +27,7 @@ export type Storage = Schemas['Storage'];
 export type ExportJob = Schemas['Job'];
 export type ExportFormat = Schemas['ExportOptions']['format'];
 export type ExportCompression = Schemas['ExportOptions']['compression'];
+export type ExportSpreadsheet = Schemas['ExportOptions']['spreadsheet'];
 export type NewExport = Pick<Schemas['NewExport'], 'session' | 'format'> & Partial<Schemas['NewExport']>;
 export type DoorDetails = Schemas['DoorDetails'];
 export type Finding = Schemas['Finding'];
@@ -157,6 +158,11 @@ function orderFor<T>(method: string, path: string, body?: object, timeout?: numb
   return refusal === null ? request<T>(method, path, body, timeout) : Promise.resolve({ problem: refusal });
 }
 
+/** The spreadsheet of this browser's country: who presses a button for CSV opens it there. */
+function ownSpreadsheet(): ExportSpreadsheet {
+  return (0.5).toLocaleString().includes(',') ? 'comma' : 'point';
+}
+
 export const api = {
   stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
   /** Send the robot a command; STOP has its own way. */
@@ -173,7 +179,7 @@ export const api = {
   devices: () => request<Device[]>('GET', '/access/devices'),
   changeDevice: (device: number, said: { role?: Role; name?: string }) => command('PATCH', `/access/devices/${device}`, said),
   audit: (query: URLSearchParams) => request<AuditList>('GET', `/audit?${query.toString()}`),
-  auditFile: (query: URLSearchParams) => download(`/audit/csv?${query.toString()}`, () => undefined),
+  auditFile: (query: URLSearchParams) => download(`/audit/csv?${query.toString()}&spreadsheet=${ownSpreadsheet()}`, () => undefined),
   revoke: (device: number) => command('DELETE', `/access/devices/${device}`),
   makeToken: (token: Schemas['NewToken']) => request<Token>('POST', '/access/tokens', token),
   visionSettings: () => request<{ settings: VisionSettings; configured: VisionSettings }>('GET', '/vision'),
@@ -249,7 +255,8 @@ export const api = {
   cancelCommTest: () => command('POST', '/comm-tests/cancel', undefined, TIMEOUT_COMM_TEST),
   commTestRuns: () => request<CommTestSummary[]>('GET', '/comm-tests/runs'),
   commTestRun: (id: CommTestRun['id']) => request<CommTestRun>('GET', `/comm-tests/runs/${id}`),
-  commTestFile: (id: CommTestRun['id'], format: 'csv' | 'json') => `/api/comm-tests/runs/${id}/${format}`,
+  commTestFile: (id: CommTestRun['id'], format: 'csv' | 'json') =>
+    `/api/comm-tests/runs/${id}/${format}${format === 'csv' ? `?spreadsheet=${ownSpreadsheet()}` : ''}`,
   scenarios: () => request<ScenarioText[]>('GET', '/scenarios'),
   keepScenario: (text: string, base: string | null) => request<ScenarioSummary>('POST', '/scenarios', { text, base }),
   checkScenario: (text: string) => request<ScenarioCheck>('POST', '/scenarios/check', { text }),

@@ -4,6 +4,7 @@ import { findBroken, type Heard } from '../src/live/hops';
 const WELL: Heard = {
   connection: 'open',
   farewell: '',
+  untrusted: false,
   parts: [{ name: 'runtime', state: 'ok', text: 'It runs.' }],
   silent: false,
   state: { connected: true, connection: 'connected' },
@@ -33,6 +34,12 @@ describe('findBroken', () => {
     const broken = findBroken({ ...WELL, silent: true, parts: [{ name: 'runtime', state: 'absent', text: 'The bring-up uses it.' }] });
     expect(broken).toMatchObject({ what: 'The bring-up uses it.', reserved: true });
     expect(findBroken({ ...WELL, silent: true })?.reserved).toBeUndefined();
+  });
+
+  it('says how to trust the certificate where HTTPS works and the live connection does not', () => {
+    const broken = findBroken({ ...WELL, connection: 'lost', untrusted: true });
+    expect(broken?.what).toMatch(/does not trust the robot’s certificate.*STOP works/);
+    expect(findBroken({ ...WELL, untrusted: true })).toBeNull();
   });
 
   it('passes on why the server ended the connection', () => {

@@ -43,7 +43,7 @@ class ServerEnd {
 }
 
 const YOU = { name: 'Firefox on Linux', role: 'operator', client: 7 };
-const access = { know: vi.fn(), check: vi.fn(() => Promise.resolve()) };
+const access = { know: vi.fn(), check: vi.fn(() => Promise.resolve(true)) };
 const server = () => ServerEnd.opened.at(-1) ?? new ServerEnd();
 let live: Live;
 let end: () => void;
@@ -72,6 +72,30 @@ afterEach(() => {
 const depths = () => Array.from({ length: live.rings.depth.length }, (_, order) => live.rings.depth.column('depth')[order]);
 
 describe('Live', () => {
+  it.each([
+    ['wss://robot/api/live', true, true],
+    ['ws://robot/api/live', true, false],
+    ['wss://robot/api/live', false, false],
+  ])('suspects the certificate of %s where HTTP answers (%s)', async (url, answers, suspected) => {
+    end();
+    const feed = new LiveFeed(url, { know: vi.fn(), check: vi.fn(() => Promise.resolve(answers)) });
+    ({ live } = feed);
+    end = feed.start();
+    for (let refused = 0; refused < 3; refused += 1) {
+      expect(live.untrusted).toBe(false);
+      server().close();
+      await vi.advanceTimersByTimeAsync(3000);
+    }
+    expect(live.untrusted).toBe(suspected);
+    server().greet();
+    expect(live.untrusted).toBe(false);
+    server().close();
+    await vi.advanceTimersByTimeAsync(30_000);
+    server().close();
+    await vi.advanceTimersByTimeAsync(30_000);
+    expect(live.untrusted).toBe(false);
+  });
+
   it('takes in rows and documents', () => {
     server().greet();
     server().give(depthBlock(99, [0.1, 0.2]), documentBlock(OTHER_TOPICS.debug, [{ time: 99, level: 1, text: 'hello' }]));

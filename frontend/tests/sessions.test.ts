@@ -1,6 +1,6 @@
-import { alike, orderProblem } from '../src/pages/sessions/export/formats';
 import { describe, expect, it } from 'vitest';
 import type { SessionDetail } from '../src/api';
+import { alike, findTooLong, orderProblem, SHEET_LINES } from '../src/pages/sessions/export/formats';
 import { asked, frames } from '../src/pages/sessions/film';
 import { toggle, withTags } from '../src/pages/sessions/find';
 import { compareLink, replayLink } from '../src/pages/sessions/links';
@@ -56,5 +56,21 @@ describe('an export', () => {
     expect(alike({ format: 'csv', start: null }, { format: 'csv', compression: 'none', period: 0.1 })).toBe(true);
     expect(alike({ format: 'csv', start: 1 }, { format: 'csv' })).toBe(false);
     expect(alike({ format: 'csv-grid', period: 0.2 }, { format: 'csv-grid' })).toBe(false);
+    expect(alike({ format: 'csv', spreadsheet: 'comma' }, { format: 'csv' })).toBe(false);
+  });
+});
+
+describe('findTooLong', () => {
+  const imu = { name: 'imu', lines: 2 * SHEET_LINES };
+  it('names the longest table that a sheet does not hold', () => {
+    expect(findTooLong([{ name: 'depth', lines: SHEET_LINES }, imu], 100, null, null)?.name).toBe('imu');
+    expect(findTooLong([{ name: 'depth', lines: SHEET_LINES - 1 }], 100, null, null)).toBeNull();
+    expect(findTooLong([], 100, null, null)).toBeNull();
+  });
+
+  it('counts the share that is in the range', () => {
+    expect(findTooLong([imu], 100, 50.1, null)).toBeNull();
+    expect(findTooLong([imu], 100, -10, 40)).toBeNull();
+    expect(findTooLong([imu], 100, 20, 1000)).toEqual({ name: 'imu', lines: Math.ceil(2 * SHEET_LINES * 0.8) + 1 });
   });
 });

@@ -42,12 +42,13 @@ export class Access {
     this.#take(me);
   }
 
-  /** Find out whether this page is signed in still; `reason` is why it may not be. */
-  async check(reason: string): Promise<void> {
+  /** Find out whether this page is signed in still; `reason` is why it may not be. Returns whether the server says so. */
+  async check(reason: string): Promise<boolean> {
     const me = await this.#ask();
-    if (me === null) return;
+    if (me === null) return false;
     if (me.signed_in) this.#take(me);
     else this.leave(reason || me.ended || texts.noLongerSignedIn);
+    return me.signed_in;
   }
 
   /** Use a code. Returns what went wrong, or null. */

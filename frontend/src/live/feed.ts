@@ -22,6 +22,9 @@ const DATE_JUMP = 0.5;
 const AWAY = 50;
 
 /** The robot as it is now: fills a `Live` from the live socket. */
+/** Attempts to open the socket before its certificate is suspected: a server may just be starting */
+const REFUSALS = 3;
+
 export class LiveFeed {
   readonly live: Live;
   readonly pilot: Pilot;
@@ -32,11 +35,14 @@ export class LiveFeed {
   readonly #past: Past;
   /** that of the server which this page was loaded from */
   #pageVersion: string | null = null;
+  #wasOpen = false;
+  #refusals = 0;
 
   /** @param access whoever uses this page; told where the server does not know them any more */
   constructor(
     url: string,
     private readonly access: Pick<Access, 'know' | 'check'>,
+    private readonly encrypted = url.startsWith('wss:'),
   ) {
     this.#socket = new LiveSocket(url, {
       opened: () => this.#opened(),
@@ -101,6 +107,8 @@ export class LiveFeed {
     live.connection = 'open';
     live.serverError = '';
     live.farewell = '';
+    live.untrusted = false;
+    this.#wasOpen = true;
     this.#progress.reconnect();
     live.commTest.reconnect();
     live.gaps.restart();
@@ -116,8 +124,16 @@ export class LiveFeed {
     this.live.roundTrip = null;
     this.#control.leave();
     nameClient(null);
-    if (refused) void this.access.check(reason);
     if (reason !== '') this.live.farewell = reason;
+    if (refused) void this.#ask(reason);
+  }
+
+  /** Ask by HTTP why the socket does not open. Where that works by TLS, the browser may distrust the certificate. */
+  async #ask(reason: string): Promise<void> {
+    this.#refusals += 1;
+    const answers = await this.access.check(reason);
+    const { live } = this;
+    live.untrusted = answers && reason === '' && this.encrypted && !this.#wasOpen && this.#refusals >= REFUSALS && live.connection === 'lost';
   }
 
   #read(text: string): void {

@@ -23,6 +23,8 @@ export interface Heard {
   readonly connection: 'connecting' | 'open' | 'lost';
   /** why the server ended the connection, where it said so */
   readonly farewell: string;
+  /** whether the server answers by HTTPS, and the live connection never opened */
+  readonly untrusted: boolean;
   readonly parts: readonly Part[];
   /** whether the runtime's state has not come to this page for a while */
   readonly silent: boolean;
@@ -31,7 +33,10 @@ export interface Heard {
 }
 
 /** The first hop, seen from the page, that does not carry; null where all do or nothing is known yet. */
-export function findBroken({ connection, farewell, parts, silent, state }: Heard): Broken | null {
+export function findBroken({ connection, farewell, untrusted, parts, silent, state }: Heard): Broken | null {
+  if (connection === 'lost' && untrusted) {
+    return { hop: 0, title: texts.untrusted, what: texts.trustIt };
+  }
   if (connection === 'lost') {
     return {
       hop: 0,

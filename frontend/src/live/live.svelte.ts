@@ -49,6 +49,8 @@ export class Live {
   connection = $state<'connecting' | 'open' | 'lost'>('connecting');
   /** why the server ended the connection, where it said so */
   farewell = $state('');
+  /** whether the page comes by TLS and the live connection does not: the browser may distrust the certificate for it */
+  untrusted = $state(false);
   /** ms to the server and back; null while unknown */
   roundTrip = $state<number | null>(null);
   hello = $state.raw<Hello | null>(null);

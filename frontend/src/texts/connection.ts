@@ -6,6 +6,8 @@ export const connection = {
     runtime: 'Runtime',
     board: 'Board',
     serverSilent: 'The server does not answer',
+    untrusted: 'The live connection does not open',
+    trustIt: 'This device does not trust the robot’s certificate for it. Trust the certificate first: Help, Access, TLS. STOP works meanwhile.',
     serverEnded: 'The server ended the connection',
     pageReconnects:
       'The page reconnects by itself. If it does not, check that the robot is switched on, that its server runs and that this device is in its network.',

@@ -127,8 +127,9 @@ export const sessions = {
     title: 'Export',
     format: 'Format',
     formats: {
-      csv: { title: 'CSV, one table per topic', text: 'For spreadsheets, MATLAB and scripts. Every sample at its own time.' },
+      csv: { title: 'CSV, one table per topic', text: 'For MATLAB, scripts and spreadsheets. Every sample at its own time.' },
       'csv-grid': { title: 'CSV, one joined table', text: 'Selected columns side by side, one row per time step.' },
+      xlsx: { title: 'Excel workbook', text: 'For Excel and LibreOffice: a sheet per topic, with numbers and dates of every country.' },
       mcap: { title: 'MCAP', text: 'For Foxglove and Lichtblick: depth, attitude, camera and log.' },
       parquet: { title: 'Parquet', text: 'For pandas and other tools for large tables: small files, exact numbers.' },
       jsonl: { title: 'JSON Lines', text: 'For programs: one object per sample, ordered by time.' },
@@ -138,6 +139,15 @@ export const sessions = {
     topics: 'Topics',
     columns: 'Columns',
     every: 'One row every',
+    table: 'The table',
+    reader: 'Read by',
+    readers: {
+      none: { title: 'Programs', hint: 'Commas, decimal points, UTF-8.' },
+      point: { title: 'Excel 0.5', hint: 'For a spreadsheet that writes 0.5.' },
+      comma: { title: 'Excel 0,5', hint: 'For a spreadsheet that writes 0,5: with semicolons.' },
+    },
+    tooLong: (name: string, lines: string) =>
+      `${name} has about ${lines} rows. A sheet holds 1,048,576. Choose a shorter range, or one joined table with longer steps.`,
     compression: 'Compression',
     compressions: {
       none: { title: 'None', hint: 'Every program reads it.' },

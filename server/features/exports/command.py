@@ -3,7 +3,7 @@
 import asyncio
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,6 +12,9 @@ from server.platform.folder_lock import claim, record_command
 from server.platform.running_server import send_file, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
+
+if TYPE_CHECKING:
+    from server.features.exports.selection import ExportSelection
 
 FORMATS = ("csv", "csv-grid", "xlsx", "jsonl", "parquet", "mcap", "archive", "report")
 IMPORT_SECONDS = 3600.0
@@ -58,6 +61,8 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
         record_command(settings.data)
         with open_reader(settings.data) as store:
             source = ExportSelection(store, find_row(store, session), options, _Progress().tell)
+            if options.spreadsheet != "none":
+                _warn_of_long_tables(source)
             path = output or Path(file_name(source, kind.ending))
             part = path.with_name(path.name + PART)
             written = write_part(part, lambda file: kind.write_unpurged(store, source, file))
@@ -98,6 +103,14 @@ def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
     with open_writer(folder) as store:
         number = asyncio.run(take(Imports(folder, store)))
         return number, find_row(store, number).name
+
+
+def _warn_of_long_tables(source: "ExportSelection") -> None:
+    from server.features.exports.workbook import SHEET_LINES
+
+    for name, count in source.samples.items() if source.options.format == "csv" else ():
+        if count >= SHEET_LINES:
+            echo(f"{name}.csv has {count + 1} lines; a spreadsheet shows {SHEET_LINES} of them.", err=True)
 
 
 class _Progress:

@@ -8,6 +8,7 @@ from typing import get_args
 import pytest
 
 from server.cli import main
+from server.features.exports import workbook
 from server.features.exports.command import FORMATS
 from server.features.exports.schemas import Format
 from server.platform.running_server import announce
@@ -102,3 +103,20 @@ def test_a_number_in_another_notation_is_refused_in_words(
 ) -> None:
     assert run(settings, "export", str(session), "--start", typed) == 2
     assert "is not a number. Write a decimal point" in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_spreadsheet_that_shows_too_little_is_said(
+    settings: Settings,
+    session: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(workbook, "SHEET_LINES", 20)
+    choice = ("export", str(session), "--format", "csv", "-o", str(tmp_path / "dive.zip"))
+    assert run(settings, *choice) == 0
+    assert capsys.readouterr().err == ""
+    assert run(settings, *choice, "--spreadsheet", "comma") == 0
+    assert capsys.readouterr().err == "depth.csv has 21 lines; a spreadsheet shows 20 of them.\n"
+    assert run(settings, "export", str(session), "--format", "xlsx", "-o", str(tmp_path / "dive.xlsx")) == 1
+    assert "A sheet holds 19 samples, and depth has 20 in this range." in capsys.readouterr().err

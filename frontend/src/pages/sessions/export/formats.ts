@@ -1,5 +1,5 @@
 /** The formats, in the order in which they are offered. */
-import type { ExportCompression, ExportFormat, NewExport } from '../../../api';
+import type { ExportCompression, ExportFormat, ExportSpreadsheet, NewExport } from '../../../api';
 import { numberText } from '../../../number';
 import { sessions as texts } from '../../../texts/sessions';
 
@@ -12,12 +12,32 @@ export interface Choice {
 export const CHOICES: readonly Choice[] = [
   { format: 'csv', parts: 'topics' },
   { format: 'csv-grid', parts: 'columns' },
+  { format: 'xlsx', parts: 'topics' },
   { format: 'mcap', parts: 'topics' },
   { format: 'parquet', parts: 'topics' },
   { format: 'jsonl', parts: 'topics' },
   { format: 'report', parts: 'whole' },
   { format: 'archive', parts: 'whole' },
 ];
+
+/** Who reads the CSV: programs, or a spreadsheet with this decimal sign. */
+export const READERS: readonly ExportSpreadsheet[] = ['none', 'point', 'comma'];
+
+/** Lines that a sheet of Excel or LibreOffice holds, with the header. */
+export const SHEET_LINES = 1_048_576;
+
+interface Length {
+  readonly name: string;
+  readonly lines: number;
+}
+
+/** The longest table, where a sheet does not hold it; lines are estimated from the share of the session. */
+export function findTooLong(tables: readonly Length[], duration: number, start: number | null, end: number | null): Length | null {
+  const range = Math.max(0, Math.min(end ?? duration, duration) - Math.max(start ?? 0, 0));
+  const share = duration > 0 ? range / duration : 1;
+  const [longest] = tables.map(({ name, lines }) => ({ name, lines: Math.ceil(lines * share) + 1 })).sort((one, other) => other.lines - one.lines);
+  return longest !== undefined && longest.lines > SHEET_LINES ? longest : null;
+}
 
 /** Of MCAP, the smallest file last. */
 export const COMPRESSIONS: readonly ExportCompression[] = ['none', 'lz4', 'zstd'];
