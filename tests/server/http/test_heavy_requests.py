@@ -9,7 +9,14 @@ from fastapi.routing import iter_route_contexts
 from starlette.types import Message
 
 from server.app import create_app
-from server.http.heavy_requests import WAITING_MAX, HeavyRequests, ReadingTurn, TooManyHeavyError, Turn
+from server.http.heavy_requests import (
+    WAITING_MAX,
+    HeavyRequests,
+    ReadingTurn,
+    RecordingTurn,
+    TooManyHeavyError,
+    Turn,
+)
 from server.http.sign_in.identity import IDENTITY, SHELL
 from server.platform.settings import Settings
 from tests.server.waiting import SECONDS
@@ -45,7 +52,7 @@ def test_a_device_has_one_heavy_request_at_a_time_and_few_that_wait() -> None:
 
 
 def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -> None:
-    turns = {get_args(one)[1].dependency for one in (Turn, ReadingTurn)}
+    turns = {get_args(one)[1].dependency for one in (Turn, ReadingTurn, RecordingTurn)}
     routes = iter_route_contexts([*create_app(settings).routes])
     heavy = {
         str(getattr(route, "operation_id", ""))
@@ -55,7 +62,8 @@ def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -
     }
     assert heavy == {
         *("getComparisonReport", "compareSessions", "compareLines", "getBlocks"),
-        *("checkScenario", "checkMission", "readVision", "examineAgain", "listSessionMissions"),
+        *("checkScenario", "checkMission", "readVision", "examineAgain"),
+        *("getSession", "getTimeline", "getThumbnail", "listSessionMissions"),
     }
 
 
