@@ -24,7 +24,7 @@ const LAYERS = [
   ['app'],
 ];
 /** Files beside the rooms' folders. */
-const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'shortcuts', 'storage', 'theme'];
+const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'searching', 'shortcuts', 'storage', 'theme'];
 const APP = ['App', 'Root', 'lazyPages', 'main'];
 /** A single panel is reached through the registry (panels/registry.ts) alone. */
 const DOORS = { 'panels/*': ['panels'] };

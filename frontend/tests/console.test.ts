@@ -14,6 +14,8 @@ describe('matching', () => {
     expect(matching(lines, 2, '').map(({ time }) => time)).toEqual([2, 3]);
     expect(matching(lines, 0, ' BATTERY ').map(({ time }) => time)).toEqual([2, 3]);
     expect(matching(lines, 3, 'low')).toEqual([]);
+    const foreign = [{ time: 4, level: 1, text: 'ÖÕÄÜ Straße' }];
+    for (const word of ['öõäü', 'o\u0308o\u0303', 'ooau', 'STRASSE']) expect(matching(foreign, 0, word)).toEqual(foreign);
   });
 });
 

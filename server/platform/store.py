@@ -22,6 +22,7 @@ from sqlmodel import Session, SQLModel
 from server.platform.database_copies import DAMAGED_REMEDY
 from server.platform.disk_reserve import DiskReserve
 from server.platform.errors import InsufficientStorageError, UnavailableError
+from server.platform.searching import fold
 from server.platform.settings import RESERVE
 
 T = TypeVar("T")
@@ -174,6 +175,7 @@ def _engine(database: Path, options: str, pool_class: type[pool.Pool]) -> Engine
 def _configure(connection: sqlite3.Connection, _record: object) -> None:
     # SQLite's own comparisons ignore case only for ASCII letters.
     connection.create_function("casefold", 1, str.casefold, deterministic=True)
+    connection.create_function("fold", 1, fold, deterministic=True)
     connection.execute("PRAGMA foreign_keys = ON")
     connection.execute("PRAGMA busy_timeout = 2000")
     connection.execute(f"PRAGMA cache_size = -{PAGE_CACHE_KIB}")

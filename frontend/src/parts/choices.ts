@@ -1,3 +1,5 @@
+import { hasWords } from '../searching';
+
 /** Signals to choose from, whatever chart they are for. */
 export interface Choice {
   readonly name: string;
@@ -17,15 +19,13 @@ export interface ChoiceGroup {
 
 /** The choices in which every word of `search` occurs; no empty groups. */
 export function searchChoices(groups: readonly ChoiceGroup[], search: string): ChoiceGroup[] {
-  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
   return groups
     .map(({ topic, meaning, choices }) => ({
       topic,
       meaning,
-      choices: choices.filter((one) => {
-        const text = `${topic} ${one.label} ${one.name} ${one.unit} ${one.meaning}`.toLowerCase();
-        return words.every((word) => text.includes(word));
-      }),
+      choices: choices.filter((one) =>
+        hasWords(`${topic} ${one.label} ${one.name} ${one.unit} ${one.meaning}`, search),
+      ),
     }))
     .filter(({ choices }) => choices.length > 0);
 }

@@ -15,6 +15,7 @@ from server.http.operations import Operations
 from server.http.sign_in.policy import Need
 from server.platform.audit_file import AuditEntry, read_entries
 from server.platform.csv_cells import STYLES, CsvStyle, Spreadsheet, escape_formula
+from server.platform.searching import fold
 
 LISTED_MOST = 200
 WORDS_MAX = 100
@@ -35,14 +36,14 @@ class AuditFilter(BaseModel):
     until: float | None
 
     def fits(self, entry: AuditEntry) -> bool:
-        """True where the entry meets them; upper and lower case are the same."""
+        """True where the entry meets them; case and accents make no difference."""
         if self.since is not None and entry.time < self.since:
             return False
         if self.until is not None and entry.time > self.until:
             return False
         named = f"{entry.who} {entry.role} {entry.address}"
         did = f"{entry.action} {entry.about} {entry.outcome}"
-        return self.who.casefold() in named.casefold() and self.what.casefold() in did.casefold()
+        return fold(self.who) in fold(named) and fold(self.what) in fold(did)
 
 
 class AuditList(BaseModel):

@@ -26,6 +26,7 @@ from server.features.sessions.schemas import (
 )
 from server.features.sessions.session import COLUMNS, HIDDEN, find_row, from_columns, from_row
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
+from server.platform.searching import fold
 from server.platform.store import Reader
 
 PAGE = 100
@@ -173,9 +174,9 @@ def _conditions(
     tagged = select(SessionTag.session_id)
     for tag in tags:
         yield col(row.id).in_(tagged.where(func.casefold(SessionTag.tag) == tag.casefold()))
-    texts = func.casefold(col(row.name) + "\n" + col(row.note) + "\n" + col(row.scenario_name))
-    for word in search.casefold().split():
-        in_tags = tagged.where(func.instr(func.casefold(SessionTag.tag), word) > 0)
+    texts = func.fold(col(row.name) + "\n" + col(row.note) + "\n" + col(row.scenario_name))
+    for word in fold(search).split():
+        in_tags = tagged.where(func.instr(func.fold(SessionTag.tag), word) > 0)
         yield or_(func.instr(texts, word) > 0, col(row.id).in_(in_tags))
 
 

@@ -1,4 +1,5 @@
 import type { DebugLine } from '../../generated/topics';
+import { fold } from '../../searching';
 import { panels as texts } from '../../texts/panels';
 
 /** Words of DebugLevel, in its order. */
@@ -8,11 +9,11 @@ export function levelWord(level: number): string {
   return LEVELS[level] ?? texts.console.unknownLevel(level);
 }
 
-/** The lines of at least this level that hold this text, upper and lower case alike. */
+/** The lines of at least this level that hold this text, whatever its case and accents. */
 export function matching(lines: readonly DebugLine[], level: number, text: string): readonly DebugLine[] {
-  const wanted = text.trim().toLowerCase();
+  const wanted = fold(text.trim());
   if (level === 0 && wanted === '') return lines;
-  return lines.filter((line) => line.level >= level && line.text.toLowerCase().includes(wanted));
+  return lines.filter((line) => line.level >= level && fold(line.text).includes(wanted));
 }
 
 /** Lines lost since the board had counted `before`; a board that was reset counts anew. */

@@ -35,6 +35,8 @@ def test_sessions_are_found_by_words_tags_and_origin(settings: Settings) -> None
         for query, expected in (
             ({"search": "kälten hover"}, ["Hovering"]),
             ({"search": "bang"}, ["Hovering"]),
+            ({"search": "KA\u0308lten"}, ["Hovering"]),
+            ({"search": "kalten"}, ["Hovering"]),
             ({"search": "%"}, ["Dive 100%"]),
             ({"search": "hover dive"}, []),
             ({"tag": "POOL"}, ["Hovering"]),

@@ -1,6 +1,7 @@
 /** How parameters are found, grouped, checked and compared. */
 import type { ParameterValue } from '../../../api';
 import type { TunableParameter } from '../../../generated/topics';
+import { hasWords } from '../../../searching';
 import { tune as texts } from '../../../texts/tune';
 
 export interface Group {
@@ -17,10 +18,9 @@ export interface Difference {
 
 /** Those with each word in name, meaning or unit; with `changed` only those that are not at their default. */
 export function find(parameters: readonly TunableParameter[], search: string, changed: boolean): TunableParameter[] {
-  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
   return parameters.filter((one) => {
-    const text = `${one.name} ${one.meaning} ${one.unit}`.toLowerCase();
-    return words.every((word) => text.includes(word)) && (!changed || one.value !== one.default);
+    const text = `${one.name} ${one.meaning} ${one.unit}`;
+    return hasWords(text, search) && (!changed || one.value !== one.default);
   });
 }
 
