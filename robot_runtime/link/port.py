@@ -9,6 +9,7 @@ import os
 import select
 import termios
 import time
+from pathlib import Path
 from typing import Self
 
 import serial
@@ -17,6 +18,8 @@ from robot_runtime.link.link_driver import PortError
 
 _READ_BYTES = 4096
 _WRITE_SECONDS = 0.25
+_PORTS = ("serial/by-id/*", "serial[0-9]", "ttyUSB*", "ttyACM*", "ttyAMA*", "ttyS0")
+"""Serial ports below /dev; of a PC's many ttyS, nearly all without a plug, the first stands for them."""
 
 
 class Port:
@@ -77,12 +80,25 @@ class Port:
         self.close()
 
 
+def list_ports(devices: Path = Path("/dev")) -> list[str]:
+    """The serial ports of this computer, each once: by the name that stays the same, where it has one."""
+    names: dict[Path, str] = {}
+    for pattern in _PORTS:
+        for one in sorted(devices.glob(pattern)):
+            names.setdefault(one.resolve(), str(one))
+    return list(names.values())
+
+
 def _explain(path: str, problem: Exception) -> str:
     number = getattr(problem, "errno", None)
     if isinstance(problem, ValueError):
         return f"{path} does not take this baud rate: {problem}"
     if number in (2, 6, 19):
-        return f"{path} does not exist: is the board (or the emulated board) running, and is link.port right?"
+        others = ", ".join(list_ports()) or "none"
+        return (
+            f"{path} does not exist: is the board (or the emulated board) running, and is link.port right? "
+            f"Serial ports that are there: {others}"
+        )
     if number == 13:
         return f"{path} may not be opened: add this user to the group dialout and sign in again"
     if number == 11 or "lock" in str(problem):

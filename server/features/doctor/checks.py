@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from server.features.doctor.findings import Finding, Reporter
-from server.features.doctor.machine import SERVICE, Machine
+from server.features.doctor.machine import BRLTTY, MODEM_MANAGER, SERVICE, Machine
 from server.platform.disk_space import DIVE_BYTES
 from server.platform.supply_voltage import UNDERVOLTAGE_NOW, UNDERVOLTAGE_SINCE
 from server.platform.wall_clock import is_set
@@ -96,12 +96,34 @@ def check_port(machine: Machine) -> Finding | None:
     if machine.mode == "emulated":
         return None
     if not machine.port_there:
-        text = f"There is no {machine.port}."
-        return report.wrong(text, "Set link.port in robot.toml; for the Pi's UART: sudo mucat install")
+        others = ", ".join(machine.other_ports) or "none"
+        text = f"There is no {machine.port}. Serial ports that are there: {others}."
+        remedy = "Set link.port in robot.toml, of a USB adapter to its name in /dev/serial/by-id, which stays"
+        return report.wrong(text, f"{remedy}; for the Pi's UART: sudo mucat install")
     if machine.port_problem:
         return report.wrong(machine.port_problem, f"sudo usermod -aG dialout {machine.user}; fuser the port")
     target = f" leads to {machine.port_target}" if machine.port_target else " is there"
-    return report.ok(f"{machine.port}{target}.")
+    opened = " Each opening starts a board with DTR at its reset anew." if machine.reset == "dtr" else ""
+    return report.ok(f"{machine.port}{target}.{opened}")
+
+
+def check_port_takers(machine: Machine) -> Finding | None:
+    """No other program opens a USB adapter as soon as it is plugged in."""
+    report = Reporter("port_takers", "Other programs at the port")
+    name = machine.port_target or machine.port.removeprefix("/dev/")
+    if machine.mode == "emulated" or not name.startswith(("ttyUSB", "ttyACM", "serial/by-")):
+        return None
+    if BRLTTY in machine.port_takers:
+        return report.look(
+            "brltty, for braille displays, takes adapters with a CH340 away: their port vanishes.",
+            "sudo apt purge brltty, where nobody reads braille here; then plug the board in again",
+        )
+    if MODEM_MANAGER in machine.port_takers:
+        return report.look(
+            "ModemManager writes to each USB adapter that is plugged in, to find modems.",
+            "sudo systemctl disable --now ModemManager, where there is no mobile modem",
+        )
+    return report.ok("Neither brltty nor ModemManager is there.")
 
 
 def check_uart(machine: Machine) -> Finding | None:
@@ -333,6 +355,7 @@ CHECKS: tuple[Check, ...] = (
     check_database,
     check_firmware,
     check_port,
+    check_port_takers,
     check_uart,
     check_console,
     check_board,

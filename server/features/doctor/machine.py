@@ -28,6 +28,7 @@ IMPORT_SECONDS = 120.0
 LIBRARIES = ("zenoh", "numpy", "cv2", "pydantic_core", "sqlalchemy", "serial", "cobs")
 """Modules with compiled parts, and those that speak with the board: importing them shows a wrong wheel."""
 SERVICE = "mucat.service"
+BRLTTY, MODEM_MANAGER = "brltty", "ModemManager"
 NOTHING_HEARD: Mapping[str, tuple[str, str]] = {}
 
 
@@ -60,6 +61,10 @@ class Machine:
     port_target: str = ""
     """Device that the port's link leads to."""
     port_problem: str = ""
+    other_ports: tuple[str, ...] = ()
+    """The serial ports that are there."""
+    port_takers: tuple[str, ...] = ()
+    """Of brltty and ModemManager, those that open a USB adapter as soon as it is plugged in."""
     link_state: str = ""
     """State of the link by the running server's health; empty without a server."""
     link_text: str = ""
@@ -109,6 +114,7 @@ def read_machine(
 
     Only a thorough look imports the libraries, in another process, and opens a serial port that nobody uses.
     """
+    from robot_runtime.link.port import list_ports
     from server.platform.folder_lock import runner_of
     from server.platform.pidfile import running_parts
 
@@ -141,6 +147,8 @@ def read_machine(
         port_there=port.exists(),
         port_target=port.resolve().name if port.is_symlink() else "",
         port_problem="" if runtime or not thorough else _try_port(port, settings.link.baud),
+        other_ports=tuple(list_ports(root / "dev")),
+        port_takers=_find_port_takers(root),
         link_state=link[0],
         link_text=link[1],
         events_named=bool(settings.events.mqtt or settings.events.webhook),
@@ -164,7 +172,7 @@ def read_machine(
         memory_cgroup=_has_memory_cgroup(root),
         memory=os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"),
         swaps=tuple(line.split()[0] for line in _read(root / "proc/swaps").splitlines()[1:] if line),
-        address=f"{settings.host}:{settings.port}",
+        address=(_announced(settings) if serves else "") or f"{settings.host}:{settings.port}",
         address_problem="" if serves else _try_address(settings.host, settings.port),
         server_runs=serves,
         runtime_outdated=runtime is not None and runtime.fingerprint != _fingerprint(settings),
@@ -177,6 +185,11 @@ def _read(path: Path) -> str:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return ""
+
+
+def _announced(settings: Settings) -> str:
+    """Host and port of the running server, which may be others than the configuration's."""
+    return _read(settings.data.address).strip().partition("://")[2]
 
 
 def _existing(path: Path) -> Path:
@@ -302,6 +315,19 @@ def _has_login(root: Path, port: Path) -> bool:
     names = {port.name, port.resolve().name}
     wants = (root / "etc/systemd/system").glob("*.wants/serial-getty@*.service")
     return any(one.name.removeprefix("serial-getty@").removesuffix(".service") in names for one in wants)
+
+
+def _find_port_takers(root: Path) -> tuple[str, ...]:
+    """brltty by its udev rule, unless an empty one of /etc stands for it; ModemManager where it runs."""
+    rules = {
+        one.name: one
+        for folder in ("lib", "usr/lib", "etc")
+        for one in (root / folder / "udev/rules.d").glob(f"*{BRLTTY}*.rules")
+    }
+    found = [BRLTTY] if any(_read(one).strip() for one in rules.values()) else []
+    if any(_read(one).strip() == MODEM_MANAGER for one in (root / "proc").glob("[0-9]*/comm")):
+        found.append(MODEM_MANAGER)
+    return tuple(found)
 
 
 def _read_reset(spec: str) -> tuple[str, str]:

@@ -13,7 +13,7 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.packets import Debug, Heartbeat, Hello, Stop
 from robot_runtime.link.framing import build
 from robot_runtime.link.link_driver import PortError
-from robot_runtime.link.port import Port
+from robot_runtime.link.port import Port, list_ports
 from robot_runtime.link.serial_link import SerialLink
 from robot_runtime.link.session import BoardMessage
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
@@ -204,8 +204,19 @@ def test_a_port_in_use_is_named(path: Path) -> None:
 
 
 def test_a_port_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(PortError, match=r"tty does not exist: is the board .* link\.port right"):
+    with pytest.raises(PortError, match=r"tty does not exist: is the board .* link\.port right.* there: "):
         Port(str(tmp_path / "tty"), 115_200)
+
+
+def test_the_ports_that_are_there_are_listed_once_by_the_name_that_stays(tmp_path: Path) -> None:
+    for name in ("ttyUSB1", "ttyAMA0", "ttyS0", "ttyS1", "tty7", "null"):
+        (tmp_path / name).touch()
+    (tmp_path / "serial/by-id").mkdir(parents=True)
+    (tmp_path / "serial/by-id/usb-1a86").symlink_to("../../ttyUSB1")
+    (tmp_path / "serial0").symlink_to("ttyAMA0")
+    assert list_ports(tmp_path) == [
+        str(tmp_path / one) for one in ("serial/by-id/usb-1a86", "serial0", "ttyS0")
+    ]
 
 
 def test_a_port_without_permission_names_the_group(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -44,6 +44,7 @@ EMULATED = replace(
     GOOD, mode="emulated", model="", port_there=False, camera="scene", throttled=None, units={}
 )
 
+BY_USB: dict[str, Any] = {"port": "/dev/ttyUSB0", "port_target": ""}
 CASES: dict[str, tuple[dict[str, Any], str, str]] = {
     "configuration: broken": ({"configuration_problem": "robot.toml cannot be read"}, "wrong", "robot.toml"),
     "versions: old Python": ({"python": (3, 9)}, "wrong", "needs Python 3.11"),
@@ -55,7 +56,14 @@ CASES: dict[str, tuple[dict[str, Any], str, str]] = {
     "data: low": ({"disk_free": 100_000_000}, "look", "100 MB"),
     "database: newer": ({"database_problem": "written by a newer version"}, "wrong", "newer"),
     "firmware: missing": ({"firmware_there": False}, "wrong", "/opt/robot.hex"),
-    "port: missing": ({"port_there": False}, "wrong", "no /dev/serial0"),
+    "port: missing": ({"port_there": False}, "wrong", "no /dev/serial0. Serial ports that are there: none."),
+    "port: another": (
+        {"port_there": False, "other_ports": ("/dev/serial/by-id/usb-1a86", "/dev/ttyAMA0")},
+        "wrong",
+        "there: /dev/serial/by-id/usb-1a86, /dev/ttyAMA0.",
+    ),
+    "port_takers: brltty": (BY_USB | {"port_takers": ("brltty", "ModemManager")}, "look", "brltty, for"),
+    "port_takers: ModemManager": (BY_USB | {"port_takers": ("ModemManager",)}, "look", "ModemManager writes"),
     "port: refused": ({"port_problem": "Permission denied"}, "wrong", "Permission"),
     "uart: the small one": ({"port_target": "ttyS0"}, "wrong", "small UART"),
     "uart: not set": ({"port_target": "", "boot_settings": "enable_uart=1"}, "wrong", "lacks dtoverlay"),
@@ -124,8 +132,10 @@ def test_the_commands_that_mend_it_can_be_typed_so(case: str) -> None:
 def test_every_check_is_good_on_a_good_computer_and_has_a_case_with_every_other_verdict() -> None:
     good = examine(GOOD)
     assert [one.name for one in good if one.verdict != "ok"] == []
-    assert len(good) == len(CHECKS) == len({one.name for one in good})
-    assert {case.partition(":")[0] for case in CASES} == {one.name for one in good}
+    by_usb = {one.name for one in examine(replace(GOOD, **BY_USB)) if one.verdict == "ok"}
+    names = {one.name for one in good} | by_usb
+    assert len(CHECKS) == len(names) == len(good) + 1
+    assert {case.partition(":")[0] for case in CASES} == names
     assert not any(one.mend for one in good)
 
 
@@ -152,6 +162,7 @@ def test_an_emulated_robot_is_asked_nothing_about_pins() -> None:
         ({"model": ""}, "uart"),
         ({"port": "/dev/ttyUSB0", "port_target": ""}, "uart"),
         ({"broken_libraries": None}, "libraries"),
+        ({"port_takers": ("brltty", "ModemManager")}, "port_takers"),
         ({"reset": "dtr"}, "reset"),
         ({"camera": "file"}, "camera"),
         ({"throttled": None}, "voltage"),
@@ -166,6 +177,13 @@ def test_a_check_that_does_not_apply_says_nothing(changed: dict[str, Any], check
 def test_groups_are_those_that_the_configuration_needs() -> None:
     modest = replace(GOOD, reset="dtr", camera="card", groups=frozenset({"dialout"}))
     assert worst(examine(modest)) == "ok"
+
+
+def test_a_port_whose_opening_resets_the_board_says_so() -> None:
+    said = {reset: examine(replace(GOOD, reset=reset)) for reset in ("dtr", "gpio:/dev/gpiochip0:4")}
+    texts = {reset: next(one.text for one in found if one.name == "port") for reset, found in said.items()}
+    assert "starts a board with DTR at its reset anew" in texts["dtr"]
+    assert "anew" not in texts["gpio:/dev/gpiochip0:4"]
 
 
 def test_a_server_that_runs_holds_the_address_itself() -> None:

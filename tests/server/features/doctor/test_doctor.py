@@ -46,7 +46,8 @@ def test_it_tells_a_person_and_a_program_the_same(
     settings.config.write_text(ROBOT.format(port="/dev/nowhere", web=web))
     assert doctor(settings) == 1
     text = capsys.readouterr().out
-    assert "wrong Serial port: There is no /dev/nowhere.\n      → Set link.port" in text
+    assert "wrong Serial port: There is no /dev/nowhere. Serial ports that are there: " in text
+    assert "\n      → Set link.port" in text
     assert doctor(settings, "--json") == 1
     findings = found(capsys)
     assert findings["port"].verdict == "wrong"
@@ -134,6 +135,14 @@ def test_an_address_that_is_taken_is_wrong(settings: Settings) -> None:
     assert read_machine(taken, 0.0, thorough=False).address_problem == ""
 
 
+def test_the_address_is_that_of_the_running_server(settings: Settings) -> None:
+    assert read_machine(settings, 0.0, thorough=False).address == f"{settings.host}:{settings.port}"
+    settings.data.address.write_text("https://127.0.0.1:8123\n")
+    assert read_machine(settings, 0.0, thorough=False).address == f"{settings.host}:{settings.port}"
+    PidFile(settings.data.runner).write(os.getpid(), "")
+    assert read_machine(settings, 0.0, thorough=False).address == "127.0.0.1:8123"
+
+
 def write(root: Path, name: str, text: str) -> None:
     (root / name).parent.mkdir(parents=True, exist_ok=True)
     (root / name).write_text(text)
@@ -168,6 +177,15 @@ def test_a_raspberry_pi_is_read_from_its_files(settings: Settings, tmp_path: Pat
     assert not machine.memory_cgroup
     write(tmp_path, "sys/fs/cgroup/cgroup.controllers", "cpu memory pids\n")
     assert look(settings, tmp_path).memory_cgroup
+
+
+def test_programs_that_take_a_port_are_found(settings: Settings, tmp_path: Path) -> None:
+    assert look(settings, tmp_path).port_takers == ()
+    write(tmp_path, "usr/lib/udev/rules.d/85-brltty.rules", 'ENV{PRODUCT}=="1a86/7523/*", GOTO="brltty"\n')
+    write(tmp_path, "proc/77/comm", "ModemManager\n")
+    assert look(settings, tmp_path).port_takers == ("brltty", "ModemManager")
+    write(tmp_path, "etc/udev/rules.d/85-brltty.rules", "")
+    assert look(settings, tmp_path).port_takers == ("ModemManager",)
 
 
 @pytest.mark.parametrize(
