@@ -9,7 +9,7 @@ from packaging.requirements import Requirement
 from packages.commands import run
 from robot_runtime.places import PACKAGES
 
-EXTRAS = ("pi", "scene", "parquet", "identify", "ros2")
+EXTRAS = ("pi", "scene", "mqtt", "parquet", "identify", "ros2")
 DEBIAN = PACKAGES / "packages/debian-13.txt"
 """Versions that fit the packages of a 32-bit Debian 13, for which pip finds no wheels."""
 FROM_APT = ("numpy", "opencv-python-headless", "pydantic", "pydantic-core")
@@ -30,7 +30,7 @@ def write_constraints(dist: Path) -> list[Path]:
 
 
 def small_requirements() -> list[str]:
-    """Returns what mucat needs on a 32-bit Debian 13 besides apt's packages, as `NAME==VERSION`.
+    """Returns what mucat[mqtt] needs on a 32-bit Debian 13 besides apt's packages, as `NAME==VERSION`.
 
     Raises PackagingError.
     """
@@ -40,7 +40,8 @@ def small_requirements() -> list[str]:
     with tempfile.NamedTemporaryFile("w", suffix=".txt") as merged:
         merged.write("\n".join([*others, *own.values()]) + "\n")
         merged.flush()
-        resolved = _resolve(["--python-version", SMALL["python_version"], "--constraints", merged.name])
+        options = ["--extra", "mqtt", "--python-version", SMALL["python_version"]]
+        resolved = _resolve([*options, "--constraints", merged.name])
     needed = [Requirement(line) for line in resolved.splitlines()]
     return [
         f"{one.name}{one.specifier}"

@@ -24,6 +24,8 @@ PLATFORMS = ("manylinux_2_34", "manylinux_2_28", "manylinux_2_17", "manylinux201
 MACHINES = ("x86_64", "aarch64")
 SMALL_MACHINES = ("armv6l", "armv7l", "i686")
 """With 32 bits."""
+EXTRAS = ("pi", "mqtt", "parquet", "identify", "ros2")
+"""What an installed robot has besides, with 64 bits; with 32 only `mqtt` has wheels."""
 PURE: tuple[str, ...] = ("cobs",)
 """Packages without wheels for every computer, which are plain Python where there is no C compiler."""
 SMALL_PURE = (*PURE, "markupsafe")
@@ -84,7 +86,7 @@ def _gather(folder: Path, wheel: Path, machine: str, python: str) -> None:
         # pip would take what mucat needs on this computer.
         pure, wanted = SMALL_PURE, ["--no-deps", *small_requirements()]
     else:
-        pure, wanted = PURE, [*pins, f"{wheel}[pi]"]
+        pure, wanted = PURE, [*pins, f"{wheel}[{','.join(EXTRAS)}]"]
     for package in pure:
         command = [*pip, "wheel", "--no-deps", "--no-cache-dir", "--no-binary", package, *pins]
         command += ["--wheel-dir", str(folder), package]

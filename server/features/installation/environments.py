@@ -14,6 +14,15 @@ FROM_APT = ("numpy", "pydantic")
 """Packages without wheels for computers with 32 bits."""
 BUILD_SECONDS = 3600.0
 """A Raspberry Pi Zero unpacks some 300 MB on a slow card."""
+EXTRAS = (
+    ("pi", "gpiod"),
+    ("scene", "mujoco"),
+    ("mqtt", "paho-mqtt"),
+    ("parquet", "pyarrow"),
+    ("identify", "scipy"),
+    ("ros2", "rosbags"),
+)
+"""Extras of mucat, each with the package that shows that a robot has it, or is to have it."""
 WHEELS = "wheels"
 """Folder of an environment with the wheels that it was made of: a later release may lack those it shares."""
 
@@ -53,7 +62,7 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
             "--no-index",
             *sources,
             "--no-cache-dir",
-            *_packages(release),
+            _requirement(release, shared),
             environment={"PIP_CONFIG_FILE": "/dev/null", "PYTHONPATH": ""},
             seconds=BUILD_SECONDS,
         )
@@ -69,14 +78,15 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
     return environment
 
 
-def _packages(release: Release) -> list[str]:
-    """The requirements: mucat itself, and what else the release brings for this robot."""
-    extra = [
-        name
-        for name, wheel in (("pi", "gpiod-*"), ("emulator", "mucat_emulator-*"), ("scene", "mujoco-*"))
-        if any(release.folder.glob(f"{wheel}.whl"))
-    ]
-    return [f"mucat[{','.join(extra)}]=={release.version}" if extra else f"mucat=={release.version}"]
+def _requirement(release: Release, shared: list[Path]) -> str:
+    """mucat itself, with the extras that the release brings, and those that the version in use has."""
+    own = {_split(wheel)[0] for wheel in release.folder.glob("*.whl")}
+    there = own | {_split(wheel)[0] for wheel in shared}
+    extras = [extra for extra, package in EXTRAS if package in there]
+    if "mucat-emulator" in own:
+        # That of another version does not fit.
+        extras.append("emulator")
+    return f"mucat[{','.join(extras)}]=={release.version}" if extras else f"mucat=={release.version}"
 
 
 def _needs_system_packages(places: InstallPlaces) -> bool:
@@ -149,5 +159,5 @@ def _explain(problem: str, release: Release) -> str:
             "take the release for its architecture. Nothing was changed."
         )
     if "No space left" in problem:
-        return "The disk is full: an environment needs some 400 MB. Free some space. Nothing was changed."
+        return "The disk is full: an environment needs some 700 MB. Free some space. Nothing was changed."
     return f"The environment cannot be built: {problem}. Nothing was changed."

@@ -16,7 +16,7 @@ from server.platform.disk_space import free_bytes
 from server.platform.settings import SetupError
 
 GROUPS = ("dialout", "gpio", "video")
-INSTALL_BYTES = 700_000_000
+INSTALL_BYTES = 1_100_000_000
 """Room for an environment with its wheels."""
 BACKUP = ".before-mucat"
 FIRST_START_SECONDS = 180.0

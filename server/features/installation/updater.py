@@ -29,7 +29,7 @@ from server.platform.settings import SetupError
 
 HEALTHY_SECONDS = 60.0
 RELEASE_BYTES = 1_000_000_000
-"""A release unpacked, at most; one for 64 bits has some 250 MB."""
+"""A release unpacked, at most; one for 64 bits has some 350 MB."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -138,7 +138,7 @@ def test_a_full_disk_is_refused(
 ) -> None:
     computer = installed(tmp_path / "pi", keys)
     monkeypatch.setattr(updater, "free_bytes", lambda _: 10**8)
-    with pytest.raises(SetupError, match=r"100 MB are free, and 2\.0\.0 needs 700 MB"):
+    with pytest.raises(SetupError, match=r"100 MB are free, and 2\.0\.0 needs 1100 MB"):
         update(computer, release)
 
 
