@@ -3,7 +3,7 @@
 import re
 import secrets
 import shutil
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
@@ -109,6 +109,8 @@ class Authority:
         """The simulators' certificates in force, by name."""
         files = sorted((self._folder / SIMULATORS).glob("*.pem"))
         return [
-            IssuedCertificate(file.stem.partition(".")[0], datetime.fromtimestamp(file.stat().st_mtime), file)
+            IssuedCertificate(
+                file.stem.partition(".")[0], datetime.fromtimestamp(file.stat().st_mtime, UTC), file
+            )
             for file in files
         ]

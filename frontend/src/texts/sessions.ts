@@ -162,6 +162,7 @@ export const sessions = {
     sameFile: 'The same file is already in the list below.',
     sameWaiting: 'The same file is already being made.',
     files: 'Files of this session',
+    clocks: 'Times named utc are UTC. The board’s own clock, “time [µs]” or “board_time”, begins anew after 71.6 minutes; “time [s]” does not.',
     retention: 'Files are deleted after one week.',
     waiting: 'waiting for the export before it',
     progress: (format: string) => `Export of ${format}`,

@@ -27,6 +27,7 @@ GAPS = 2.0
 README = """grid.csv: {name}
 One line every {period:g} s, from {first:g} s to {last:g} s after the session's start.
 `time [s]` counts from the session's start; `utc` is the same moment by the clock of the recording computer.
+A column `time [µs]` is the board's own clock: it begins anew after 71.6 minutes, and when the board starts.
 A cell holds the newest value at that moment. It is empty where that value is older than {gaps:g} times the
 usual time between two samples of its topic:
 {limits}

@@ -4,7 +4,7 @@ The running server does the work. The token in its data folder identifies this s
 """
 
 import sys
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Any
 
 import click
@@ -102,7 +102,8 @@ def _named(role: str) -> str:
 def _tabulate(devices: list[dict[str, Any]]) -> str:
     return "\n".join(
         f"{one['id']:5}  {one['role']:8}  {one['kind']:7}  "
-        f"last seen {datetime.fromtimestamp(one['seen']):%Y-%m-%d %H:%M}  {_rights(one)}{one['name']}"
+        f"last seen {datetime.fromtimestamp(one['seen'], UTC):%Y-%m-%d %H:%M} UTC  "
+        f"{_rights(one)}{one['name']}"
         for one in devices
     )
 
@@ -110,5 +111,6 @@ def _tabulate(devices: list[dict[str, Any]]) -> str:
 def _rights(device: dict[str, Any]) -> str:
     """Words about a token's scope and end; empty where there is nothing to say."""
     limited = "does not administer  " if device["limited"] and device["role"] == "operator" else ""
-    ends = "" if device["ends"] is None else f"ends {datetime.fromtimestamp(device['ends']):%Y-%m-%d}  "
-    return limited + (f"{device['ended']}  " if device["ended"] else ends)
+    if device["ended"] or device["ends"] is None:
+        return limited + (f"{device['ended']}  " if device["ended"] else "")
+    return f"{limited}ends {datetime.fromtimestamp(device['ends'], UTC):%Y-%m-%d %H:%M} UTC  "

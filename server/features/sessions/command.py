@@ -161,7 +161,7 @@ def _tabulate(found: "list[Session]") -> str:
     if not found:
         return "No matching session."
     return "\n".join(
-        f"{one.id:5}  {one.started:%Y-%m-%d %H:%M}  {one.duration:8.1f} s  {one.state:11}  {one.name}"
+        f"{one.id:5}  {one.started:%Y-%m-%d %H:%M} UTC  {one.duration:8.1f} s  {one.state:11}  {one.name}"
         + (f"  [{', '.join(one.tags)}]" if one.tags else "")
         for one in found
     )

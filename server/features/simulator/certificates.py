@@ -102,7 +102,7 @@ def list_certificates(settings: Settings) -> None:
     """List the simulators' certificates in force."""
     found = Authority(settings).issued()
     for one in found:
-        echo(f"{one.issued:%Y-%m-%d %H:%M}  {one.name}")
+        echo(f"{one.issued:%Y-%m-%d %H:%M} UTC  {one.name}")
     if not found:
         echo("There is none: mucat certificate issue NAME makes one.")
 

@@ -278,6 +278,7 @@ def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings)
         [0.1] * 3 + [0.2] * 5 + [math.nan], nan_ok=True
     )
     readme = archive.read("README.txt").decode()
+    assert "begins anew after 71.6 minutes" in readme
     assert "depth: 0.04 s" in readme
     assert "control: 0.5 s" in readme
 

@@ -50,6 +50,7 @@ def test_shell_commands_pair_and_revoke_people_and_programs(settings: Settings, 
                 headers = {"authorization": f"Bearer {token}"}
                 assert (await program.api.post("/robot/stop", headers=headers)).status_code == 204
             listed = (await say("access", "list")).splitlines()
+            assert all(" UTC  " in line for line in listed)
             assert [line.split()[:3] for line in listed] == [
                 ["1", "viewer", "browser"],
                 ["2", "operator", "browser"],

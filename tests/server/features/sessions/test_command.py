@@ -52,6 +52,7 @@ def test_sessions_without_a_server(settings: Settings, capsys: pytest.CaptureFix
     assert "changed" in told("sessions", "tag", "1", "--remove", "sea")
     assert "changed" in told("sessions", "note", "1", "calm water")
     assert "dive  [pool]" in told("sessions", "list", "calm")
+    assert " UTC  " in told("sessions", "list", "calm")
     assert "No matching session" in told("sessions", "list", "--tag", "sea")
     assert "tags: pool" in told("sessions", "show", "1")
     assert "bin" in told("sessions", "delete", "1")
