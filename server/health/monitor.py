@@ -100,6 +100,12 @@ class HealthMonitor:
         """The newest `state` document; None without a readable one."""
         return self._document("state")
 
+    def silence(self) -> float | None:
+        """Age of the newest state (s) where it is too old to be the robot's present one; else None."""
+        if "state" not in self._newest or self._fresh("state", STATE_SECONDS, None):
+            return None
+        return self._clock.now() - self._newest["state"][0]
+
     def mission(self) -> dict[str, Any] | None:
         """The newest `mission` document; None without a readable one."""
         return self._document("mission")

@@ -75,6 +75,20 @@ def test_the_newest_state_is_shown(settings: Settings) -> None:
     play(settings, scenario)
 
 
+def test_the_state_of_a_silent_runtime_is_unknown(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario(served: Served) -> None:
+        served.runtime.publish(state_block(0, armed=True))
+        await until(served.container.monitor.state, "the state")
+        monkeypatch.setattr(monitor, "STATE_SECONDS", 0.0)
+        answer = await served.api.get("/robot")
+        assert answer.status_code == 503
+        assert "state is unknown: its runtime has said nothing for 0 s" in answer.json()["detail"]
+
+    play(settings, scenario)
+
+
 def test_the_state_is_of_after_the_last_command(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(monitor, "CATCH_UP_SECONDS", SECONDS)
 

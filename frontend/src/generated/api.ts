@@ -1448,7 +1448,8 @@ export interface paths {
          * Return the robot's newest state
          * @description Return the robot's newest state.
          *
-         *     The runtime sent it at its `time` (s, steady clock), after the last command that it answered.
+         *     The runtime sent it at its `time` (s, steady clock), after the last command that it answered. 503
+         *     where that is too long ago to be the present state.
          */
         get: operations["getRobot"];
         put?: never;

@@ -76,12 +76,18 @@ async def get_link_frames(bridge: Provided[Bridge]) -> LinkFrames:
 async def get_robot(monitor: Provided[HealthMonitor], bridge: Provided[Bridge]) -> object:
     """Return the robot's newest state.
 
-    The runtime sent it at its `time` (s, steady clock), after the last command that it answered.
+    The runtime sent it at its `time` (s, steady clock), after the last command that it answered. 503
+    where that is too long ago to be the present state.
     """
     await monitor.catch_up("state", bridge.answered)
     state = monitor.state()
     if state is None:
         raise UnavailableError("The robot's runtime has sent no state yet. /api/health says why.")
+    if (age := monitor.silence()) is not None:
+        raise UnavailableError(
+            f"The robot's state is unknown: its runtime has said nothing for {age:.0f} s. "
+            "/api/health says why."
+        )
     return state
 
 

@@ -47,6 +47,18 @@ def test_it_is_alive_unless_the_database_or_the_runtime_fails(rig: MonitorRig, s
     assert not rig.monitor.alive
 
 
+def test_a_state_of_long_ago_is_not_the_present_one(rig: MonitorRig) -> None:
+    rig.run_all()
+    assert rig.monitor.silence() is None
+    rig.receive(0, armed=True)
+    rig.clock.forward(2.4)
+    assert rig.monitor.silence() is None
+    rig.clock.forward(5.0)
+    assert rig.monitor.silence() == pytest.approx(7.4)
+    rig.receive(1)
+    assert rig.monitor.silence() is None
+
+
 @pytest.mark.parametrize(("name", "limit"), [("runtime", 2.5), ("board", 3.0), ("simulator", 2.0)])
 def test_received_data_becomes_stale(rig: MonitorRig, name: str, limit: float) -> None:
     rig.run_all()
