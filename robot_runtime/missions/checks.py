@@ -1,8 +1,11 @@
 """The reasons why this robot cannot do a mission now, step by step."""
 
+from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.missions.document import MissionDocument
 from robot_runtime.missions.leaf import Leaf
+from robot_runtime.missions.leaves.asking import IsLeaf, WaitForLeaf
 from robot_runtime.missions.senses import MissionSenses
+from robot_runtime.missions.sights import find_sight_problem
 from robot_runtime.parameters.registry import Registry
 
 
@@ -25,4 +28,15 @@ def check_start(document: MissionDocument, senses: MissionSenses, parameters: Re
         f"Step {step.place}: {problem}" if step.path else problem
         for step in document.root.walk()
         if isinstance(step.node, Leaf) and (problem := step.node.check(robot))
+    ]
+
+
+def check_sights(document: MissionDocument, settings: VisionSettings) -> list[str]:
+    """Returns what steps wait to see and a robot with these settings cannot, each with the step's path."""
+    return [
+        f"Step {step.place}: {problem}"
+        for step in document.root.walk()
+        if isinstance(step.node, IsLeaf | WaitForLeaf)
+        and step.node.sees is not None
+        and (problem := find_sight_problem(step.node.sees, settings))
     ]

@@ -3,14 +3,12 @@
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Detection, Document
 from robot_runtime.contract.packets import Beacon
-from robot_runtime.contract.vision_settings import MARKER, MARKER_COUNTS, VisionSettings, marker_name
 from robot_runtime.control.fault_detector import FaultDetector
 from robot_runtime.control.node import BEACON_STALE, VISION_STALE, ControlNode
+from robot_runtime.missions.sights import LIGHT, find_sight_problem
 from robot_runtime.transport.bus import Bus
 from robot_runtime.vision.interface import Vision
 
-LIGHT = "light"
-"""What `sees` calls the light of the beacon detectors."""
 MEASURED = 1.0
 """V; a battery that shows less has no divider on the board's input, so that it is not measured."""
 
@@ -63,20 +61,7 @@ class MissionSenses:
 
     def check_sight(self, what: str) -> str:
         """The reason why this cannot be seen; empty if it can."""
-        settings: VisionSettings = self._vision.settings
-        if what == LIGHT or what in settings.colours:
-            return ""
-        if (marker := MARKER.fullmatch(what)) is None:
-            known = ", ".join([*settings.colours, LIGHT])
-            return f"Nothing is called {what!r}; there are {known}, and markers such as “marker 7”."
-        if settings.markers == "none":
-            return "The camera looks for no markers. Choose their dictionary in the vision settings."
-        if int(marker[1]) >= (count := MARKER_COUNTS[settings.markers]):
-            return f"There is no {what} in the dictionary {settings.markers}; its last is marker {count - 1}."
-        numbers = settings.marker_numbers
-        if numbers and what not in map(marker_name, numbers):
-            return f"The camera does not look for {what}. Add it to the markers in the vision settings."
-        return ""
+        return find_sight_problem(what, self._vision.settings)
 
     def _take_beacon(self, _: str, time: float, record: bytes) -> None:
         seen = Beacon.from_bytes(record)

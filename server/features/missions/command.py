@@ -44,8 +44,18 @@ def list_all(settings: Settings) -> None:
 @with_settings
 def check(settings: Settings, file: str) -> None:
     """Show what is wrong with a mission, or that nothing is."""
+    from robot_runtime.config import load
+    from robot_runtime.contract.limits import ConfigError
+    from robot_runtime.missions.checks import check_sights
+
     _, read = _read(file, settings)
     echo(f"{read.title}: {read.longest:.0f} s at most, {len(list(read.root.walk()))} steps, no problem.")
+    try:
+        unseen = check_sights(read, load(settings.config).vision.settings)
+    except ConfigError as problem:
+        raise SetupError(str(problem)) from problem
+    if unseen:
+        echo("\n".join([f"But with the vision of {settings.config} it would not begin:", *unseen]))
 
 
 @mission.command()

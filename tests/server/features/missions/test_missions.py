@@ -15,6 +15,7 @@ from robot_runtime.contract.missions import MissionLimits
 from robot_runtime.errors import RefusedError
 from robot_runtime.missions.leaf import NODES
 from robot_runtime.missions.library import SHIPPED
+from server.cli import main
 from server.features.missions import library as library_module
 from server.features.missions import trials as trials_module
 from server.features.missions.library import VERSIONS_MAX, MissionLibrary, UnknownMissionError
@@ -255,3 +256,17 @@ def test_the_session_that_a_mission_starts_names_who_started_it(settings: Settin
         assert said in [one["text"] for one in timeline["events"]]
 
     play(settings, scenario)
+
+
+def test_the_shell_s_check_names_what_the_camera_would_never_see(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "typo.toml"
+    file.write_text(mission("{ do = 'wait_for', sees = 'purpel', timeout = 9 }"))
+    common = ["--data", str(settings.data.path), "--config", str(settings.config)]
+    assert main(["mission", "check", str(file), *common]) == 0
+    assert "Step 1: Nothing is called 'purpel'; there are red," in capsys.readouterr().out
+    assert main(["mission", "check", "search_marker", *common]) == 0
+    assert "Choose their dictionary in the vision settings." in capsys.readouterr().out
+    assert main(["mission", "check", "follow_colour", *common]) == 0
+    assert "would not begin" not in capsys.readouterr().out
