@@ -11,12 +11,14 @@ is pressed all the same, and the server that answers must be the same at the end
 import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -37,6 +39,8 @@ STOP_MAX = 0.5
 JITTER_MAX = 0.02
 """s by which attacks may lengthen the loop's 99th percentile."""
 RECORD_SECONDS = 10.0
+GAPS, BOOKMARKS = 400_000, 100_000
+"""Of a session that an earlier version has imported."""
 NOBODY = 65534
 TESTS = {
     "half-sent requests over a revocation": "tests/server/sign_in/test_revoked_requests.py",
@@ -109,6 +113,22 @@ def record(stack: Stack) -> None:
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
 
 
+def crowd(stack: Stack) -> None:
+    """A session with more gaps and bookmarks than are accepted now, as an earlier version has stored them."""
+    session = stack.api.post("/sessions", json={"name": "crowded"}).raise_for_status().json()["id"]
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+    with closing(sqlite3.connect(stack.data / "mucat.db", timeout=60.0)) as database, database:
+        (start,) = database.execute("SELECT started_steady FROM session WHERE id = ?", (session,)).fetchone()
+        database.executemany(
+            "INSERT INTO gap (session_id, topic, kind, time, missed) VALUES (?, 'depth', 'missed', ?, 1)",
+            ((session, start + place / GAPS) for place in range(GAPS)),
+        )
+        database.executemany(
+            "INSERT INTO marker (session_id, time, text, made) VALUES (?, ?, 'x', 0)",
+            ((session, start + place / BOOKMARKS) for place in range(BOOKMARKS)),
+        )
+
+
 def look_as_nobody(data: Path) -> str:
     """Returns the token, database, sockets and serial line that another user finds."""
     for folder in data.parents[: len(data.parts) - len(Path(tempfile.gettempdir()).parts) - 1]:
@@ -161,6 +181,8 @@ def attack(stack: Stack, words: str) -> Outcome:
         outcome.problems[nobody] = look_as_nobody(stack.data)
     if words in killed:
         outcome.problems[killed] = kill_the_runtime(stack)
+    if any(words in name for name in FLOODS):
+        crowd(stack)
     for name in FLOODS:
         if words in name:
             outcome.problems[name] = flood(stack, name)

@@ -33,6 +33,13 @@ class Field:
         assert "root:x:" not in answer.text
         return answer.status_code
 
+    def newest_session(self) -> int:
+        """The number of the newest session."""
+        transport = httpx.HTTPTransport(local_address=FROM)
+        with httpx.Client(base_url=self.url, timeout=PATIENCE, transport=transport) as client:
+            answer = client.get("/api/sessions?limit=1", headers=self.viewer).raise_for_status()
+        return int(answer.json()[0]["id"])
+
     def refuse(
         self, method: str, path: str, headers: dict[str, str] | None = None, **options: object
     ) -> None:

@@ -131,12 +131,22 @@ def history_unread(field: Field) -> None:
 
 
 def small_connections(field: Field) -> None:
+    _ask_in_turn(field, ["/api/sessions"])
+
+
+def crowded_session(field: Field) -> None:
+    newest = f"/api/sessions/{field.newest_session()}"
+    _ask_in_turn(field, [newest, f"{newest}/timeline"])
+
+
+def _ask_in_turn(field: Field, paths: list[str]) -> None:
+    """Ask for these over many connections, one request each, and read the answers."""
     token = field.viewer["authorization"]
-    head = f"GET /api/sessions HTTP/1.1\r\nHost: localhost\r\nAuthorization: {token}\r\n"
-    request = f"{head}Connection: close\r\n\r\n".encode()
     end = time.monotonic() + FLOOD_SECONDS
 
-    def ask(_: int) -> None:
+    def ask(place: int) -> None:
+        head = f"GET {paths[place % len(paths)]} HTTP/1.1\r\nHost: localhost\r\nAuthorization: {token}\r\n"
+        request = f"{head}Connection: close\r\n\r\n".encode()
         while time.monotonic() < end:
             with suppress(OSError), field.reach(1.0) as line:
                 line.sendall(request)
@@ -184,5 +194,6 @@ FLOODS: dict[str, Callable[[Field], None]] = {
     "fragments of all topics": fragments,
     "the history asked for and not read": history_unread,
     "small connections": small_connections,
+    "a session of 400,000 gaps": crowded_session,
 }
 """Each alone, while an operator presses STOP."""
