@@ -54,7 +54,7 @@ if [ "${1:-run}" = test ]; then
 fi
 # What makes systems of other computers; then what builds the emulated board for them, and runs the packages there.
 case ${1:-run} in
-    test | packages) need mmdebstrap mmdebstrap ;;
+    test | packages) need mmdebstrap mmdebstrap; need arch-test arch-test ;;
 esac
 if [ "${1:-run}" = packages ]; then
     need systemd-container systemd-nspawn
@@ -64,7 +64,6 @@ if [ "${1:-run}" = packages ]; then
     need g++-i686-linux-gnu i686-linux-gnu-g++
     need qemu-user-static qemu-aarch64-static
     need binfmt-support update-binfmts
-    need arch-test arch-test
     need buildah buildah
 fi
 [ -n "$missing$wished" ] || exit 0
