@@ -80,6 +80,10 @@ GOALS = {
     # the line to the viewer, each of which costs mostly its waking up. Fewer of them make the controllers
     # swing wider, and by an estimate would miss `latency.sample_to_page_ms_p95`.
     "cpu.robot_stack_percent": _most(2.5, "python"),
+    "decoder.alarm_s.hang": _most(1.5),
+    "decoder.armed_at_the_end": _least(1),
+    "decoder.named_s.crash": _most(1),
+    "decoder.pictures_again_s.crash": _most(_AGAIN),
     **{f"doors.{door}.latency_ms_p95.10": _most(80) for door in ("rosbridge", "foxglove", "ros2")},
     **{f"doors.{door}.stalled_ratio": _most(1.5) for door in ("rosbridge", "foxglove", "ros2")},
     "export.csv_1h_ratio": _most(1.3),

@@ -50,7 +50,7 @@ def test_a_complete_machine_needs_nothing(path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("node", "Node 20 or newer"),
+        ("node", "Node 20.19 or newer"),
         ("python3", "Python 3.11 or newer"),
         ("avr-gcc", "gcc-avr"),
         ("avrdude", "avrdude"),

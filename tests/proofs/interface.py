@@ -38,7 +38,7 @@ from tests.server.waiting import until
 from tests.shell import shell_headers
 
 AnyCase = Case[Any]
-SILENT = {"putView": {503, 504}, "checkAlive": {503}}
+SILENT = {"putView": {503, 504}, "checkAlive": {503}, "getRobot": {503}}
 """Operations without an answer here: there is no scene, and no runtime that is alive."""
 SLOW = {"importSession": 10}
 """Operations that start a process, and for how many questions to others one is put to them."""

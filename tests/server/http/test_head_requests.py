@@ -28,8 +28,11 @@ def test_every_get_answers_head_with_the_same_status_and_headers_and_without_a_b
             assert not surprises
             for method, path in OPEN:
                 if method == "GET":
+                    # A runtime that says nothing for long is not alive: 503, to both.
+                    opened, _, _ = await house.ask(Somebody(), "GET", path, right)
                     status, _, body = await house.ask(Somebody(), "HEAD", path, right)
-                    assert (status, body) in ((200, b""), (204, b""))
+                    assert (status, body) == (opened, b"")
+                    assert status in (200, 204, 503)
             status, _, _ = await house.ask(Somebody(), "HEAD", "/api/robot", right)
             assert status == 401
 
