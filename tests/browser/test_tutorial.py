@@ -76,6 +76,6 @@ def test_the_tutorial_is_walked_word_by_word(page: Page, stack: Stack) -> None:
         effects.get(name, lambda: None)()
     assert effects.keys() <= {*pressed}
     assert next(applied, None) is None
-    stack.api.post("/control/take?over=true")
-    restored = {"name": "depth", "controller": before}
-    assert stack.api.post("/robot/commands/loop", json=restored).is_success
+    stack.api.post("/control/take?over=true").raise_for_status()
+    stack.api.post("/robot/commands/loop", json={"name": "depth", "controller": before}).raise_for_status()
+    stack.api.post("/control/release").raise_for_status()
