@@ -3,7 +3,7 @@
 from robot_runtime.contract.vision_settings import MARKER, MARKER_COUNTS, VisionSettings, marker_name
 
 LIGHT = "light"
-"""What `sees` calls the light of the beacon detectors."""
+"""The name by which `sees` calls the light of the beacon detectors."""
 
 
 def find_sight_problem(what: str, settings: VisionSettings) -> str:

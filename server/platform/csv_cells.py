@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Spreadsheet = Literal["none", "point", "comma"]
-"""Who a file is for: programs, or a spreadsheet with this decimal sign."""
+"""The reader of a file: programs, or a spreadsheet with this decimal sign."""
 FORMULA = ("=", "+", "-", "@", "\t", "\n", "＝", "＋", "－", "＠")
 """Beginnings of what spreadsheets calculate."""
 _NOT_FINITE = re.compile(r"(?<![^,\n])-?(?:nan|inf)(?![^,\n])")

@@ -62,7 +62,7 @@ class Progress:
     done: int = 0
     done_weight: float = 0.0
     first: tuple[float, float] | None = None
-    """When the first cell had ended (s), and its weight; the time before it, of a compiler, tells nothing."""
+    """The end of the first cell (s), and its weight; the time before it, of a compiler, tells nothing."""
     phases: dict[int, Phase] = field(default_factory=dict)
 
     def describe(self, now: float) -> dict[str, Any]:
