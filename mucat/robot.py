@@ -68,13 +68,17 @@ class Robot:
         asked = {"text": text, "place": "simulated", "board": "host"}
         run = self.address.ask("POST", "/scenarios/runs", asked)["run"]
         while True:
-            last = self.address.ask("GET", "/scenarios/state")["last"]
-            if last is not None and last["run"] > run:
-                raise RobotError("Another scenario has ended meanwhile. The newest sessions have the result.")
+            state = self.address.ask("GET", "/scenarios/state")
+            last = state["last"]
             if last is not None and last["run"] == run:
                 if last["state"] != "complete":
                     raise RobotError(f"The scenario ended as {last['state']}: {last['problem']}")
                 return int(last["session"])
+            if run not in (one["run"] for one in (state["active"], *state["queued"]) if one is not None):
+                raise RobotError(
+                    "The scenario is over, and another one or the server's restart has followed. "
+                    "The newest sessions have its result."
+                )
             time.sleep(POLL_SECONDS)
 
     def try_mission(self, text: str, seeds: int = 20) -> list[dict[str, Any]]:

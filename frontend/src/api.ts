@@ -252,7 +252,7 @@ export const api = {
   checkCommTest: (text: string) => request<CommTestCheck>('POST', '/comm-tests/check', { text }),
   startCommTest: (text: string, place: CommTestPlace) =>
     request<Schemas['Started']>('POST', '/comm-tests/runs', { text, place }, TIMEOUT_COMM_TEST),
-  cancelCommTest: () => command('POST', '/comm-tests/cancel', undefined, TIMEOUT_COMM_TEST),
+  cancelCommTest: (run: CommTestRun['id']) => command('POST', `/comm-tests/cancel?run=${run}`, undefined, TIMEOUT_COMM_TEST),
   commTestRuns: () => request<CommTestSummary[]>('GET', '/comm-tests/runs'),
   commTestRun: (id: CommTestRun['id']) => request<CommTestRun>('GET', `/comm-tests/runs/${id}`),
   commTestFile: (id: CommTestRun['id'], format: 'csv' | 'json') =>
@@ -261,7 +261,8 @@ export const api = {
   keepScenario: (text: string, base: string | null) => request<ScenarioSummary>('POST', '/scenarios', { text, base }),
   checkScenario: (text: string) => request<ScenarioCheck>('POST', '/scenarios/check', { text }),
   startScenario: (start: ScenarioStart) => request<Schemas['ScenarioStarted']>('POST', '/scenarios/runs', start),
-  cancelScenario: () => command('POST', '/scenarios/cancel'),
+  /** this run, or with null the active one and all that wait */
+  cancelScenario: (run: string | null) => command('POST', `/scenarios/cancel${run === null ? '' : `?run=${run}`}`),
   missions: () => request<MissionText[]>('GET', '/missions'),
   missionNodes: () => request<MissionNodeKind[]>('GET', '/missions/nodes'),
   missionVersions: (name: MissionText['name']) => request<MissionVersion[]>('GET', `/missions/versions/${name}`),
@@ -271,7 +272,7 @@ export const api = {
   startMission: (text: string) => orderFor<Schemas['MissionSummary']>('POST', '/missions/start', { text }, TIMEOUT_MISSION),
   missionTrial: () => request<MissionTrial>('GET', '/missions/trial'),
   startMissionTrial: (text: string, seeds: number) => request<MissionTrial>('POST', '/missions/trial', { text, seeds }),
-  cancelMissionTrial: () => command('POST', '/missions/trial/cancel'),
+  cancelMissionTrial: (run: MissionTrial['run']) => command('POST', `/missions/trial/cancel?run=${run}`),
   layouts: () => request<SavedLayout[]>('GET', '/layouts'),
   layout: (id: SavedLayout['id']) => request<Schemas['LayoutDetails']>('GET', `/layouts/${id}`),
   saveLayout: (name: string, document: object, base: number | null) => request<SavedLayout>('POST', '/layouts', { name, document, base }),
@@ -281,13 +282,13 @@ export const api = {
     request<Schemas['OwnPanelScript']>('GET', `/panels/own/${encodeURIComponent(name)}`),
   identification: () => request<IdentificationState>('GET', '/identification'),
   startIdentification: (wanted: IdentificationStart) => order('POST', '/identification', wanted),
-  cancelIdentification: () => order('POST', '/identification/cancel'),
-  adoptCraft: () => request<CraftChange>('POST', '/identification/adopt'),
+  cancelIdentification: (run: string) => order('POST', `/identification/cancel?run=${run}`),
+  adoptCraft: (run: string) => request<CraftChange>('POST', `/identification/adopt?run=${run}`),
   undoCraft: () => request<CraftChange>('POST', '/identification/undo'),
   tuningRuns: (loop: LoopName) => request<TuningRuns>('GET', `/tuning/runs?loop=${loop}`),
   tuningRun: (id: TuningRun['id']) => request<TuningRunDetail>('GET', `/tuning/runs/${id}`),
   startTuning: (wanted: TuningStart) => order('POST', '/tuning/runs', wanted),
-  stopTuning: () => order('POST', '/tuning/stop'),
+  stopTuning: (run: ActiveTuning['run']) => order('POST', `/tuning/stop?run=${run}`),
   renameTuning: (id: TuningRun['id'], name: string) => command('PATCH', `/tuning/runs/${id}`, { name }),
   deleteTuning: (id: TuningRun['id']) => command('DELETE', `/tuning/runs/${id}`),
   firmwareUpload: () => request<FirmwareUploadState>('GET', '/firmware'),
@@ -298,9 +299,9 @@ export const api = {
   beginUpdate: () => request<UpdateState>('POST', '/update'),
   bringUp: () => request<BringUpState>('GET', '/bring-up'),
   beginBringUp: () => orderFor<BringUpState>('POST', '/bring-up', undefined, TIMEOUT_COMM_TEST),
-  endBringUp: () => request<BringUpState>('DELETE', '/bring-up'),
+  endBringUp: (run: BringUpState['run']) => request<BringUpState>('DELETE', `/bring-up?run=${run}`),
   useHandsInBringUp: (order: BringUpHandsOrder) => orderFor<BringUpState>('POST', '/bring-up/hands', order),
-  actInBringUp: (step: string, action: string, inputs: BringUpInputs) =>
-    orderFor<BringUpState>('POST', '/bring-up/actions', { step, action, inputs }, TIMEOUT_CHECK),
+  actInBringUp: (run: BringUpState['run'], step: string, action: string, inputs: BringUpInputs) =>
+    orderFor<BringUpState>('POST', '/bring-up/actions', { run, step, action, inputs }, TIMEOUT_CHECK),
   thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),
 };

@@ -294,7 +294,7 @@ describe('fields', () => {
 
 describe('a dry run', () => {
   const run = (seed: number, phase: 'succeeded' | 'failed' | 'ended' | null, elapsed: number, failed: string | null) => ({ seed, phase, elapsed, failed, text: `of ${seed}`, deepest: seed / 10, curve: [] });
-  const trial = { number: 1, name: 'a', text: '', running: false, seeds: 5, problem: '' };
+  const trial = { run: 'a', name: 'a', text: '', running: false, seeds: 5, problem: '' };
 
   it('has its figures', () => {
     const results = [run(1, 'succeeded', 40, null), run(2, 'failed', 9, '2.1'), run(3, 'succeeded', 44, null), run(4, 'failed', 7, '2.1'), run(5, null, 0, null)];

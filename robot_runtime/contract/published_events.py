@@ -29,7 +29,9 @@ class PublishedEvent:
     subject: str = field(
         metadata={"meaning": "the fault in one word, or the name of session, test, scenario or mission"}
     )
-    id: int | None = field(metadata={"meaning": "the number of session, test, run or mission"})
+    id: int | str | None = field(
+        metadata={"meaning": "the number of session, test, tuning run or mission; text of a scenario's run"}
+    )
     session: int | None = field(metadata={"meaning": "the session that recorded it, where it is known"})
     state: str = field(
         metadata={

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from inspect import cleandoc
 from typing import Annotated, Any, Literal, TypeVar
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Query
 from fastapi.params import Depends
 from pydantic import BaseModel
 from starlette.responses import Response
@@ -21,6 +21,8 @@ from server.platform.models import IDENTIFIER_MAX
 Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 """The number of a row of the database, in a path."""
+MeantRun = Annotated[str | None, Query(description="the run that is meant: refused if it is over")]
+MeantNumber = Annotated[int | None, Query(description="the run that is meant: refused if it is over")]
 Errors = type[ApiError] | Mapping[int, str]
 """Errors of an operation: a class of them, or descriptions by status."""
 

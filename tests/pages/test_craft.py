@@ -47,7 +47,7 @@ def fitted(run: int) -> dict[str, Any]:
         "craft": "",
     }
     craft = {"title": "", "origin": "", "file": "", "can_undo": False, "problem": ""}
-    last = {"run": run, "sessions": [1], "left_out": 2, "problem": "", "result": result}
+    last = {"run": f"{run:016x}", "sessions": [1], "left_out": 2, "problem": "", "result": result}
     return {"active": None, "last": last, "craft": craft}
 
 
@@ -59,11 +59,11 @@ def test_the_craft_of_a_second_fit_can_be_adopted(page: Page, site: Site) -> Non
         nonlocal run
         if route.request.method == "GET":
             route.fulfill(json=fitted(run))
-        elif route.request.url.endswith("/adopt"):
+        elif route.request.url.endswith(f"/adopt?run={run:016x}"):
             route.fulfill(json={"affected": ["It has another mass."]})
         else:
             run = 2
-            route.fulfill(status=201, json={"run": run})
+            route.fulfill(status=201, json={"run": f"{run:016x}"})
 
     page.route(re.compile("/api/identification"), answer)
     page.goto(f"{site.url}/#/tune/craft")

@@ -373,8 +373,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Cancel the running document; finished cells are stored
-         * @description Cancel the running document; finished cells are stored.
+         * Cancel the running document; finished cells are stored. `run` is any of the document's
+         * @description Cancel the running document; finished cells are stored. `run` is any of the document's.
          */
         post: operations["cancelTestRun"];
         delete?: never;
@@ -2483,8 +2483,11 @@ export interface components {
              * @description 0 to 1
              */
             progress: number;
-            /** Run */
-            run: number;
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again
+             */
+            run: string;
             /** Sessions */
             sessions: number[];
         };
@@ -2517,8 +2520,11 @@ export interface components {
              * @enum {string}
              */
             place: "live" | "simulated";
-            /** Run */
-            run: number;
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again
+             */
+            run: string;
             /** Session */
             session: number | null;
             /** Title */
@@ -2816,6 +2822,11 @@ export interface components {
             inputs?: {
                 [key: string]: number | string;
             };
+            /**
+             * Run
+             * @description the bring-up that is meant; null: any
+             */
+            run?: string | null;
             /** Step */
             step: string;
         };
@@ -2887,6 +2898,11 @@ export interface components {
              * @description address of the newest report
              */
             report: string | null;
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again; empty before the first one
+             */
+            run: string;
             /** Steps */
             steps: components["schemas"]["BringUpStep"][];
             /**
@@ -3784,8 +3800,11 @@ export interface components {
              */
             problem: string;
             result: components["schemas"]["IdentificationResult"] | null;
-            /** Run */
-            run: number;
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again
+             */
+            run: string;
             /** Sessions */
             sessions: number[];
         };
@@ -3808,8 +3827,11 @@ export interface components {
             place: "live" | "simulated";
             /** Problem */
             problem: string;
-            /** Run */
-            run: number;
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again
+             */
+            run: string;
             /** Session */
             session: number | null;
             /**
@@ -4114,11 +4136,14 @@ export interface components {
         };
         /**
          * IdentificationStarted
-         * @description The number of a fit.
+         * @description The fit that was started.
          */
         IdentificationStarted: {
-            /** Run */
-            run: number;
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again
+             */
+            run: string;
         };
         /**
          * IdentificationState
@@ -4799,17 +4824,17 @@ export interface components {
             /** Name */
             name: string;
             /**
-             * Number
-             * @description from 1 since the server started; 0: there was none
-             */
-            number: number;
-            /**
              * Problem
              * @description the reason of an early end; empty without one
              */
             problem: string;
             /** Results */
             results: components["schemas"]["MissionTrialResult"][];
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again; empty: there was none
+             */
+            run: string;
             /** Running */
             running: boolean;
             /** Seeds */
@@ -5406,8 +5431,11 @@ export interface components {
         QueuedRun: {
             /** Name */
             name: string;
-            /** Run */
-            run: number;
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again
+             */
+            run: string;
             /** Title */
             title: string;
         };
@@ -5716,11 +5744,14 @@ export interface components {
         };
         /**
          * ScenarioStarted
-         * @description The number of a run, from 1 since the server started.
+         * @description The run that was started.
          */
         ScenarioStarted: {
-            /** Run */
-            run: number;
+            /**
+             * Run
+             * @description 16 hexadecimal digits, never used again
+             */
+            run: string;
         };
         /**
          * ScenarioState
@@ -7894,7 +7925,10 @@ export interface operations {
     };
     endBringUp: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description the run that is meant: refused if it is over */
+                run?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -7908,6 +7942,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["BringUpState"];
+                };
+            };
+            /** @description This run is over */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Something that the server needs does not work */
@@ -8135,7 +8178,10 @@ export interface operations {
     };
     cancelTestRun: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description the run that is meant: refused if it is over */
+                run?: number | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -8148,6 +8194,15 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description This run is over */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
             };
             /** @description Something that the server needs does not work */
             503: {
@@ -9755,7 +9810,10 @@ export interface operations {
     };
     adoptCraft: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description the run that is meant: refused if it is over */
+                run?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -9811,7 +9869,10 @@ export interface operations {
     };
     cancelIdentification: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description the run that is meant: refused if it is over */
+                run?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -10761,7 +10822,10 @@ export interface operations {
     };
     cancelMissionTrial: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description the run that is meant: refused if it is over */
+                run?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -10775,7 +10839,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description None runs */
+            /** @description None runs, or the one that is meant is over */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -13142,7 +13206,8 @@ export interface operations {
     cancelScenario: {
         parameters: {
             query?: {
-                run?: number | null;
+                /** @description the run that is meant: refused if it is over */
+                run?: string | null;
             };
             header?: never;
             path?: never;
@@ -13156,6 +13221,15 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description This run is over */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
             };
             /** @description Something that the server needs does not work */
             503: {
@@ -15066,7 +15140,10 @@ export interface operations {
     };
     stopTuningRun: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description the run that is meant: refused if it is over */
+                run?: number | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;

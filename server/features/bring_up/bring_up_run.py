@@ -35,6 +35,7 @@ from server.features.bring_up.schemas import (
     RawReadings,
 )
 from server.platform.errors import NotFoundError, explain_internal_error
+from server.platform.runs import new_run, require_run
 from server.platform.settings import Settings
 from server.processes.supervisor import ProcessSupervisor
 
@@ -61,6 +62,7 @@ class BringUpRun:
         self._board = board
         self._reserve = reserve
         self._processes = processes
+        self._run_name = ""
         self._phase: Phase = "idle"
         self._words = ""
         self._problem = ""
@@ -80,14 +82,16 @@ class BringUpRun:
         if not sketch.exists():
             raise RefusedError(f"There is no {sketch}; {FIRMWARE_REMEDY}.")
         self._over.clear()
+        self._run_name = new_run()
         self._phase, self._problem = "starting", ""
         self._words = "The robot is disarmed and its board reserved."
         reserved: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._task = asyncio.create_task(self._run(reserved))
         await asyncio.shield(reserved)
 
-    def end(self) -> None:
-        """End it; the robot's firmware is uploaded again meanwhile."""
+    def end(self, run: str | None = None) -> None:
+        """End it; the robot's firmware is uploaded again meanwhile. Raises RunOverError."""
+        require_run(run, self._run_name, "bring-up")
         self._over.set()
 
     async def close(self) -> None:
@@ -102,8 +106,11 @@ class BringUpRun:
             with suppress(BenchError):
                 self._procedure.stop()
 
-    async def perform(self, step: str, action: str, inputs: Mapping[str, float | str]) -> None:
-        """Perform an action. Raises RefusedError where it cannot be done."""
+    async def perform(
+        self, step: str, action: str, inputs: Mapping[str, float | str], run: str | None = None
+    ) -> None:
+        """Perform an action. Raises RefusedError where it cannot be done, RunOverError."""
+        require_run(run, self._run_name, "bring-up")
         procedure = self._procedure
         if procedure is None or self._phase != "ready":
             raise RefusedError("The board is not ready. Begin the bring-up, and wait until it is.")
@@ -145,6 +152,7 @@ class BringUpRun:
     def state(self) -> BringUpState:
         """Everything that pages show."""
         return BringUpState(
+            run=self._run_name,
             phase=self._phase,
             words=self._words,
             problem=self._problem,

@@ -6,8 +6,9 @@ from server.features.bring_up.bring_up_run import BringUpRun, NoReportError
 from server.features.bring_up.schemas import BringUpOrder, BringUpState, HandsOrder
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
-from server.http.operations import Operations
+from server.http.operations import MeantRun, Operations
 from server.http.sign_in.policy import Need
+from server.platform.runs import RunOverError
 
 router = Operations(prefix="/api/bring-up", tags=["board"])
 
@@ -28,17 +29,17 @@ async def begin_bring_up(monitor: Provided[HealthMonitor], bring_up: Provided[Br
     return bring_up.state()
 
 
-@router.operation("DELETE", Need.OPERATOR)
-def end_bring_up(bring_up: Provided[BringUpRun]) -> BringUpState:
+@router.operation("DELETE", Need.OPERATOR, RunOverError)
+def end_bring_up(bring_up: Provided[BringUpRun], run: MeantRun = None) -> BringUpState:
     """End the bring-up: the report is written, and the robot's firmware uploaded again."""
-    bring_up.end()
+    bring_up.end(run)
     return bring_up.state()
 
 
 @router.operation("POST /actions", Need.CONTROL, REFUSED)
 async def act_in_bring_up(bring_up: Provided[BringUpRun], order: BringUpOrder) -> BringUpState:
     """Perform an action of a step; this answers with its results."""
-    await bring_up.perform(order.step, order.action, order.inputs)
+    await bring_up.perform(order.step, order.action, order.inputs, order.run)
     return bring_up.state()
 
 

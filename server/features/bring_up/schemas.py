@@ -10,6 +10,7 @@ from robot_runtime.experiments.bring_up.readings import Field as MagneticField
 from robot_runtime.experiments.bring_up.results import Verdict
 from robot_runtime.simulation.boards.workbench import Lamp, Pose
 from server.http.request_body import RequestBody
+from server.platform.runs import RUN_MEANING
 
 Phase = Literal["idle", "starting", "ready", "ending"]
 
@@ -104,6 +105,7 @@ class BenchHands(BaseModel):
 class BringUpState(BaseModel):
     """The bring-up as a whole."""
 
+    run: str = Field(description=f"{RUN_MEANING}; empty before the first one")
     phase: Phase
     words: str = Field(description="what it is doing, or how it ended")
     problem: str = Field(description="why it could not go on; empty if it could")
@@ -116,6 +118,7 @@ class BringUpState(BaseModel):
 class BringUpOrder(RequestBody):
     """An action of a step, with what the person gives."""
 
+    run: str | None = Field(default=None, max_length=40, description="the bring-up that is meant; null: any")
     step: str = Field(max_length=40)
     action: str = Field(max_length=40, description="an action of this step, or skip")
     inputs: dict[str, float | str] = Field(default_factory=dict, max_length=4)

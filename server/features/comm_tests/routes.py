@@ -26,9 +26,10 @@ from server.features.comm_tests.shipped import shipped_documents
 from server.features.lease.admission import require_control
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
-from server.http.operations import Identifier, Operations
+from server.http.operations import Identifier, MeantNumber, Operations
 from server.http.sign_in.policy import Need
 from server.platform.csv_cells import STYLES, Spreadsheet
+from server.platform.runs import RunOverError
 
 router = Operations(prefix="/api/comm-tests", tags=["communication tests"])
 
@@ -71,10 +72,10 @@ async def start_test_run(
     return Started(run=await comm_tests.start(body.text, body.place))
 
 
-@router.operation("POST /cancel", Need.OPERATOR)
-async def cancel_test_run(comm_tests: Provided[CommTestRunner]) -> None:
-    """Cancel the running document; finished cells are stored."""
-    comm_tests.cancel()
+@router.operation("POST /cancel", Need.OPERATOR, RunOverError)
+async def cancel_test_run(comm_tests: Provided[CommTestRunner], run: MeantNumber = None) -> None:
+    """Cancel the running document; finished cells are stored. `run` is any of the document's."""
+    comm_tests.cancel(run)
 
 
 @router.operation("GET /runs", Need.VIEWER)

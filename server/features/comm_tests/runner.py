@@ -23,6 +23,7 @@ from robot_runtime.experiments.comm_test.document import CommTest, read_document
 from robot_runtime.experiments.comm_test.runner import estimate_seconds
 from server.features.comm_tests.runs import CommTestStore, End
 from server.features.comm_tests.schemas import Cell, Phase, Place
+from server.platform.runs import RunOverError
 from server.platform.settings import Settings
 from server.platform.store import StoreError
 from server.processes.exit_status import describe_status
@@ -122,6 +123,8 @@ class CommTestRunner:
         self._task: asyncio.Task[None] | None = None
         self._process: PipedProcess | None = None
         self._cancelled = False
+        self._begun: set[int] = set()
+        """The runs of the newest document so far."""
 
     @property
     def busy(self) -> bool:
@@ -138,6 +141,7 @@ class CommTestRunner:
             raise RefusedError("A communication test is running. Wait for its end, or cancel it.")
         began: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._cancelled = False
+        self._begun = set()
         self._task = asyncio.create_task(self._run(tests, text, place, began))
         return await asyncio.shield(began)
 
@@ -146,8 +150,13 @@ class CommTestRunner:
         if self._task is not None:
             await asyncio.wait([self._task])
 
-    def cancel(self) -> None:
-        """End the running document soon and in order; finished cells are stored."""
+    def cancel(self, run: int | None = None) -> None:
+        """End the running document soon and in order; finished cells are stored.
+
+        Raises RunOverError if this run is none of the document that runs.
+        """
+        if run is not None and not (self.busy and run in self._begun):
+            raise RunOverError("communication test")
         self._cancelled = True
         process = self._process
         if process is not None:
@@ -254,6 +263,7 @@ class CommTestRunner:
                 progress.run = await self.runs.start(
                     test, place, str(event["firmware"]), event["tools"], host
                 )
+                self._begun.add(progress.run)
                 if not began.done():
                     began.set_result(progress.run)
             case "phase":

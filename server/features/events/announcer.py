@@ -39,8 +39,8 @@ class EventAnnouncer:
         self._number = 0
         self._alarms: dict[str, Alarms] = {}
         self._session: dict[str, Any] | None = None
-        self._last: dict[str, int] = {}
-        """The number of the run of each kind that was announced last."""
+        self._last: dict[str, int | str] = {}
+        """The run of each kind that was announced last."""
 
     def open(self) -> None:
         """Connect from now on."""
@@ -148,7 +148,7 @@ class EventAnnouncer:
             name, state = document["title"] or document["name"], document["phase"]
             self._end("mission_ended", name, document["number"], state, document["text"], session)
 
-    def _is_new(self, kind: str, number: int) -> bool:
+    def _is_new(self, kind: str, number: int | str) -> bool:
         before, self._last[kind] = self._last.get(kind), number
         return before != number
 
@@ -156,7 +156,7 @@ class EventAnnouncer:
         self,
         kind: PublishedKind,
         name: str,
-        number: int,
+        number: int | str,
         state: str,
         problem: str,
         session: int | None = None,
@@ -169,7 +169,7 @@ class EventAnnouncer:
         self,
         kind: PublishedKind,
         subject: str,
-        number: int | None = None,
+        number: int | str | None = None,
         *,
         state: str,
         severity: Severity = "info",

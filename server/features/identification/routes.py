@@ -9,7 +9,7 @@ from server.features.identification.schemas import (
     IdentificationState,
 )
 from server.http.dependencies import Provided
-from server.http.operations import Operations
+from server.http.operations import MeantRun, Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
 
@@ -33,15 +33,17 @@ async def start_identification(
 
 
 @router.operation("POST /cancel", Need.OPERATOR, REFUSED)
-async def cancel_identification(runner: Provided[IdentificationRunner]) -> None:
+async def cancel_identification(runner: Provided[IdentificationRunner], run: MeantRun = None) -> None:
     """Cancel the running fit."""
-    runner.cancel()
+    runner.cancel(run)
 
 
 @router.operation("POST /adopt", Need.OPERATOR, REFUSED)
-async def adopt_craft(runner: Provided[IdentificationRunner], caller: Caller) -> CraftChange:
+async def adopt_craft(
+    runner: Provided[IdentificationRunner], caller: Caller, run: MeantRun = None
+) -> CraftChange:
     """Adopt the craft of the last fit: write its file, restart the simulator, set the controller's gains."""
-    return CraftChange(affected=await runner.adopt(caller.name))
+    return CraftChange(affected=await runner.adopt(caller.name, run))
 
 
 @router.operation("POST /undo", Need.OPERATOR, REFUSED)

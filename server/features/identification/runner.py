@@ -19,6 +19,7 @@ from server.features.identification.schemas import (
     IdentificationState,
 )
 from server.platform.errors import explain_internal_error
+from server.platform.runs import new_run, require_run
 from server.platform.settings import Settings
 from server.processes.exit_status import describe_status
 
@@ -39,33 +40,40 @@ class IdentificationRunner:
         self._active: ActiveIdentification | None = None
         self._last: EndedIdentification | None = None
         self._task: asyncio.Task[None] | None = None
-        self._count = 0
 
     def state(self) -> IdentificationState:
         """The running fit, or the last one with its result, and the craft in force."""
         last = self._last if self._active is None else None
         return IdentificationState(active=self._active, last=last, craft=self._adoption.describe())
 
-    def start(self, choice: IdentificationStart) -> int:
-        """Start a fit, and return its number. Raises RefusedError."""
+    def start(self, choice: IdentificationStart) -> str:
+        """Start a fit, and return its run. Raises RefusedError."""
         if self._active is not None:
             raise RefusedError("A fit is running. Wait for its end, or cancel it.")
         check_choice(choice.sessions, choice.left_out)
-        self._count += 1
+        run = new_run()
         self._active = ActiveIdentification(
-            run=self._count, sessions=choice.sessions, left_out=choice.left_out, progress=0.0
+            run=run, sessions=choice.sessions, left_out=choice.left_out, progress=0.0
         )
-        self._task = asyncio.create_task(self._perform(choice))
-        return self._count
+        self._task = asyncio.create_task(self._perform(run, choice))
+        return run
 
-    def cancel(self) -> None:
-        """End the running fit; the last result stays away. Raises RefusedError if none runs."""
+    def cancel(self, run: str | None = None) -> None:
+        """End the running fit, or this one alone; the last result stays away.
+
+        Raises RefusedError if none runs, RunOverError.
+        """
+        require_run(run, None if self._active is None else self._active.run, "fit")
         if self._task is None or self._active is None:
             raise RefusedError("No fit is running.")
         self._task.cancel()
 
-    async def adopt(self, who: str) -> list[str]:
-        """Adopt the last fit's craft; returns the effects in words. Raises RefusedError."""
+    async def adopt(self, who: str, run: str | None = None) -> list[str]:
+        """Adopt the last fit's craft, or that of this one alone; returns the effects in words.
+
+        Raises RefusedError, RunOverError.
+        """
+        require_run(run, None if self._last is None else self._last.run, "fit")
         if self._active is not None or self._last is None or self._last.result is None:
             raise RefusedError("There is no fitted craft to adopt. Fit sessions first.")
         return await self._adoption.adopt(self._last.result.craft, who)
@@ -76,7 +84,7 @@ class IdentificationRunner:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
 
-    async def _perform(self, choice: IdentificationStart) -> None:
+    async def _perform(self, run: str, choice: IdentificationStart) -> None:
         problem, result = CANCELLED, None
         try:
             async with asyncio.timeout(SECONDS_MAX):
@@ -90,7 +98,7 @@ class IdentificationRunner:
             problem = explain_internal_error(error)
         finally:
             self._last = EndedIdentification(
-                run=self._count,
+                run=run,
                 sessions=choice.sessions,
                 left_out=choice.left_out,
                 problem=problem,

@@ -6,6 +6,7 @@ from pydantic import BaseModel, Field
 
 from server.http.request_body import RequestBody
 from server.platform.models import IDENTIFIER_MAX
+from server.platform.runs import RUN_MEANING
 
 SESSIONS_MAX = 12
 
@@ -87,15 +88,15 @@ class IdentificationResult(BaseModel):
 
 
 class IdentificationStarted(BaseModel):
-    """The number of a fit."""
+    """The fit that was started."""
 
-    run: int
+    run: str = Field(description=RUN_MEANING)
 
 
 class ActiveIdentification(BaseModel):
     """A fit that runs."""
 
-    run: int
+    run: str = Field(description=RUN_MEANING)
     sessions: list[int]
     left_out: int | None
     progress: float = Field(description="0 to 1")
@@ -104,7 +105,7 @@ class ActiveIdentification(BaseModel):
 class EndedIdentification(BaseModel):
     """The last fit."""
 
-    run: int
+    run: str = Field(description=RUN_MEANING)
     sessions: list[int]
     left_out: int | None
     problem: str = Field(description="why it has no result; empty if it has one")

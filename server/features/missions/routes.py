@@ -27,7 +27,7 @@ from server.features.parameters.changes import COMMAND_ERRORS, Changes
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.heavy_requests import TooManyHeavyError, Turn
-from server.http.operations import Operations
+from server.http.operations import MeantRun, Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
 from server.platform.disk_space import FileWriteError, check_room
@@ -134,7 +134,7 @@ async def start_mission_trial(
     return trials.state()
 
 
-@router.operation("POST /trial/cancel", Need.OPERATOR, {409: "None runs"})
-async def cancel_mission_trial(trials: Provided[MissionTrials]) -> None:
+@router.operation("POST /trial/cancel", Need.OPERATOR, {409: "None runs, or the one that is meant is over"})
+async def cancel_mission_trial(trials: Provided[MissionTrials], run: MeantRun = None) -> None:
     """Cancel the running trial; its results stay."""
-    trials.cancel()
+    trials.cancel(run)

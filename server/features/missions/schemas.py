@@ -10,6 +10,7 @@ from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.missions.document import MissionDocument
 from server.http.request_body import RequestBody
+from server.platform.runs import RUN_MEANING
 
 SEEDS_MAX = 100
 MissionToml = Annotated[str, Field(max_length=BYTES_MAX, description="TOML")]
@@ -132,7 +133,7 @@ class MissionTrialResult(BaseModel):
 class MissionTrial(BaseModel):
     """The running trial, or the last one."""
 
-    number: int = Field(description="from 1 since the server started; 0: there was none")
+    run: str = Field(description=f"{RUN_MEANING}; empty: there was none")
     name: str
     text: str = Field(description="the mission's TOML")
     running: bool

@@ -11,6 +11,7 @@ from dataclasses import asdict
 
 from robot_runtime.errors import RefusedError
 from server.features.missions.schemas import MissionTrial, MissionTrialResult
+from server.platform.runs import new_run, require_run
 from server.platform.settings import Settings
 from server.processes.exit_status import describe_status
 
@@ -26,7 +27,7 @@ class MissionTrials:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        self._trial = MissionTrial(number=0, name="", text="", running=False, seeds=0, problem="", results=[])
+        self._trial = MissionTrial(run="", name="", text="", running=False, seeds=0, problem="", results=[])
         self._task: asyncio.Task[None] | None = None
 
     def state(self) -> MissionTrial:
@@ -38,7 +39,7 @@ class MissionTrials:
         if self._trial.running:
             raise RefusedError("A trial is running. Wait for its end, or cancel it.")
         trial = self._trial = MissionTrial(
-            number=self._trial.number + 1,
+            run=new_run(),
             name=name,
             text=text,
             running=True,
@@ -50,8 +51,9 @@ class MissionTrials:
         # Also of a task that is cancelled before it begins.
         self._task.add_done_callback(lambda _: setattr(trial, "running", False))
 
-    def cancel(self) -> None:
-        """Ends the running trial; its results stay. Raises RefusedError if none runs."""
+    def cancel(self, run: str | None = None) -> None:
+        """Ends the running trial, or this one alone; its results stay. Raises RefusedError, RunOverError."""
+        require_run(run, self._trial.run if self._trial.running else None, "trial")
         if self._task is None or not self._trial.running:
             raise RefusedError("No trial is running.")
         self._trial.problem = CANCELLED

@@ -21,10 +21,11 @@ from server.features.scenarios.schemas import (
 )
 from server.http.dependencies import Provided
 from server.http.heavy_requests import TooManyHeavyError, Turn
-from server.http.operations import Operations
+from server.http.operations import MeantRun, Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
 from server.platform.disk_space import FileWriteError
+from server.platform.runs import RunOverError
 from server.platform.settings import Settings
 
 REFUSED = {409: "Refused now", 422: "The scenario cannot be run"}
@@ -86,7 +87,7 @@ async def start_scenario(
     return ScenarioStarted(run=run)
 
 
-@router.operation("POST /cancel", Need.OPERATOR)
-async def cancel_scenario(scenarios: Provided[ScenarioRunner], run: int | None = None) -> None:
+@router.operation("POST /cancel", Need.OPERATOR, RunOverError)
+async def cancel_scenario(scenarios: Provided[ScenarioRunner], run: MeantRun = None) -> None:
     """Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay."""
     scenarios.cancel(run)

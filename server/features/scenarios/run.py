@@ -27,7 +27,7 @@ class RunFailedError(Exception):
 class RunRecord:
     """Everything about one run; `elapsed` in s of the scenario."""
 
-    number: int
+    run: str
     scenario: Scenario
     text: str
     place: Place
@@ -73,7 +73,7 @@ class RunRecord:
         events = describe_events(self.scenario)
         coming = (one for one in events if one.at > self.elapsed or self.phase == "preparing")
         return ActiveRun(
-            run=self.number,
+            run=self.run,
             name=self.scenario.name,
             title=self.scenario.title,
             place=self.place,
@@ -89,7 +89,7 @@ class RunRecord:
     def end(self, state: End, problem: str) -> EndedRun:
         """The end of the run, as sent to the pages."""
         return EndedRun(
-            run=self.number,
+            run=self.run,
             name=self.scenario.name,
             title=self.scenario.title,
             place=self.place,

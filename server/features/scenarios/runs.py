@@ -13,6 +13,7 @@ from server.features.scenarios.run import RunCancelledError, RunFailedError, Run
 from server.features.scenarios.schemas import BoardKind, End, EndedRun, Place, QueuedRun, ScenarioState
 from server.features.sessions.recorder import RecordingRefusedError
 from server.platform.errors import explain_internal_error
+from server.platform.runs import RunOverError, new_run
 from server.platform.store import StoreError
 from server.stream.bridge import RuntimeSilentError
 
@@ -43,7 +44,6 @@ class ScenarioRunner:
     ) -> None:
         self._executors: dict[Place, ScenarioExecutor] = {"live": live, "simulated": simulated}
         self._notify = notify
-        self._number = 0
         self._active: RunRecord | None = None
         self._queue: deque[RunRecord] = deque()
         self._last: EndedRun | None = None
@@ -59,33 +59,38 @@ class ScenarioRunner:
         return ScenarioState(
             active=None if self._active is None else self._active.describe(),
             queued=[
-                QueuedRun(run=run.number, name=run.scenario.name, title=run.scenario.title)
+                QueuedRun(run=run.run, name=run.scenario.name, title=run.scenario.title)
                 for run in self._queue
             ],
             last=self._last,
         )
 
-    def start(self, scenario: Scenario, text: str, place: Place, board: BoardKind, who: str = "") -> int:
-        """Start or queue the scenario of this text, and return its number. Raises RefusedError."""
+    def start(self, scenario: Scenario, text: str, place: Place, board: BoardKind, who: str = "") -> str:
+        """Start or queue the scenario of this text, and return its run. Raises RefusedError."""
         if place == "live" and self._active is not None:
             raise RefusedError(f"“{self._active.scenario.title}” is running. Wait for its end, or cancel it.")
         if len(self._queue) >= QUEUE_MAX:
             raise RefusedError(f"{QUEUE_MAX} scenarios are waiting already. Wait until some have ended.")
         self._executors[place].check(scenario)
-        self._number += 1
-        run = RunRecord(self._number, scenario, text, place, board, who)
+        run = RunRecord(new_run(), scenario, text, place, board, who)
         self._queue.append(run)
         if self._task is None or self._task.done():
             # Set here, before the task begins, so that the next request finds it active.
             self._active = self._queue.popleft()
             self._task = asyncio.create_task(self._work())
         self.announce()
-        return run.number
+        return run.run
 
-    def cancel(self, run: int | None = None) -> None:
-        """Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay."""
-        self._queue = deque(one for one in self._queue if run not in (None, one.number))
-        if self._active is not None and run in (None, self._active.number):
+    def cancel(self, run: str | None = None) -> None:
+        """Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay.
+
+        Raises RunOverError if this run neither is active nor waits.
+        """
+        active = () if self._active is None else (self._active,)
+        if run is not None and run not in (one.run for one in (*active, *self._queue)):
+            raise RunOverError("run of a scenario")
+        self._queue = deque(one for one in self._queue if run not in (None, one.run))
+        if self._active is not None and run in (None, self._active.run):
             self._active.cancel("It was cancelled.")
         self.announce()
 

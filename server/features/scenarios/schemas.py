@@ -9,11 +9,13 @@ from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.experiments.scenario.document import Scenario
 from server.http.request_body import RequestBody
+from server.platform.runs import RUN_MEANING
 
 Place = Literal["live", "simulated"]
 BoardKind = Literal["host", "emulated"]
 Phase = Literal["waiting", "preparing", "running", "ending"]
 End = Literal["complete", "cancelled", "failed"]
+Run = Annotated[str, Field(description=RUN_MEANING)]
 Text = Annotated[str, Field(max_length=BYTES_MAX, description="TOML")]
 
 
@@ -84,15 +86,15 @@ class ScenarioStart(RequestBody):
 
 
 class ScenarioStarted(BaseModel):
-    """The number of a run, from 1 since the server started."""
+    """The run that was started."""
 
-    run: int
+    run: Run
 
 
 class ActiveRun(BaseModel):
     """The active run; times in s of the scenario."""
 
-    run: int
+    run: Run
     name: str
     title: str
     place: Place
@@ -108,7 +110,7 @@ class ActiveRun(BaseModel):
 class QueuedRun(BaseModel):
     """A queued run."""
 
-    run: int
+    run: Run
     name: str
     title: str
 
@@ -116,7 +118,7 @@ class QueuedRun(BaseModel):
 class EndedRun(BaseModel):
     """The run that ended last; `session` is null if it recorded nothing."""
 
-    run: int
+    run: Run
     name: str
     title: str
     place: Place

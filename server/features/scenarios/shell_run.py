@@ -70,14 +70,14 @@ async def _simulate(start: ScenarioStart, settings: Settings, store: Store) -> E
 def _run_there(start: ScenarioStart, folder: DataFolder) -> EndedRun:
     """Run it by the running server; Ctrl-C cancels it there."""
     if start.place == "simulated":
-        number = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
-        return _follow(number, folder, lambda: None)
+        run = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
+        return _follow(run, folder, lambda: None)
     with in_control(folder):
-        number = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
-        return _follow(number, folder, lambda: renew_control(folder))
+        run = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
+        return _follow(run, folder, lambda: renew_control(folder))
 
 
-def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
+def _follow(run: str, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
     """Print the run's events until its end. Raises SetupError where its end is not known."""
     progress = _Progress()
     began = False
@@ -86,15 +86,15 @@ def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedR
             keep()
             state = ScenarioState.model_validate(ask(folder, "GET", "/scenarios/state"))
             progress.notify(state)
-            if state.last is not None and state.last.run == number:
+            if state.last is not None and state.last.run == run:
                 return state.last
-            active = state.active is not None and state.active.run == number
+            active = state.active is not None and state.active.run == run
             began |= active
-            if not active and number not in (one.run for one in state.queued):
+            if not active and run not in (one.run for one in state.queued):
                 raise SetupError(ENDED if began else TAKEN_OUT)
             sleep(POLL_SECONDS)
     except KeyboardInterrupt:
-        ask(folder, "POST", f"/scenarios/cancel?run={number}")
+        ask(folder, "POST", f"/scenarios/cancel?run={run}")
         raise SetupError(CANCELLED if began else TAKEN_OUT) from None
 
 
@@ -108,7 +108,7 @@ class _Progress:
     """Prints each event as the run reaches it."""
 
     def __init__(self) -> None:
-        self._run: int | None = None
+        self._run: str | None = None
         self._events: list[ScenarioEvent] = []
         self._printed = 0
 

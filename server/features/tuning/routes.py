@@ -16,7 +16,7 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.http.dependencies import Provided
-from server.http.operations import Identifier, Operations
+from server.http.operations import Identifier, MeantNumber, Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
 from server.platform.errors import ConflictError
@@ -43,9 +43,9 @@ async def start_tuning_run(tuning: Provided[TuningRunner], caller: Caller, body:
 
 
 @router.operation("POST /stop", Need.CONTROL, *COMMAND_ERRORS)
-async def stop_tuning_run(tuning: Provided[TuningRunner]) -> None:
+async def stop_tuning_run(tuning: Provided[TuningRunner], run: MeantNumber = None) -> None:
     """Stop the active run and store what was measured; the robot stays armed."""
-    await tuning.stop()
+    await tuning.stop(run)
 
 
 @router.operation("GET /runs/{run}", Need.VIEWER, UnknownTuningRunError, ConflictError)

@@ -28,6 +28,7 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.platform.errors import explain_internal_error
+from server.platform.runs import require_run
 from server.platform.store import StoreError
 from server.processes.managed_process import Notify
 from server.stream.bridge import Bridge, RuntimeSilentError
@@ -140,11 +141,12 @@ class TuningRunner:
             self._last = None
             self.announce()
 
-    async def stop(self) -> None:
-        """Stop the active run; its curve so far is stored.
+    async def stop(self, run: int | None = None) -> None:
+        """Stop the active run, or this one alone; its curve so far is stored.
 
-        Raises RefusedError if nothing runs, RuntimeSilentError.
+        Raises RefusedError if nothing runs, RunOverError, RuntimeSilentError.
         """
+        require_run(run, None if self._active is None else self._active.run, "experiment")
         if self._active is None:
             raise RefusedError("No experiment is running.")
         await self._changes.command(SERVER, EndExperimentCommand())

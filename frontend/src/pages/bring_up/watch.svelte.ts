@@ -17,6 +17,11 @@ export class BringUpWatch {
     return EVERY[this.state?.phase ?? 'idle'];
   }
 
+  /** the bring-up that this page shows */
+  get #run(): BringUpState['run'] {
+    return this.state?.run ?? '';
+  }
+
   async look(): Promise<void> {
     const turn = this.#turn;
     const answer = await api.bringUp();
@@ -26,9 +31,9 @@ export class BringUpWatch {
   }
 
   begin = (): Promise<string> => this.#change(api.beginBringUp());
-  end = (): Promise<string> => this.#change(api.endBringUp());
+  end = (): Promise<string> => this.#change(api.endBringUp(this.#run));
   useHands = (order: BringUpHandsOrder): Promise<string> => this.#change(api.useHandsInBringUp(order));
-  act = (step: string, action: string, inputs: BringUpInputs): Promise<string> => this.#change(api.actInBringUp(step, action, inputs));
+  act = (step: string, action: string, inputs: BringUpInputs): Promise<string> => this.#change(api.actInBringUp(this.#run, step, action, inputs));
 
   /** Answers why it was refused; '' where it was not. */
   async #change(request: Promise<Answer<BringUpState>>): Promise<string> {

@@ -27,8 +27,13 @@ def test_it_says_at_its_end_that_the_firmware_is_not_on_the_board(robot: Robot) 
         bring_up = served.container.bring_up
         async with disarming(served):
             await bring_up.begin()
+        earlier = await served.api.delete(f"/bring-up?run={'0' * 16}")
+        assert (earlier.status_code, "This bring-up is over" in earlier.text) == (409, True)
         await until(lambda: bring_up.state().phase == "idle", "its end")
         state = bring_up.state()
+        assert len(state.run) == 16
+        order = {"run": "0" * 16, "step": "bus", "action": "skip"}
+        assert "This bring-up is over" in (await served.api.post("/bring-up/actions", json=order)).text
         assert state.words == ""
         assert "The sketch is not on the board: avrdude: not in sync" in state.problem
         assert "The robot's firmware is not on its board: avrdude: not in sync" in state.problem

@@ -150,7 +150,9 @@ def test_a_run_cancelled_within_a_cell_keeps_the_finished_cells(settings: Settin
                 True,
             )
             await news_until(socket, cell=0)
-            assert (await served.api.post("/comm-tests/cancel")).status_code == 204
+            stale = await served.api.post(f"/comm-tests/cancel?run={number - 1}")
+            assert (stale.status_code, "This communication test is over" in stale.text) == (409, True)
+            assert (await served.api.post(f"/comm-tests/cancel?run={number}")).status_code == 204
             await until(lambda: not served.container.comm_tests.busy, "the end")
             async with watching(served) as late:
                 assert (await next_text(late, "comm_test"))["active"] is None

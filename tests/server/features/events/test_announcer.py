@@ -131,9 +131,16 @@ def test_sessions_begin_and_end(announcer: EventAnnouncer, outlet: Notebook) -> 
 
 
 def test_each_run_ends_once(announcer: EventAnnouncer, outlet: Notebook) -> None:
-    scenario = {"run": 1, "name": "swim", "title": "Swim", "session": 9, "state": "failed", "problem": "Why."}
+    scenario = {
+        "run": "a",
+        "name": "swim",
+        "title": "Swim",
+        "session": 9,
+        "state": "failed",
+        "problem": "Why.",
+    }
     tuning = {"id": 3, "name": "PID", "state": "complete", "problem": ""}
-    for last in (None, scenario, scenario, {**scenario, "run": 2, "state": "complete", "problem": ""}):
+    for last in (None, scenario, scenario, {**scenario, "run": "b", "state": "complete", "problem": ""}):
         announcer.see_message({"op": "scenario", "active": None, "queued": [], "last": last})
     for last in (None, tuning, tuning):
         announcer.see_message({"op": "tuning", "active": None, "last": last})

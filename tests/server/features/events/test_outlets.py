@@ -43,7 +43,7 @@ EVENT = PublishedEvent(
     text="Recording has ended.",
 )
 SCENARIO = EndedRun(
-    run=1,
+    run="a run",
     name="swim",
     title="scenario",
     place="live",

@@ -74,7 +74,10 @@ def test_a_fitted_craft_is_adopted_and_the_adoption_undone(
         assert thrust["value"] == pytest.approx(0.22, rel=0.05)
         assert last["result"]["check"]["id"] == 2
         assert len(last["result"]["check"]["channels"]) == 7
-        adopted = await served.api.post("/identification/adopt")
+        stale = await served.api.post(f"/identification/adopt?run={'0' * 16}")
+        assert (stale.status_code, "This fit is over" in stale.text) == (409, True)
+        assert not trials.data.craft.exists()
+        adopted = await served.api.post(f"/identification/adopt?run={last['run']}")
         assert adopted.status_code == 200
         effects = " ".join(adopted.json()["affected"])
         assert re.search(
@@ -103,10 +106,16 @@ def test_a_fit_is_cancelled_at_once(
     async def scenario(served: Served) -> None:
         assert await start(served, sessions=[1]) == 201
         assert await start(served, sessions=[1]) == 409
-        assert (await served.api.post("/identification/cancel")).status_code == 204
+        first = (await state(served))["active"]["run"]
+        assert (await served.api.post(f"/identification/cancel?run={first}")).status_code == 204
         await until(lambda: served.container.identification._active is None, "the fit to end")
         assert (await state(served))["last"]["problem"] == "It was cancelled."
         assert (await served.api.post("/identification/adopt")).status_code == 409
+        assert await start(served, sessions=[1]) == 201
+        stale = await served.api.post(f"/identification/cancel?run={first}")
+        assert (stale.status_code, "This fit is over" in stale.text) == (409, True)
+        assert (await state(served))["active"]["run"] != first
+        assert (await served.api.post("/identification/cancel")).status_code == 204
 
     play(settings, scenario)
 

@@ -23,6 +23,7 @@ from server.features.missions.nodes import list_node_kinds
 from server.features.missions.trials import MissionTrials
 from server.platform.disk_space import FileWriteError
 from server.platform.edited_meanwhile import ChangedMeanwhileError
+from server.platform.runs import RunOverError
 from server.platform.settings import Settings
 from tests.runtime.missions.water import DIVE, HOLD, mission
 from tests.server.blocks import state_block
@@ -215,8 +216,11 @@ def test_a_trial_tells_the_outcome_of_each_seed(settings: Settings) -> None:
         trials.start("test", OWN + "[trial]\nseed = 4\n", {}, 1)
         await trials.wait()
         assert "trial.seed is the trial's own" in trials.state().problem
+        earlier = trials.state().run
         trials.start("test", OWN, {}, 100)
-        trials.cancel()
+        with pytest.raises(RunOverError, match="This trial is over"):
+            trials.cancel(earlier)
+        trials.cancel(trials.state().run)
         await trials.wait()
         assert trials.state().problem == "It was cancelled."
         with pytest.raises(RefusedError, match="No trial is running"):

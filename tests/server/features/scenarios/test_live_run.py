@@ -69,7 +69,7 @@ class Prepared:
         self.bridge = DirectBridge(Simulator(SimulationParameters(), seed=1))
         self.rig = RecorderRig(store, settings)
         self.pids = {"board": 1, "runtime": 2, "simulator": 3}
-        self.run = RunRecord(1, SCENARIO, "", "live", "host")
+        self.run = RunRecord("a run", SCENARIO, "", "live", "host")
         now = {"time": 60.0, "run": "one", "armed": False, "mode": "disarmed", "connected": True}
         self.live = LiveExecutor(
             settings,

@@ -14,15 +14,16 @@ from tests.server.serving import Served, play
 TAKEN_OUT = "The run was taken out of the queue."
 
 
-def left_after(settings: Settings, change: Callable[[Served], Awaitable[None]], interrupt: bool) -> list[int]:
-    """Follow the second of two runs until it is taken out of the queue; returns the runs that stay."""
+def left_after(
+    settings: Settings, change: Callable[[Served, str], Awaitable[None]], interrupt: bool
+) -> list[int]:
+    """Follow the second of two runs until it is taken out of the queue; returns which of them stay."""
     left: list[int] = []
 
     async def scenario(served: Served) -> None:
         announce(served.settings)
         start = {"text": LONG, "place": "simulated"}
-        for _ in range(2):
-            (await served.api.post("/scenarios/runs", json=start)).raise_for_status()
+        runs = [(await served.api.post("/scenarios/runs", json=start)).json()["run"] for _ in range(2)]
         loop, polled = asyncio.get_running_loop(), asyncio.Event()
 
         def poll() -> None:
@@ -30,28 +31,28 @@ def left_after(settings: Settings, change: Callable[[Served], Awaitable[None]], 
                 raise KeyboardInterrupt
             loop.call_soon_threadsafe(polled.set)
 
-        following = asyncio.create_task(asyncio.to_thread(_follow, 2, settings.data, poll))
+        following = asyncio.create_task(asyncio.to_thread(_follow, runs[1], settings.data, poll))
         await polled.wait()
-        await change(served)
+        await change(served, runs[1])
         with pytest.raises(SetupError, match=TAKEN_OUT):
             async with asyncio.timeout(20):
                 await following
         state = served.container.scenarios.state()
-        left.extend(one.run for one in (state.active, *state.queued) if one is not None)
+        left.extend(runs.index(one.run) + 1 for one in (state.active, *state.queued) if one is not None)
 
     play(settings, scenario)
     return left
 
 
 def test_a_run_that_somebody_takes_out_of_the_queue_ends_the_command(settings: Settings) -> None:
-    async def cancel(served: Served) -> None:
-        (await served.api.post("/scenarios/cancel?run=2")).raise_for_status()
+    async def cancel(served: Served, run: str) -> None:
+        (await served.api.post(f"/scenarios/cancel?run={run}")).raise_for_status()
 
     assert left_after(settings, cancel, interrupt=False) == [1]
 
 
 def test_ctrl_c_cancels_the_commands_own_run_alone(settings: Settings) -> None:
-    async def nothing(_: Served) -> None:
+    async def nothing(_: Served, __: str) -> None:
         pass
 
     assert left_after(settings, nothing, interrupt=True) == [1]

@@ -20,6 +20,7 @@ from server.features.scenarios.simulated_run import SimulatedExecutor
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform.notices import Notices
+from server.platform.runs import RunOverError
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.waiting import SECONDS
@@ -71,18 +72,20 @@ def samples(store: Store, session: int) -> list[Any]:
 
 
 def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Settings, store: Store) -> None:
+    started: list[str] = []
+
     async def work(runs: ScenarioRunner) -> None:
-        assert [runs.start(read_scenario(SHORT), SHORT, "simulated", "host") for _ in range(2)] == [1, 2]
-        assert [one.run for one in runs.state().queued] == [2]
+        started.extend(runs.start(read_scenario(SHORT), SHORT, "simulated", "host") for _ in range(2))
+        assert [one.run for one in runs.state().queued] == started[1:]
         await runs.wait()
 
     told = perform(settings, store, work)
     ends = {one.last.run: one.last for one in told if one.last}
-    assert {number: (end.state, end.problem, end.before) for number, end in ends.items()} == {
-        1: ("complete", "", None),
-        2: ("complete", "", ends[1].session),
+    assert {run: (end.state, end.problem, end.before) for run, end in ends.items()} == {
+        started[0]: ("complete", "", None),
+        started[1]: ("complete", "", ends[started[0]].session),
     }
-    first, second = (find_row(store, ends[number].session or 0) for number in (1, 2))
+    first, second = (find_row(store, ends[run].session or 0) for run in started)
     assert (first.origin, first.scenario, first.scenario_name, first.seed) == ("simulated", SHORT, "short", 7)
     assert (first.started_steady, first.state) == (0.0, "complete")
     assert len(first.firmware) == len(first.software) == 16
@@ -108,7 +111,7 @@ def test_a_cancelled_run_keeps_its_recording_and_clears_the_queue(settings: Sett
     last = perform(settings, store, work)[-1]
     assert (last.active, last.queued) == (None, [])
     assert last.last is not None
-    assert (last.last.state, last.last.problem, last.last.run) == ("cancelled", "It was cancelled.", 1)
+    assert (last.last.state, last.last.problem) == ("cancelled", "It was cancelled.")
     row = find_row(store, last.last.session or 0)
     assert (row.state, row.samples > 0) == ("complete", True)
     assert row.duration < 3600
@@ -121,11 +124,31 @@ def test_one_run_is_cancelled_alone(settings: Settings, store: Store) -> None:
         assert runs.active is not None
         assert [one.run for one in runs.state().queued] == [third]
         runs.cancel(first)
-        while runs.active.number != third:
+        while runs.active.run != third:
             await asyncio.sleep(0.02)
+        with pytest.raises(RunOverError, match="This run of a scenario is over, or of an earlier start"):
+            runs.cancel(first)
+        assert runs.active.run == third
+        started.extend((first, third))
 
+    started: list[str] = []
     ended = [one.last for one in perform(settings, store, work) if one.last]
-    assert {one.run: one.problem for one in ended} == {1: "It was cancelled.", 3: "It was cancelled."}
+    assert {one.run: one.problem for one in ended} == dict.fromkeys(started, "It was cancelled.")
+
+
+def test_no_run_of_an_earlier_server_is_cancelled(settings: Settings, store: Store) -> None:
+    earlier: list[str] = []
+
+    async def work(runs: ScenarioRunner) -> None:
+        earlier.append(runs.start(read_scenario(LONG), LONG, "simulated", "host"))
+        if len(earlier) == 2:
+            with pytest.raises(RunOverError):
+                runs.cancel(earlier[0])
+            assert runs.active is not None
+            assert runs.active.run == earlier[1]
+
+    for _ in range(2):
+        perform(settings, store, work)
 
 
 def test_a_refused_command_gets_a_bookmark_and_a_notice(settings: Settings, store: Store) -> None:

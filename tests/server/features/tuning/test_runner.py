@@ -195,7 +195,10 @@ def test_a_run_that_was_stopped_keeps_its_curve_without_figures(settings: Settin
         robot.tick([(100.0 + 0.1 * one, 0.4, 0.3, 0.1) for one in range(20)])
         refused = await served.api.delete(f"/tuning/runs/{run}")
         assert (refused.status_code, "is active" in refused.text) == (409, True)
-        assert (await served.api.post("/tuning/stop")).status_code == 204
+        stale = await served.api.post(f"/tuning/stop?run={run + 1}")
+        assert (stale.status_code, "This experiment is over" in stale.text) == (409, True)
+        assert served.runtime.asked[-1] != ("end_experiment", {})
+        assert (await served.api.post(f"/tuning/stop?run={run}")).status_code == 204
         assert served.runtime.asked[-1] == ("end_experiment", {})
         robot.notify(run, "stopped", 102.0, text="It was stopped.")
         kept = await over(served)
