@@ -22,6 +22,7 @@ export type LinkFrames = Schemas['LinkFrames'];
 export type Session = Schemas['Session'];
 export type SessionDetail = Schemas['SessionDetail'];
 export type SessionChanges = Partial<Pick<Session, 'name' | 'note' | 'tags' | 'kept'>>;
+export type SessionTexts = Partial<Pick<Session, 'name' | 'note' | 'tags'>>;
 export type Mark = Schemas['Bookmark'];
 export type Storage = Schemas['Storage'];
 export type ExportJob = Schemas['Job'];
@@ -183,6 +184,8 @@ export const api = {
   revoke: (device: number) => command('DELETE', `/access/devices/${device}`),
   makeToken: (token: Schemas['NewToken']) => request<Token>('POST', '/access/tokens', token),
   visionSettings: () => request<{ settings: VisionSettings; configured: VisionSettings }>('GET', '/vision'),
+  /** `base` has the settings that the editing began from; with null, whatever they are by now is replaced */
+  editVision: (settings: VisionSettings, base: VisionSettings | null) => orderFor<null>('PUT', '/vision', { settings, base }),
   pick: (place: Schemas['PickPlace']) => request<PickedColour>('POST', '/vision/pick', place),
   visionFile: '/api/vision/toml',
   readVision: (text: string) => request<VisionSettings>('POST', '/vision/read', { text }),
@@ -211,7 +214,9 @@ export const api = {
   },
   tags: () => request<string[]>('GET', '/tags'),
   session: (id: Session['id']) => request<SessionDetail>('GET', `/sessions/${id}`),
-  changeSession: (id: Session['id'], said: SessionChanges) => request<Session>('PATCH', `/sessions/${id}`, said),
+  /** `base` has the texts that the editing began from; with null, whatever they are by now is replaced */
+  changeSession: (id: Session['id'], said: SessionChanges, base: SessionTexts | null) =>
+    request<Session>('PATCH', `/sessions/${id}`, { ...said, base }),
   deleteSession: (id: Session['id']) => request<Session>('DELETE', `/sessions/${id}`),
   restoreSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/restore`),
   purgeSession: (id: Session['id']) => command('POST', `/sessions/${id}/purge`),

@@ -74,3 +74,29 @@ def test_a_session_shows_the_craft_that_swam(page: Page, site: Site) -> None:
 
 def newest(site: Site) -> int:
     return int(site.api.get("/sessions").json()[0]["id"])
+
+
+def test_a_note_that_somebody_else_has_changed_meanwhile_is_not_replaced_unasked(
+    page: Page, site: Site
+) -> None:
+    site.api.post("/sessions", json={"name": "shared"}).raise_for_status()
+    number = newest(site)
+    site.api.post(f"/sessions/{number}/stop").raise_for_status()
+    page.goto(f"{site.url}/#/sessions/{number}")
+
+    def save_both(words: str) -> None:
+        """Another program saves a note, then this page."""
+        page.get_by_role("button", name="Edit", exact=True).click()
+        site.api.patch(f"/sessions/{number}", json={"note": f"theirs {words}"}).raise_for_status()
+        page.get_by_label("Note", exact=True).fill(f"mine {words}")
+        page.get_by_role("button", name="Save", exact=True).click()
+        expect(page.get_by_text("The note of “shared” was saved since you opened it.")).to_be_visible()
+        assert site.api.get(f"/sessions/{number}").json()["note"] == f"theirs {words}"
+
+    save_both("first")
+    page.get_by_role("button", name="Save mine over it").click()
+    expect(page.get_by_text("mine first")).to_be_visible()
+    save_both("second")
+    page.get_by_role("button", name="Discard mine, open theirs").click()
+    expect(page.get_by_text("theirs second")).to_be_visible()
+    expect(page.get_by_text("was saved since you opened it")).to_be_hidden()

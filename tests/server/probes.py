@@ -121,6 +121,7 @@ PROBES: dict[tuple[str, str], Probe] = {
     ("POST", "/api/robot/commands/vision_settings"): Probe(body=VisionSettings().table()),
     ("POST", "/api/robot/commands/steering"): Probe(body={"by": "none"}),
     ("POST", "/api/robot/commands/card"): Probe(204),
+    ("PUT", "/api/vision"): Probe(204, {"settings": VisionSettings().table()}),
     ("POST", "/api/vision/pick"): Probe(body={"x": 0.5, "y": 0.5}),
     ("POST", "/api/vision/read"): Probe(body={"text": "[vision]"}),
     ("POST", "/api/parameters/undo"): Probe(

@@ -96,6 +96,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/robot/commands/steering"): "control",
     ("POST", "/api/robot/commands/card"): "control",
     ("GET", "/api/vision"): "viewer",
+    ("PUT", "/api/vision"): "control",
     ("POST", "/api/vision/pick"): "viewer",
     ("GET", "/api/vision/toml"): "viewer",
     ("POST", "/api/vision/read"): "viewer",

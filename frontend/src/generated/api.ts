@@ -2390,7 +2390,11 @@ export interface paths {
          * @description Return the vision settings now, and those of robot.toml.
          */
         get: operations["getVision"];
-        put?: never;
+        /**
+         * Replace all vision settings, also for later starts, unless somebody has changed them meanwhile
+         * @description Replace all vision settings, also for later starts, unless somebody has changed them meanwhile.
+         */
+        put: operations["editVision"];
         post?: never;
         delete?: never;
         options?: never;
@@ -5944,10 +5948,24 @@ export interface components {
             version: string;
         };
         /**
+         * SessionBase
+         * @description A session's texts as an editing began from them; null: not compared.
+         */
+        SessionBase: {
+            /** Name */
+            name?: string | null;
+            /** Note */
+            note?: string | null;
+            /** Tags */
+            tags?: string[] | null;
+        };
+        /**
          * SessionChanges
          * @description Changes of a session's texts; null leaves a field unchanged.
          */
         SessionChanges: {
+            /** @description what the changed texts were when the editing began: refused if somebody has changed one of them since. null replaces any */
+            base?: components["schemas"]["SessionBase"] | null;
             /** Kept */
             kept?: boolean | null;
             /** Name */
@@ -6828,6 +6846,15 @@ export interface components {
              * @description how the last one ended
              */
             words: string;
+        };
+        /**
+         * VisionEdit
+         * @description All settings, and those that the editing began from.
+         */
+        VisionEdit: {
+            /** @description refused if others are in force by now; null replaces any */
+            base?: components["schemas"]["VisionSettingsCommand"] | null;
+            settings: components["schemas"]["VisionSettingsCommand"];
         };
         /**
          * VisionSettings
@@ -15410,6 +15437,82 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["VisionSetup"];
+                };
+            };
+            /** @description It is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    editVision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["VisionEdit"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description It is not running */

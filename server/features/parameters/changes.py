@@ -62,9 +62,20 @@ class Changes:
         self._undone: dict[int, str] = {}
         """Names of those who have undone a change, by its number, where that could not be stored."""
 
-    async def command(self, who: str, command: RobotCommand, why: str = "") -> Restored:
-        """Send a command; returns the parameters that it changed, and those that it left out."""
+    async def command(
+        self,
+        who: str,
+        command: RobotCommand,
+        why: str = "",
+        check: Callable[[], Awaitable[None]] | None = None,
+    ) -> Restored:
+        """Send a command; returns the parameters that it changed, and those that it left out.
+
+        `check` may refuse it in its turn: no other command comes between.
+        """
         async with self._turn():
+            if check is not None:
+                await check()
             answer = await self._send(command)
             changed = answer.get("changed", {})
             if changed:

@@ -1,7 +1,8 @@
 """Annotation, deletion and restoration of the stored sessions."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from time import time
+from typing import Any
 
 from sqlalchemy import Connection, delete, insert, update
 from sqlmodel import col, select
@@ -10,8 +11,12 @@ from server.features.sessions.listing import Listing
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import HIDDEN, REMOVING, SessionStateError, require
+from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.platform.models import SessionRow, SessionTag
 from server.platform.store import Store
+
+TEXTS = {"name": "The name, now “{}”,", "note": "The note of “{}”", "tags": "A tag of “{}”"}
+"""The texts of a session in words, with its name."""
 
 
 class Catalogue(Listing):
@@ -30,13 +35,19 @@ class Catalogue(Listing):
         note: str | None = None,
         tags: Sequence[str] | None = None,
         kept: bool | None = None,
+        base: Mapping[str, Any] | None = None,
     ) -> Session:
-        """Change name, note, tags or protection of a session; None leaves a field unchanged."""
+        """Change name, note, tags or protection of a session; None leaves a field unchanged.
+
+        `base` has the texts that the editing began from. Raises ChangedMeanwhileError.
+        """
         changes = {"name": name, "note": note, "kept": kept}
         values = {field: value for field, value in changes.items() if value is not None}
 
         def write(connection: Connection) -> None:
             require(connection, session)
+            wanted = {"name": name, "note": note, "tags": None if tags is None else sorted(set(tags))}
+            _check_base(connection, session, wanted, base)
             if values:
                 connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(values))
             if tags is not None:
@@ -88,3 +99,23 @@ class Catalogue(Listing):
         if self._recorder is not None:
             self._recorder.amend(found)
         return found
+
+
+def _check_base(
+    connection: Connection, session: int, wanted: Mapping[str, Any], base: Mapping[str, Any] | None
+) -> None:
+    """Refuse to replace a text that is neither as in `base` nor as `wanted`. Raises ChangedMeanwhileError."""
+    if base is None:
+        return
+    texts = connection.execute(select(SessionRow.name, SessionRow.note).where(col(SessionRow.id) == session))
+    found = texts.mappings().one()
+    tags = connection.execute(select(SessionTag.tag).where(col(SessionTag.session_id) == session)).scalars()
+    present = {**found, "tags": sorted(tags)}
+    for text, new in wanted.items():
+        began = base[text]
+        if (
+            new is not None
+            and began is not None
+            and present[text] not in (new, sorted(began) if text == "tags" else began)
+        ):
+            raise ChangedMeanwhileError(TEXTS[text].format(found["name"]), "")

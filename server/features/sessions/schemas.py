@@ -107,6 +107,14 @@ class SessionDetail(Session):
     topics: list[RecordedTopic]
 
 
+class SessionBase(RequestBody):
+    """A session's texts as an editing began from them; null: not compared."""
+
+    name: Annotated[str, Field(max_length=10_000)] | None = None
+    note: Annotated[str, Field(max_length=100_000)] | None = None
+    tags: Annotated[list[str], Field(max_length=1000)] | None = None
+
+
 class SessionChanges(RequestBody):
     """Changes of a session's texts; null leaves a field unchanged."""
 
@@ -114,6 +122,11 @@ class SessionChanges(RequestBody):
     note: Note | None = None
     tags: Annotated[list[Tag], Field(max_length=20)] | None = None
     kept: bool | None = None
+    base: SessionBase | None = Field(
+        default=None,
+        description="what the changed texts were when the editing began: refused if somebody has changed one "
+        "of them since. null replaces any",
+    )
 
 
 class NewSession(RequestBody):

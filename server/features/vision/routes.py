@@ -1,5 +1,6 @@
 """Operations on the vision node: its settings, and the colour at a place in its picture."""
 
+from dataclasses import fields
 from typing import Any
 
 import tomli_w
@@ -11,11 +12,14 @@ from robot_runtime.contract.parsing import parse, read_value
 from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.contract.vision_settings import VisionSettings
-from server.features.vision.schemas import PickedColour, PickPlace, VisionSetup, VisionText
+from server.features.parameters.changes import COMMAND_ERRORS, Changes
+from server.features.vision.schemas import PickedColour, PickPlace, VisionEdit, VisionSetup, VisionText
 from server.http.dependencies import Provided
 from server.http.heavy_requests import TooManyHeavyError, Turn
 from server.http.operations import Operations
+from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
+from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 router = Operations(prefix="/api/vision", tags=["vision"])
@@ -26,6 +30,24 @@ async def get_vision(bridge: Provided[Bridge]) -> object:
     """Return the vision settings now, and those of robot.toml."""
     answer = await bridge.query("vision")
     return {name: answer[name] for name in ("settings", "configured")}
+
+
+@router.operation("PUT", Need.CONTROL, *COMMAND_ERRORS)
+async def edit_vision(
+    bridge: Provided[Bridge], changes: Provided[Changes], caller: Caller, edit: VisionEdit
+) -> None:
+    """Replace all vision settings, also for later starts, unless somebody has changed them meanwhile."""
+
+    async def check() -> None:
+        if edit.base is not None:
+            began = edit.base.settings
+            present = parse(VisionSettings, (await bridge.query("vision"))["settings"])
+            names = [one.name for one in fields(present)]
+            differing = [one for one in names if getattr(present, one) != getattr(began, one)]
+            if differing and present != edit.settings.settings:
+                raise ChangedMeanwhileError(f"A vision setting ({', '.join(differing)})", "")
+
+    await changes.command(caller.name, edit.settings, check=check)
 
 
 @router.operation("POST /pick", Need.VIEWER, {409: "There is no colour, or no picture"}, RuntimeSilentError)

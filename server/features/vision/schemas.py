@@ -1,11 +1,17 @@
 """Schemas of the vision node's settings."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-from pydantic import BaseModel, Field, FiniteFloat
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from robot_runtime.contract.vision_settings import ColourRange, Share, VisionSettings
 from server.http.request_body import RequestBody
+
+if TYPE_CHECKING:
+    # The command is made of fields at its definition, which no type checker sees.
+    from robot_runtime.contract.commands import VisionSettingsBase as VisionSettingsCommand
+else:
+    from robot_runtime.contract.commands import VisionSettingsCommand
 
 TEXT_MAX = 20_000
 
@@ -15,6 +21,18 @@ class VisionSetup(BaseModel):
 
     settings: VisionSettings
     configured: VisionSettings
+
+
+class VisionEdit(RequestBody):
+    """All settings, and those that the editing began from."""
+
+    # The numbers within are strict of themselves; a dataclass is read from JSON only where the whole is not.
+    model_config = ConfigDict(strict=False)
+
+    settings: VisionSettingsCommand
+    base: VisionSettingsCommand | None = Field(
+        default=None, description="refused if others are in force by now; null replaces any"
+    )
 
 
 class PickPlace(RequestBody):

@@ -51,6 +51,34 @@ def test_sessions_are_found_by_words_tags_and_origin(settings: Settings) -> None
     play(settings, scenario)
 
 
+def test_texts_that_somebody_else_has_changed_meanwhile_are_not_replaced_unasked(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        session = await record(served, "Dive", "calm")
+        path, base = f"/sessions/{session}", {"name": "Dive", "note": "calm", "tags": ["pool", "Sea"]}
+        theirs = {"name": "Second dive", "note": "windy", "tags": ["Sea", "pool", "deep"]}
+        await served.api.patch(path, json={"tags": base["tags"]})
+        # What is changed from what it was is changed, also where another text has changed meanwhile.
+        assert (await served.api.patch(path, json={"tags": theirs["tags"], "base": base})).status_code == 200
+        assert (await served.api.patch(path, json={"name": "Second dive", "base": base})).status_code == 200
+        assert (await served.api.patch(path, json={"note": "windy", "base": base})).status_code == 200
+        for text, mine, words in (
+            ("name", "My dive", "The name, now “Second dive”, was saved since you opened it."),
+            ("note", "mine", "The note of “Second dive” was saved since you opened it."),
+            ("tags", ["pool"], "A tag of “Second dive” was saved since you opened it."),
+        ):
+            refused = await served.api.patch(path, json={text: mine, "kept": True, "base": base})
+            assert (refused.status_code, refused.json()["kind"]) == (409, "changed")
+            assert words in refused.json()["detail"]
+        found = (await served.api.get(path)).json()
+        assert (found["name"], found["note"], found["kept"]) == ("Second dive", "windy", False)
+        # The same by both is no conflict, and a program that names no base replaces any.
+        same = {"name": theirs["name"], "note": theirs["note"], "tags": theirs["tags"], "base": base}
+        assert (await served.api.patch(path, json=same)).status_code == 200
+        assert (await served.api.patch(path, json={"note": "mine"})).json()["note"] == "mine"
+
+    play(settings, scenario)
+
+
 def test_a_session_in_the_bin_can_be_restored_until_it_is_purged(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         api, first, second = served.api, await record(served, "first"), await record(served, "second")

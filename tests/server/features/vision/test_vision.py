@@ -47,6 +47,24 @@ def test_settings_are_passed_on_completely_and_read_back(settings: Settings) -> 
     play(settings, scenario)
 
 
+def test_settings_that_have_changed_meanwhile_are_not_replaced_unasked(
+    settings: Settings,
+) -> None:
+    usual = VisionSettings().table()
+
+    async def scenario(served: Served) -> None:
+        edit = {"settings": SETTINGS, "base": usual | {"rate": 2.0}}
+        refused = await served.api.put("/vision", json=edit)
+        assert (refused.status_code, refused.json()["kind"]) == (409, "changed")
+        assert refused.json()["detail"].startswith("A vision setting (rate) was saved since you opened it.")
+        assert served.runtime.asked == []
+        assert (await served.api.put("/vision", json=edit | {"base": usual})).status_code == 204
+        assert (await served.api.put("/vision", json={"settings": SETTINGS})).status_code == 204
+        assert served.runtime.asked == 2 * [("vision_settings", SETTINGS)]
+
+    play(settings, scenario)
+
+
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"rate": 31}, "less than or equal to 30"),
     ({"rate": None}, "rate"),

@@ -8,12 +8,19 @@ const TOGETHER = 1000;
 /** The vision node's settings as this page shows and changes them. A change holds at once, and can be undone. */
 export class VisionTuning {
   problem = $state('');
+  /** whether somebody else has changed them meanwhile, so that this page's were not taken */
+  changed = $state(false);
   /** of robot.toml; null until known */
   configured = $state.raw<VisionSettings | null>(null);
   #loaded = $state.raw<VisionSettings | null>(null);
   #draft = $state.raw<VisionSettings | null>(null);
   #before = $state.raw<readonly VisionSettings[]>([]);
   #sending = false;
+  /** what the robot has to have for a change of this page to be taken */
+  #base: VisionSettings | null = null;
+  /** what this page has set last */
+  #mine: VisionSettings | null = null;
+  #refused: VisionSettings | null = null;
   #changed = { what: '', at: -Infinity };
 
   constructor(private readonly live: Live) {}
@@ -39,6 +46,7 @@ export class VisionTuning {
       return;
     }
     this.problem = '';
+    this.changed = false;
     this.#loaded = answer.value.settings;
     this.configured = answer.value.configured;
   }
@@ -51,7 +59,7 @@ export class VisionTuning {
     const goesOn = what === this.#changed.what && now - this.#changed.at < TOGETHER;
     if (!goesOn || !this.undoable) this.#before = [...this.#before, settings].slice(-UNDO_MAX);
     this.#changed = { what, at: now };
-    this.#take({ ...settings, ...changes });
+    this.#take({ ...settings, ...changes }, settings);
   }
 
   undo(): void {
@@ -59,7 +67,8 @@ export class VisionTuning {
     if (last === undefined) return;
     this.#before = this.#before.slice(0, -1);
     this.#changed = { what: '', at: -Infinity };
-    this.#take(last);
+    // Not what is in force: somebody else may have changed something since, which undoing would undo, too.
+    this.#take(last, this.#mine);
   }
 
   /** Something came from the robot: it holds from now on, unless this page is about to change it. */
@@ -67,9 +76,22 @@ export class VisionTuning {
     if (!this.#sending) this.#draft = null;
   }
 
-  #take(settings: VisionSettings): void {
+  /** Set over those of somebody else what was refused. */
+  saveMine(): void {
+    if (this.#refused !== null) this.#take(this.#refused, null);
+  }
+
+  /** Show those of somebody else; what this page has set before them cannot be undone any more. */
+  async openTheirs(): Promise<void> {
+    this.#before = [];
+    await this.load();
+  }
+
+  #take(settings: VisionSettings, base: VisionSettings | null): void {
     this.#draft = settings;
-    if (!this.#sending) void this.#send();
+    if (this.#sending) return;
+    this.#base = base;
+    void this.#send();
   }
 
   /** Send the newest, and once more where it was changed meanwhile. */
@@ -78,8 +100,12 @@ export class VisionTuning {
     let sent: VisionSettings | null;
     do {
       sent = this.#draft;
-      this.problem = sent === null ? '' : ((await api.command('vision_settings', sent)) ?? '');
+      const answer = sent === null ? { value: null } : await api.editVision(sent, this.#base);
+      this.problem = 'problem' in answer ? answer.problem : '';
+      this.changed = 'problem' in answer && answer.kind === 'changed';
+      if (this.problem === '') this.#base = this.#mine = sent;
     } while (sent !== this.#draft && this.problem === '');
+    this.#refused = this.changed ? this.#draft : null;
     this.#sending = false;
     if (this.problem === '') this.#loaded = sent;
     if (this.problem !== '' || same(this.live.vision?.settings ?? null, sent)) this.#draft = null;
