@@ -15,6 +15,14 @@ def make_link(site: Site, role: str) -> str:
     return f"{site.url}/#pair={made.json()['code']}"
 
 
+def follow(page: Page, link: str, name: str = "") -> None:
+    """Sign in by a link, under the browser's own name where no other is given."""
+    page.goto(link)
+    if name:
+        page.get_by_label("Name of this browser").fill(name)
+    page.get_by_role("button", name="Sign in").click()
+
+
 @contextmanager
 def somebody(browser: Browser, site: Site, role: str) -> Iterator[Page]:
     """The page in another browser, signed in by a link; console errors fail the test."""
@@ -22,7 +30,7 @@ def somebody(browser: Browser, site: Site, role: str) -> Iterator[Page]:
     page = context.new_page()
     complaints: list[str] = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto(make_link(site, role))
+    follow(page, make_link(site, role))
     expect(page.get_by_role("button", name="STOP")).to_be_visible()
     yield page
     context.close()

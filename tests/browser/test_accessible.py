@@ -9,7 +9,7 @@ from tests.browser.axe import AXE, faults, faults_of_view, opened_for_axe
 from tests.browser.driving import hold_to_arm
 from tests.browser.opening import DESKTOP, PHONE
 from tests.browser.pages import LIVE, PAGES, View, settle, show
-from tests.browser.people import make_link
+from tests.browser.people import follow, make_link
 from tests.stack import Stack
 
 WIDTHS = (360, 390, 768, 1024, 1280, 1366, 1440, 1920)
@@ -94,7 +94,7 @@ def test_a_viewer_sees_the_reason_before_an_attempt(browser: Browser, stack: Sta
     context = browser.new_context(viewport=DESKTOP, color_scheme="dark")
     page = context.new_page()
     context.add_init_script(path=AXE)
-    page.goto(make_link(stack, "viewer"))
+    follow(page, make_link(stack, "viewer"))
     expect(page.get_by_text("View only.")).to_be_visible()
     refused = {
         "sessions": ["Delete", "Start recording", "Import…"],

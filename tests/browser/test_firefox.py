@@ -24,6 +24,9 @@ def firefox(tmp_path_factory: pytest.TempPathFactory, stack: Stack) -> Iterator[
     bring_to_surface(stack)
     with Firefox(tmp_path_factory.mktemp("profile")) as firefox:
         firefox.open(make_link(stack, "operator"))
+        firefox.move_to_button("Sign in")
+        firefox.press_mouse()
+        firefox.release_mouse()
         firefox.wait_for("document.querySelector('.stop')")
         yield firefox
         put_to_rest(stack)

@@ -4,6 +4,7 @@ import re
 
 from playwright.sync_api import Browser, expect
 
+from tests.browser.people import follow
 from tests.stack import Stack
 
 LINK = re.compile(r"http://localhost:\d+/#pair=\S+")
@@ -13,7 +14,7 @@ def test_the_printed_link_signs_a_browser_in_without_typing(browser: Browser, st
     (link,) = LINK.findall(stack.log.read_text())
     context = browser.new_context()
     page = context.new_page()
-    page.goto(link)
+    follow(page, link)
     expect(page.get_by_role("link", name="Operate")).to_be_visible(timeout=15_000)
     assert "pair" not in page.url
     assert page.evaluate("document.cookie") == ""
@@ -22,7 +23,7 @@ def test_the_printed_link_signs_a_browser_in_without_typing(browser: Browser, st
     # The link is valid once: another browser is asked for a code.
     stranger = browser.new_context()
     other = stranger.new_page()
-    other.goto(link)
+    follow(other, link)
     expect(other.get_by_text("This code is not valid")).to_be_visible(timeout=15_000)
     expect(other.get_by_role("link", name="Operate")).to_have_count(0)
     context.close()

@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, Page, Route, ViewportSize, expect
 from robot_runtime.clock import SimulatedClock
 from server.http.sign_in.confirmation import CONFIRMED_SECONDS
 from tests.browser.opening import DESKTOP, PHONE
-from tests.browser.people import make_link, somebody
+from tests.browser.people import follow, make_link, somebody
 from tests.browser.site import Site
 from tests.pages.dive_site import DiveSite
 
@@ -28,9 +28,10 @@ def test_a_link_signs_in_and_is_removed_from_the_address(browser: Browser, site:
     with browser.new_context() as context:
         page = context.new_page()
         page.goto("about:blank")
-        page.goto(link)
+        follow(page, link, "Ana’s tablet")
         expect(page.get_by_role("button", name="STOP")).to_be_visible()
         assert "pair" not in page.url
+        assert "Ana’s tablet" in [one["name"] for one in site.api.get("/access/devices").json()]
         page.go_back()
         page.go_forward()
         assert "pair" not in page.url
@@ -77,7 +78,7 @@ def test_a_link_works_though_somebody_mistypes_a_code_at_that_moment(browser: Br
     with browser.new_context() as context:
         page = context.new_page()
         page.route("**/api/access/pair", mistype, times=1)
-        page.goto(link)
+        follow(page, link)
         expect(page.get_by_role("button", name="STOP")).to_be_visible()
     # The mistyped code of the test before may have been a moment ago, too.
     assert refusals in ([403], [429])
@@ -93,7 +94,8 @@ def test_an_operator_pairs_promotes_and_revokes(fresh: Page, browser: Browser, s
     link = page.get_by_label("Link", exact=True).input_value()
     with browser.new_context(user_agent="Mozilla/5.0 (iPhone) Safari/604.1") as context:
         guest = context.new_page()
-        guest.goto(link)
+        follow(guest, link)
+        expect(guest.get_by_role("button", name="STOP")).to_be_visible()
         guest.goto(f"{site.url}/#/people")
         you = guest.get_by_role("region", name="You")
         expect(you).to_contain_text("viewer")

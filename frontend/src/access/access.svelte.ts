@@ -20,6 +20,8 @@ export class Access {
   robot = $state('');
   /** why somebody who was signed in is so no longer, or why a code did not sign in */
   reason = $state('');
+  /** the code of the link that was followed, until it is used; '' where there is none */
+  offered = $state('');
   /** the server has not answered so far */
   silent = $state(false);
   readonly confirmation = new Confirmation();
@@ -30,15 +32,16 @@ export class Access {
     onUnconfirmed(() => this.confirmation.ask());
   }
 
-  /** Find out who this is, and use the code of a link where there is one and it is of use. */
+  /** Find out who this is, and use the code of a link where it gives more rights. Who is not signed in is asked for a name first. */
   async open(code: string | null, name: string): Promise<void> {
     let me = await this.#ask();
     while (me === null) {
       await new Promise((resolve) => setTimeout(resolve, LOOK_AGAIN));
       me = await this.#ask();
     }
-    const needed = code !== null && me.identity?.role !== 'operator';
-    if (needed && (await this.pair(code, name)) === null) return;
+    if (me.identity === null) this.offered = code ?? '';
+    const raises = code !== null && me.identity?.role === 'viewer';
+    if (raises && (await this.pair(code, name)) === null) return;
     this.#take(me);
   }
 
@@ -54,6 +57,7 @@ export class Access {
   /** Use a code. Returns what went wrong, or null. */
   async pair(code: string, name: string): Promise<string | null> {
     const answer = await api.pair(code, name);
+    this.offered = '';
     this.reason = 'problem' in answer ? answer.problem : '';
     if ('problem' in answer) return answer.problem;
     if (answer.value.page_secret !== null) keepSecret(answer.value.page_secret);

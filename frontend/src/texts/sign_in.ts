@@ -2,6 +2,7 @@
 export const signIn = {
   title: 'Sign in',
   heading: (robot: string) => `Sign in to ${robot}`,
+  byLink: 'Your link is a key to this robot. Give this browser a name, and sign in.',
   code: 'Pairing code',
   name: 'Name of this browser',
   nameHint: 'Others see this name, for example when this browser has control.',

@@ -46,8 +46,8 @@ class Catalogue(Listing):
 
         def write(connection: Connection) -> None:
             require(connection, session)
-            wanted = {"name": name, "note": note, "tags": None if tags is None else sorted(set(tags))}
-            _check_base(connection, session, wanted, base)
+            new_texts = {"name": name, "note": note, "tags": None if tags is None else sorted(set(tags))}
+            _check_base(connection, session, new_texts, base)
             if values:
                 connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(values))
             if tags is not None:
@@ -102,16 +102,16 @@ class Catalogue(Listing):
 
 
 def _check_base(
-    connection: Connection, session: int, wanted: Mapping[str, Any], base: Mapping[str, Any] | None
+    connection: Connection, session: int, new_texts: Mapping[str, Any], base: Mapping[str, Any] | None
 ) -> None:
-    """Refuse to replace a text that is neither as in `base` nor as `wanted`. Raises ChangedMeanwhileError."""
+    """Refuse to replace a text that is neither as in `base` nor the new one. Raises ChangedMeanwhileError."""
     if base is None:
         return
     texts = connection.execute(select(SessionRow.name, SessionRow.note).where(col(SessionRow.id) == session))
     found = texts.mappings().one()
     tags = connection.execute(select(SessionTag.tag).where(col(SessionTag.session_id) == session)).scalars()
     present = {**found, "tags": sorted(tags)}
-    for text, new in wanted.items():
+    for text, new in new_texts.items():
         began = base[text]
         if (
             new is not None
