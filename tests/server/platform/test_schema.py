@@ -3,6 +3,7 @@ import re
 import sqlite3
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import pytest
 from alembic.autogenerate import compare_metadata
@@ -22,6 +23,7 @@ from server.platform.settings import Settings, SetupError
 from server.platform.store import Store
 from tests.server.older import ROWS, fill_tables, make_session, read_tables, upgrade_to
 
+Tables = dict[str, list[dict[str, Any]]]
 OLDER = [one.revision for one in ScriptDirectory(schema._scripts()).walk_revisions() if one.revision != HEAD]
 
 
@@ -148,16 +150,21 @@ def test_an_upgrade_leaves_its_copy_where_others_are_dated_in_the_future(setting
     assert schema.read_revision(copy) == "0003"
 
 
-@pytest.mark.parametrize("revision", OLDER)
-def test_an_upgrade_keeps_every_value_of_every_table_and_the_models_read_them(
-    settings: Settings, revision: str
-) -> None:
-    upgrade_to(settings, revision)
+@pytest.fixture(params=OLDER)
+def before(settings: Settings, request: pytest.FixtureRequest) -> Tables:
+    """The rows of an older version's database, which has a row in each table, before it was upgraded."""
+    upgrade_to(settings, request.param)
     with closing(sqlite3.connect(settings.data.database)) as database:
         make_session(database)
         fill_tables(database)
-        before = read_tables(database)
+        rows = read_tables(database)
     schema.prepare(settings.data)
+    return rows
+
+
+def test_an_upgrade_keeps_every_value_of_every_table_and_the_models_read_them(
+    settings: Settings, before: Tables
+) -> None:
     with closing(sqlite3.connect(settings.data.database)) as database:
         after = read_tables(database)
         assert database.execute("PRAGMA foreign_key_check").fetchall() == []
@@ -234,16 +241,9 @@ def test_no_table_gives_a_number_twice(settings: Settings) -> None:
     assert {name for name, text in made if "AUTOINCREMENT" not in text} == INNER
 
 
-@pytest.mark.parametrize("revision", OLDER)
 def test_the_number_of_a_removed_session_is_not_given_again_after_an_upgrade(
-    settings: Settings, revision: str
+    settings: Settings, before: Tables
 ) -> None:
-    upgrade_to(settings, revision)
-    with closing(sqlite3.connect(settings.data.database)) as database:
-        make_session(database)
-        fill_tables(database)
-        before = read_tables(database)
-    schema.prepare(settings.data)
     with closing(sqlite3.connect(settings.data.database)) as database:
         assert database.execute("PRAGMA foreign_key_check").fetchall() == []
         (session,) = read_tables(database)["session"]

@@ -198,6 +198,7 @@ time.sleep(60)
 """
 
 
+@pytest.fixture
 def slow(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Replace the interpreter by one that writes half a file and then waits."""
     script = tmp_path / "slow"
@@ -210,11 +211,10 @@ def slow(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(child_module, "sys", System)
 
 
+@pytest.mark.usefixtures("slow")
 def test_the_next_job_starts_after_a_cancelled_one(
-    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    slow(monkeypatch, tmp_path)
-
     async def scenario(served: Served) -> None:
         jobs = served.container.jobs
         first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
@@ -232,11 +232,8 @@ def test_the_next_job_starts_after_a_cancelled_one(
     play(settings, scenario)
 
 
-def test_a_killed_export_process_leaves_no_file(
-    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    slow(monkeypatch, tmp_path)
-
+@pytest.mark.usefixtures("slow")
+def test_a_killed_export_process_leaves_no_file(settings: Settings, session: int) -> None:
     async def scenario(served: Served) -> None:
         jobs = served.container.jobs
         job = await start(served.api, session)
@@ -256,10 +253,10 @@ def only_described(settings: Settings, job: dict[str, Any]) -> bool:
     return [path.name for path in settings.data.exports.iterdir()] == [f"{job['id']}.json"]
 
 
+@pytest.mark.usefixtures("slow")
 def test_a_cancelled_process_that_does_not_end_is_ended_by_force(
-    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    slow(monkeypatch, tmp_path)
     monkeypatch.setattr(child_module, "CANCEL_SECONDS", 0.01)
 
     async def scenario(served: Served) -> None:
@@ -277,10 +274,10 @@ def test_a_cancelled_process_that_does_not_end_is_ended_by_force(
     play(settings, scenario)
 
 
+@pytest.mark.usefixtures("slow")
 def test_a_process_without_progress_is_ended(
-    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    slow(monkeypatch, tmp_path)
     monkeypatch.setattr(child_module, "SILENT_SECONDS", 0.3)
     monkeypatch.setattr(child_module, "CANCEL_SECONDS", 0.01)
 
@@ -320,11 +317,10 @@ async def purge(served: Served, session: int) -> None:
     await served.container.retention.apply(time.time())
 
 
+@pytest.mark.usefixtures("slow")
 def test_exports_of_a_purged_session_fail_and_the_next_session_has_another_number(
-    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    settings: Settings, session: int
 ) -> None:
-    slow(monkeypatch, tmp_path)
-
     async def scenario(served: Served) -> None:
         jobs = served.container.jobs
         running, waiting = await start(served.api, session), await start(served.api, session, format="jsonl")
@@ -339,11 +335,10 @@ def test_exports_of_a_purged_session_fail_and_the_next_session_has_another_numbe
     play(settings, scenario)
 
 
+@pytest.mark.usefixtures("slow")
 def test_a_waiting_export_reads_the_session_of_its_identifier_alone(
-    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    slow(monkeypatch, tmp_path)
-
     async def scenario(served: Served) -> None:
         jobs, store = served.container.jobs, served.container.store
         first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
