@@ -117,6 +117,12 @@ export interface SessionsPage {
   readonly total: number;
 }
 
+/** The first missions of a session, and how many more there are. */
+export interface SessionMissions {
+  readonly missions: readonly RecordedMission[];
+  readonly leftOut: number;
+}
+
 /** Blocks as on the live socket, and how many samples could not be given. */
 export interface Stretch {
   readonly blocks: ArrayBuffer;
@@ -137,6 +143,13 @@ const TIMEOUT_COMPARE = 60_000;
 
 async function readSessions(response: Response): Promise<SessionsPage> {
   return { sessions: (await response.json()) as Session[], total: Number(response.headers.get('Total-Count')) };
+}
+
+async function readMissions(response: Response): Promise<SessionMissions> {
+  return {
+    missions: (await response.json()) as RecordedMission[],
+    leftOut: Number(response.headers.get('Left-Out')),
+  };
 }
 
 async function readStretch(response: Response): Promise<Stretch> {
@@ -238,7 +251,8 @@ export const api = {
   compare: (wanted: WantedComparison) => request<Comparison>('POST', '/compare', wanted, TIMEOUT_COMPARE),
   compareLines: (wanted: WantedLines) => request<ComparedLines>('POST', '/compare/lines', wanted, TIMEOUT_COMPARE),
   compareReport: (query: URLSearchParams) => `/api/compare/report?${query.toString()}`,
-  sessionMissions: (id: Session['id']) => request<RecordedMission[]>('GET', `/sessions/${id}/missions`),
+  sessionMissions: (id: Session['id']) =>
+    send('GET', `/sessions/${id}/missions`, undefined, undefined, readMissions),
   timeline: (id: Session['id']) => request<Timeline>('GET', `/sessions/${id}/timeline`),
   blocks: (id: Session['id'], start: number, end: number, history?: number) =>
     send(

@@ -431,8 +431,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * List all runs, also those that ship with the program, newest first
-         * @description List all runs, also those that ship with the program, newest first.
+         * List the runs, also those that ship with the program, newest first; at most 500
+         * @description List the runs, also those that ship with the program, newest first; at most 500.
          */
         get: operations["listTestRuns"];
         put?: never;
@@ -1189,8 +1189,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * List your own panels, by name
-         * @description List your own panels, by name.
+         * List your own panels, by name; at most 200
+         * @description List your own panels, by name; at most 200.
          *
          *     The scripts in the folder `panels` of the data folder.
          */
@@ -2045,6 +2045,8 @@ export interface paths {
         /**
          * List the missions of a session: document, last state, and when each step began
          * @description List the missions of a session: document, last state, and when each step began.
+         *
+         *     At most the first hundred: the header `Left-Out` counts the others, which an archive of the session has.
          */
         get: operations["listSessionMissions"];
         put?: never;

@@ -36,5 +36,6 @@ export const missionRun = {
   document: 'Mission (TOML)',
   noDocument: 'This recording lacks the text of the mission.',
   late: 'The recording began while this mission ran.',
+  leftOut: (count: number) => `${count} more missions are not shown. An archive of the session has them.`,
   replayFrom: (start: string) => `Replay from ${start}`,
 } as const;

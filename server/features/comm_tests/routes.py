@@ -80,7 +80,7 @@ async def cancel_test_run(comm_tests: Provided[CommTestRunner], run: MeantNumber
 
 @router.operation("GET /runs", Need.VIEWER)
 def list_test_runs(comm_tests: Provided[CommTestRunner]) -> list[RunSummary]:
-    """List all runs, also those that ship with the program, newest first."""
+    """List the runs, also those that ship with the program, newest first; at most 500."""
     return list(comm_tests.runs.summaries())
 
 

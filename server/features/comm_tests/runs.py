@@ -18,6 +18,8 @@ from server.platform.errors import NotFoundError
 from server.platform.models import CommTestCell, CommTestRun
 from server.platform.store import Reader, Store, insert_row
 
+LISTED_MOST = 500
+
 End = Literal["complete", "cancelled", "failed"]
 
 
@@ -51,7 +53,8 @@ class CommTestRuns:
             return database.exec(query.order_by(col(CommTestCell.number))).all()
 
     def summaries(self) -> Sequence[RunSummary]:
-        """All runs with their figures, newest first."""
+        """The newest runs with their figures, newest first; at most `LISTED_MOST`."""
+        newest = select(CommTestRun).order_by(desc(col(CommTestRun.id))).limit(LISTED_MOST)
         figures = select(
             col(CommTestCell.run_id),
             func.count(),
@@ -59,8 +62,9 @@ class CommTestRuns:
             func.min(col(CommTestCell.rate)),
         ).group_by(col(CommTestCell.run_id))
         with self._reader.read() as database:
-            known = {run: (count, mean, low) for run, count, mean, low in database.exec(figures)}
-            runs = database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
+            runs = database.exec(newest).all()
+            shown = col(CommTestCell.run_id).in_([run.id for run in runs])
+            known = {run: (count, mean, low) for run, count, mean, low in database.exec(figures.where(shown))}
             return [RunSummary(**_summary(run, *known.get(run.id or 0, (0, None, None)))) for run in runs]
 
     def whole(self, run: CommTestRun) -> CommTestRunDetails:

@@ -136,7 +136,7 @@ class Comparer:
         set_point = found.get(SET_POINT)
         steps = set_point_steps(set_point, history.armed) if set_point is not None else []
         bookmarks = read_bookmarks(self._store, recording)
-        missions = self._missions.compute(recording.row, None, lambda: read_missions(recording))
+        missions = self._missions.compute(recording.row, None, lambda: read_missions(recording)[0])
         try:
             offset, problem = find_moment(query.align, history, steps, bookmarks, missions), ""
         except NoMomentError as missing:

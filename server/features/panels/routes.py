@@ -18,7 +18,7 @@ router = Operations(prefix="/api/panels", tags=["panels"])
 
 @router.operation("GET", Need.VIEWER)
 def list_panels(settings: Provided[Settings]) -> Sequence[OwnPanel]:
-    """List your own panels, by name.
+    """List your own panels, by name; at most 200.
 
     The scripts in the folder `panels` of the data folder.
     """

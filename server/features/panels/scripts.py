@@ -11,6 +11,7 @@ from robot_runtime.contract.text_input import TextError, load_text
 from server.platform.errors import NotFoundError
 
 SCRIPT_BYTES_MAX = 200_000
+PANELS_SHOWN = 200
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]{0,39}")
 
 
@@ -33,8 +34,8 @@ class OwnPanelScript(BaseModel):
 
 
 def list_panels(folder: Path) -> Sequence[OwnPanel]:
-    """All `*.js` of the folder, by name; none if there is no such folder."""
-    files = sorted(folder.glob("*.js"))
+    """The `*.js` of the folder by name, at most `PANELS_SHOWN`; none if there is no such folder."""
+    files = sorted(folder.glob("*.js"))[:PANELS_SHOWN]
     return [OwnPanel(name=_readable(file.stem), problem=_problem(file)) for file in files]
 
 

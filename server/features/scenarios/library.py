@@ -19,6 +19,8 @@ log = logging.getLogger(__name__)
 
 SHIPPED = ("figure_14", "hover_in_a_current", "beacon_approach", "sensor_failure", "lost_link", "sea_trial")
 """The shipped scenarios, the thesis's own first."""
+SCENARIOS_MAX = 200
+"""Of the data folder."""
 _STORING = threading.Lock()
 """Held while a scenario is compared and written: each request has a thread."""
 
@@ -42,9 +44,12 @@ def keep_scenario(own: Path, text: str, base: str | None = None) -> Scenario:
         raise RefusedError(f"{scenario.name} ships with the program. Choose another name.")
     path = own / f"{scenario.name}.toml"
     with _STORING:
-        there = dict(_own(own)).get(path, "")
+        stored = dict(_own(own))
+        there = stored.get(path, "")
         if base is not None and text != there and base != mark_text(there):
             raise ChangedMeanwhileError(f"The scenario {scenario.name}", "", gone=not there)
+        if path not in stored and len(stored) >= SCENARIOS_MAX:
+            raise RefusedError(f"There are {SCENARIOS_MAX} scenarios already. Remove one from {own}.")
         try:
             make_folder(own)
             write_whole(path, text.encode())

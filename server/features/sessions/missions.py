@@ -1,5 +1,6 @@
 """Missions in a recording: how each ended, its document, and when its steps began."""
 
+from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel, Field, TypeAdapter
@@ -11,6 +12,8 @@ from server.features.sessions.upgrade import NoCounterpartError, rewrite_documen
 
 TOPIC = BY_NAME["mission"]
 _MISSION = TypeAdapter(Mission)
+MISSIONS_SHOWN, SHOWN_BYTES = 100, 4_000_000
+"""Of one answer; its size is that of the missions as JSON."""
 
 
 class MissionStepStart(BaseModel):
@@ -32,15 +35,34 @@ class RecordedMission(BaseModel):
     started: list[MissionStepStart] = Field(description="the steps that began, in the order of the document")
 
 
-def read_missions(recording: Recording) -> list[RecordedMission]:
-    """The missions of a session in order of time. Raises StoreError, RecordingError."""
-    found: list[_Reading] = []
+def read_missions(recording: Recording) -> tuple[list[RecordedMission], int]:
+    """The missions of a session in order of time, as many as an answer holds, and the number of the others.
+
+    Raises StoreError, RecordingError.
+    """
+    described = (one.describe(recording.row.started_steady) for one in _read(recording))
+    shown: list[RecordedMission] = []
+    size = left_out = 0
+    for mission in (one for one in described if one is not None):
+        size += len(mission.model_dump_json())
+        if len(shown) < MISSIONS_SHOWN and size <= SHOWN_BYTES:
+            shown.append(mission)
+        else:
+            left_out += 1
+    return shown, left_out
+
+
+def _read(recording: Recording) -> Iterator["_Reading"]:
+    """The missions one after the other, each when its last document has been read."""
+    reading: _Reading | None = None
     for document in recording.documents(TOPIC.name) if TOPIC.name in recording.topics else ():
-        if not found or not found[-1].continues_with(document):
-            found.append(_Reading(document))
-        found[-1].add(document)
-    described = (one.describe(recording.row.started_steady) for one in found)
-    return [one for one in described if one is not None]
+        if reading is None or not reading.continues_with(document):
+            if reading is not None:
+                yield reading
+            reading = _Reading(document)
+        reading.add(document)
+    if reading is not None:
+        yield reading
 
 
 class _Reading:

@@ -43,7 +43,7 @@ from server.stream.bridge import Bridge
 
 SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
-"""The header that says how many samples could not be given."""
+"""The header that says how many samples, or missions, are not in the answer."""
 TOTAL_COUNT = "Total-Count"
 """The header that says how many sessions match."""
 
@@ -232,10 +232,17 @@ def get_timeline(_: RecordingTurn, recording: OpenRecording) -> Timeline:
 
 
 @router.operation("GET /sessions/{session}/missions", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
-def list_session_missions(_: RecordingTurn, recording: OpenRecording) -> list[RecordedMission]:
-    """List the missions of a session: document, last state, and when each step began."""
+def list_session_missions(
+    _: RecordingTurn, recording: OpenRecording, response: Response
+) -> list[RecordedMission]:
+    """List the missions of a session: document, last state, and when each step began.
+
+    At most the first hundred: the header `Left-Out` counts the others, which an archive of the session has.
+    """
     with reading_content(recording.row):
-        return read_missions(recording)
+        missions, left_out = read_missions(recording)
+    response.headers[LEFT_OUT] = str(left_out)
+    return missions
 
 
 @router.operation(

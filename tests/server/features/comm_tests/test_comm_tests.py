@@ -178,6 +178,18 @@ def test_a_killed_run_is_not_listed_as_running(store: Store) -> None:
     assert oldest.problem
 
 
+def test_the_newest_runs_are_listed(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("server.features.comm_tests.runs.LISTED_MOST", 2)
+    runs = CommTestStore(store)
+
+    async def run_three() -> None:
+        for _ in range(3):
+            await runs.add(await begin(runs), 0, LOST.values)
+
+    asyncio.run(run_three())
+    assert [(one.id, one.cells_done) for one in runs.summaries()] == [(3, 1), (2, 1)]
+
+
 def test_a_lost_result_is_stored_as_lost(store: Store) -> None:
     runs = CommTestStore(store)
 

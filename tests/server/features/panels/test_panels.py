@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from server.features.panels import scripts
 from server.features.panels.frame import FRAME
 from server.features.panels.scripts import SCRIPT_BYTES_MAX, UnknownPanelError, list_panels, read_panel
 from server.platform.settings import Settings
@@ -39,6 +40,14 @@ def test_scripts_in_the_folder_are_panels(tmp_path: Path) -> None:
         "ünï": "ünï.js needs another name: up to 40 letters without accents, digits, spaces, - and _.",
     }
     assert "export default" in read_panel(folder, "Climb rate").script
+
+
+def test_a_list_of_panels_has_an_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scripts, "PANELS_SHOWN", 2)
+    for name in ("c.js", "a.js", "b.js"):
+        put(tmp_path / "panels", name)
+    assert [one.name for one in list_panels(tmp_path / "panels")] == ["a", "b"]
+    assert read_panel(tmp_path / "panels", "c").name == "c"
 
 
 @pytest.mark.parametrize("name", ["../secret", "secret", "..", "Climb rate.js", "large", "\0"])

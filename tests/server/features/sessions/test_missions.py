@@ -4,7 +4,8 @@ from contextlib import closing
 
 import pytest
 
-from server.features.sessions.missions import read_missions
+from server.features.sessions import missions
+from server.features.sessions.missions import MISSIONS_SHOWN, read_missions
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform.schema import prepare
@@ -25,7 +26,8 @@ from tests.server.serving import Served, play
 def test_each_mission_is_told_with_its_document_end_and_starts(store: Store, settings: Settings) -> None:
     # A runtime that restarts counts from 1 again.
     session = record(store, settings, [*dive(), *mission_blocks(), *mission_blocks(shift=3.5)])
-    first, second = read_missions(Recording(store, find_row(store, session)))
+    (first, second), left_out = read_missions(Recording(store, find_row(store, session)))
+    assert left_out == 0
     assert (first.start, first.end) == (DIVE_AT - STARTED_STEADY, MISSION_END - STARTED_STEADY)
     assert (first.mission.phase, first.mission.text) == ("failed", "Step 2.1, mark: It was at 0.20 m.")
     assert (first.document, first.late) == (TEXT, False)
@@ -40,9 +42,23 @@ def test_each_mission_is_told_with_its_document_end_and_starts(store: Store, set
 
 def test_a_recording_that_begins_in_a_mission_says_so(store: Store, settings: Settings) -> None:
     session = record(store, settings, [*dive(), *mission_blocks(first=1)[:-1]])
-    (one,) = read_missions(Recording(store, find_row(store, session)))
+    (one,), _ = read_missions(Recording(store, find_row(store, session)))
     assert (one.late, one.document, one.mission.phase) == (True, "", "paused")
-    assert read_missions(Recording(store, find_row(store, record(store, settings, dive())))) == []
+    assert read_missions(Recording(store, find_row(store, record(store, settings, dive())))) == ([], 0)
+
+
+def test_an_answer_holds_the_first_missions_and_counts_the_others(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    count = MISSIONS_SHOWN + 3
+    blocks = [block for number in range(count) for block in mission_blocks(number=number + 1)]
+    recording = Recording(store, find_row(store, record(store, settings, [*dive(), *blocks])))
+    shown, left_out = read_missions(recording)
+    assert ([one.mission.number for one in shown], left_out) == ([*range(1, MISSIONS_SHOWN + 1)], 3)
+    size = len(shown[0].model_dump_json())
+    monkeypatch.setattr(missions, "SHOWN_BYTES", int(2.5 * size))
+    shown, left_out = read_missions(recording)
+    assert (len(shown), left_out) == (2, count - 2)
 
 
 def test_the_page_gets_the_missions_of_a_session(settings: Settings) -> None:
@@ -51,7 +67,9 @@ def test_the_page_gets_the_missions_of_a_session(settings: Settings) -> None:
         session = record(store, settings, [*dive(), *mission_blocks()])
 
     async def scenario(served: Served) -> None:
-        (one,) = (await served.api.get(f"/sessions/{session}/missions")).json()
+        answer = await served.api.get(f"/sessions/{session}/missions")
+        assert answer.headers["Left-Out"] == "0"
+        (one,) = answer.json()
         assert one["document"] == TEXT
         assert one["mission"]["steps"][1]["note"] == "east"
         assert (await served.api.get("/sessions/999/missions")).status_code == 404

@@ -1,0 +1,180 @@
+"""Every list of the interface that grows with data has a limit, also that of the next route."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from robot_runtime.contract.missions import NODES_MAX
+from robot_runtime.contract.vision_settings import COLOURS_MAX, MARKERS_MAX
+from robot_runtime.experiments.comm_test.document import CELLS_MAX
+from robot_runtime.experiments.scenario.document import EVENTS_MAX as SCENARIO_EVENTS_MAX
+from server.app import create_app
+from server.features.comm_tests.runs import LISTED_MOST as TESTS_LISTED
+from server.features.comparison.schemas import SESSIONS_MAX
+from server.features.doors.house import CLIENTS_MAX
+from server.features.doors.subscriptions import SUBSCRIPTIONS_MAX
+from server.features.exports.archive_models import COLUMNS_MAX, TAGS_MAX, TOPICS_MAX
+from server.features.exports.jobs import JOBS_MAX
+from server.features.layouts.library import LAYOUTS_MOST
+from server.features.missions.library import MISSIONS_MAX, VERSIONS_MAX
+from server.features.missions.schemas import SEEDS_MAX
+from server.features.panels.scripts import PANELS_SHOWN
+from server.features.parameters.changes import SHOWN
+from server.features.parameters.profiles import PROFILES_MAX
+from server.features.parameters.schemas import PARAMETERS_MAX
+from server.features.people.audit import LISTED_MOST as ENTRIES_LISTED
+from server.features.scenarios.library import SCENARIOS_MAX
+from server.features.scenarios.runs import QUEUE_MAX
+from server.features.sessions.crafts import CRAFTS_MAX
+from server.features.sessions.listing import COLUMNS_SHOWN, PAGE_MAX, TAGS_SHOWN
+from server.features.sessions.missions import MISSIONS_SHOWN
+from server.features.sessions.schemas import SHOWN_MAX
+from server.features.tuning.runs import LISTED_MOST as RUNS_LISTED
+from server.http.sign_in.devices import DEVICES_MAX
+from server.platform.settings import Settings
+
+LIMITS = {
+    "/api/access/devices": DEVICES_MAX,
+    "/api/audit entries": ENTRIES_LISTED,
+    "/api/comm-tests/runs": TESTS_LISTED,
+    "/api/comm-tests/runs/{run} results": CELLS_MAX,
+    "/api/doors clients": CLIENTS_MAX,
+    "/api/doors clients topics": SUBSCRIPTIONS_MAX,
+    "/api/exports": JOBS_MAX,
+    "/api/identification active sessions": SESSIONS_MAX,
+    "/api/identification last result sessions": SESSIONS_MAX,
+    "/api/identification last sessions": SESSIONS_MAX,
+    "/api/layouts": LAYOUTS_MOST,
+    "/api/missions": MISSIONS_MAX,
+    "/api/missions summary steps": NODES_MAX,
+    "/api/missions/state steps": NODES_MAX,
+    "/api/missions/trial results": SEEDS_MAX,
+    "/api/missions/versions/{name}": VERSIONS_MAX,
+    "/api/panels": PANELS_SHOWN,
+    "/api/parameters/changes": SHOWN,
+    "/api/parameters/changes values": PARAMETERS_MAX,
+    "/api/profiles": PROFILES_MAX,
+    "/api/profiles values": PARAMETERS_MAX,
+    "/api/scenarios": SCENARIOS_MAX,
+    "/api/scenarios summary events": SCENARIO_EVENTS_MAX,
+    "/api/scenarios/state active events": SCENARIO_EVENTS_MAX,
+    "/api/scenarios/state queued": QUEUE_MAX,
+    "/api/sessions": PAGE_MAX,
+    "/api/sessions tags": TAGS_MAX,
+    "/api/sessions/{session} crafts": CRAFTS_MAX,
+    "/api/sessions/{session} gaps": SHOWN_MAX,
+    "/api/sessions/{session} marks": SHOWN_MAX,
+    "/api/sessions/{session} tags": TAGS_MAX,
+    "/api/sessions/{session} topics": TOPICS_MAX,
+    "/api/sessions/{session} topics columns": COLUMNS_SHOWN,
+    "/api/sessions/{session}/missions": MISSIONS_SHOWN,
+    "/api/sessions/{session}/missions mission steps": NODES_MAX,
+    "/api/sessions/{session}/missions started": NODES_MAX,
+    "/api/sessions/{session}/signals": COLUMNS_MAX,
+    "/api/sessions/{session}/timeline events": SHOWN_MAX,
+    "/api/sessions/{session}/timeline holes": SHOWN_MAX,
+    "/api/sessions/{session}/timeline markers": SHOWN_MAX,
+    "/api/tags": TAGS_SHOWN,
+    "/api/tuning/runs runs": RUNS_LISTED,
+    "/api/vision configured actions": COLOURS_MAX + MARKERS_MAX,
+    "/api/vision settings actions": COLOURS_MAX + MARKERS_MAX,
+    "/api/vision configured colours": COLOURS_MAX,
+    "/api/vision settings colours": COLOURS_MAX,
+    "/api/vision configured marker_numbers": MARKERS_MAX,
+    "/api/vision settings marker_numbers": MARKERS_MAX,
+}
+"""The most entries of each list, by the path of its operation and its place in the answer."""
+
+FIXED = {
+    "/api/access/me operators_only",
+    "/api/bring-up hands fins",
+    "/api/bring-up raw encoders",
+    "/api/bring-up steps",
+    "/api/bring-up steps actions",
+    "/api/bring-up steps actions inputs",
+    "/api/bring-up steps actions inputs choices",
+    "/api/bring-up steps results",
+    "/api/comm-tests/documents",
+    "/api/comm-tests/runs/{run} results causes",
+    "/api/comm-tests/runs/{run} results reasons",
+    "/api/comm-tests/runs/{run} tools",
+    "/api/comm-tests/tables",
+    "/api/comm-tests/tables cells",
+    "/api/doctor",
+    "/api/doors",
+    "/api/health parts",
+    "/api/identification last result affected",
+    "/api/identification last result check channels",
+    "/api/identification last result check channels after",
+    "/api/identification last result check channels before",
+    "/api/identification last result check channels measured",
+    "/api/identification last result check times",
+    "/api/identification last result missing",
+    "/api/identification last result noise",
+    "/api/identification last result numbers",
+    "/api/identification last result sessions offsets",
+    "/api/link/frames fault frames",
+    "/api/link/frames fault frames kinds",
+    "/api/link/frames frames",
+    "/api/link/frames frames kinds",
+    "/api/missions/nodes",
+    "/api/missions/nodes fields",
+    "/api/missions/trial results curve",
+    "/api/parameters parameters",
+    "/api/parameters parameters choices",
+    "/api/robot alarms",
+    "/api/robot cards",
+    "/api/robot colours",
+    "/api/robot loops",
+    "/api/robot loops controllers",
+    "/api/robot loops controllers gains",
+    "/api/robot paces",
+    "/api/robot refusals",
+    "/api/tuning/runs figures",
+    "/api/tuning/runs runs cycle remarks",
+    "/api/tuning/runs runs figures",
+    "/api/tuning/runs runs force gains",
+    "/api/tuning/runs/{run} curve outputs",
+    "/api/tuning/runs/{run} curve set_points",
+    "/api/tuning/runs/{run} curve times",
+    "/api/tuning/runs/{run} curve values",
+    "/api/tuning/runs/{run} cycle remarks",
+    "/api/tuning/runs/{run} figures",
+    "/api/tuning/runs/{run} force gains",
+    "/api/tuning/runs/{run} proposals",
+    "/api/tuning/runs/{run} proposals gains",
+    "/api/tuning/state last cycle remarks",
+    "/api/tuning/state last figures",
+    "/api/tuning/state last force gains",
+}
+"""Lists whose length the program, the robot's build or a measurement of bounded length gives."""
+
+
+def lists(schema: dict[str, Any], parts: dict[str, Any], place: str = "", ahead: str = "") -> Iterator[str]:
+    """The places of the arrays and tables in a schema that name no most themselves; `ahead`: parts around."""
+    if "$ref" in schema:
+        name = schema["$ref"].rpartition("/")[2]
+        if name not in ahead.split():
+            yield from lists(parts[name], parts, place, f"{ahead} {name}")
+        return
+    for one in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ())):
+        yield from lists(one, parts, place, ahead)
+    for name, one in schema.get("properties", {}).items():
+        yield from lists(one, parts, f"{place} {name}", ahead)
+    inner = schema.get("items") or schema.get("additionalProperties")
+    if isinstance(inner, dict) and "maxItems" not in schema:
+        yield place
+        yield from lists(inner, parts, place, ahead)
+
+
+def test_every_list_that_grows_with_data_has_a_limit(settings: Settings) -> None:
+    document = create_app(settings).openapi()
+    found = {
+        f"{path}{place}"
+        for path, operations in document["paths"].items()
+        for status, answer in operations.get("get", {}).get("responses", {}).items()
+        if status.startswith("2")
+        for content in answer.get("content", {}).values()
+        for place in lists(content.get("schema", {}), document["components"]["schemas"])
+    }
+    assert found == LIMITS.keys() | FIXED
+    assert all(limit <= 5000 for limit in LIMITS.values())
