@@ -6,8 +6,10 @@ from server.platform.settings import SetupError
 
 SEND_BUFFER_BYTES = 65_536
 """Small: with the kernel's default of megabytes, a client that stopped reading goes unnoticed for minutes."""
-USER_TIMEOUT_MS = 10_000
-"""The kernel ends a connection whose data nobody has taken for this long."""
+USER_TIMEOUT_MS = 180_000
+"""The kernel ends a connection whose data nobody has taken for this long. A client that reads 1 kB a second
+takes none for two minutes, until its kernel has room for a whole segment of the loopback again.
+"""
 BACKLOG = 128
 """Clients that may wait while the server restarts."""
 

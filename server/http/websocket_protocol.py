@@ -25,6 +25,8 @@ UNREAD_MAX = 262_144
 own pings, for whose sending nobody waits."""
 PARTS_MAX = 100
 """Frames of one message."""
+FLUSH_SECONDS = 10.0
+"""For which what waits for a client may still be sent after the end of its socket."""
 _BINARY = 0x82
 """First byte of an unfragmented binary frame (RFC 6455, 5.2)."""
 _SHORT, _LONG = 125, 0xFFFF
@@ -99,6 +101,8 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         extensions: Any = self.scope["extensions"]
         extensions[BINARY] = {"send": self.send_binary}
         await super().run_asgi()
+        if not self.disconnected:
+            self.loop.call_later(FLUSH_SECONDS, self.transport.abort)
 
     async def send(self, message: "ASGISendEvent") -> None:
         """Send a message of the application."""

@@ -11,6 +11,7 @@ from uvicorn.protocols.utils import ClientDisconnected
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosedOK
 
+from server.http import websocket_protocol
 from server.http.listener import open_socket
 from server.http.serving import make_server
 from server.http.websocket_protocol import PARTS_MAX, PIECE_BYTES, UNREAD_MAX, WebSocketProtocol
@@ -197,6 +198,33 @@ def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_disconnected
 
     asyncio.run(_serve(app, scenario))
     assert most < 2 * UNREAD_MAX
+
+
+def test_what_waits_for_a_client_does_not_outlive_its_socket_for_long(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(websocket_protocol, "FLUSH_SECONDS", 0.0)
+    app, ended, lose = FastAPI(), asyncio.Event(), WebSocketProtocol.connection_lost
+
+    def note(protocol: WebSocketProtocol, problem: Exception | None) -> None:
+        lose(protocol, problem)
+        ended.set()
+
+    monkeypatch.setattr(WebSocketProtocol, "connection_lost", note)
+
+    @app.websocket("/")
+    async def send_much(socket: WebSocket) -> None:
+        await socket.accept()
+        await socket.send_bytes(bytes(20_000_000))
+
+    async def scenario(url: str) -> None:
+        client = await connect(url, max_size=None)
+        client.transport.pause_reading()
+        async with asyncio.timeout(20):
+            await ended.wait()
+        client.transport.abort()
+
+    asyncio.run(_serve(app, scenario))
 
 
 def test_a_message_without_an_end_is_ended() -> None:
