@@ -354,9 +354,15 @@ describe('a page at the control lease', () => {
   it('shows the alarms of robot and server together', () => {
     const alarm = { severity: 'alarm', active: true, acknowledged: false, what: '', cause: '', remedy: '' };
     server().greet();
-    server().give(documentBlock(OTHER_TOPICS.state, [{ time: 100, mode: 'disarmed', alarms: [{ ...alarm, fault: 'a', since: 1 }] }]));
+    const state = { time: 100, mode: 'disarmed', paces: [], alarms: [{ ...alarm, fault: 'a', since: 1 }] };
+    server().give(documentBlock(OTHER_TOPICS.state, [state]));
     server().tell({ op: 'alarms', alarms: [{ ...alarm, fault: 'b', since: 2 }] });
     expect(live.alarms.map(({ fault }) => fault)).toEqual(['b', 'a']);
+    expect(live.alarms.map((one) => live.isUnknown(one))).toEqual([false, false]);
+    vi.advanceTimersByTime(4000);
+    expect(live.alarms.map((one) => live.isUnknown(one))).toEqual([false, true]);
+    server().close();
+    expect(live.alarms.map((one) => live.isUnknown(one))).toEqual([true, true]);
   });
 });
 

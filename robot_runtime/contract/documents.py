@@ -252,11 +252,13 @@ class Alarm:
     fault: str = field(metadata={"meaning": "one word for programs, as in docs/reference/faults.md"})
     severity: Severity
     since: float = field(metadata={"meaning": "s, steady clock"})
+    until: float | None = field(metadata={"meaning": "s, steady clock; seen last then; null while active"})
     active: bool = field(metadata={"meaning": "whether the fault is still there"})
     acknowledged: bool
     what: str
     cause: str = field(metadata={"meaning": "the likely one"})
     remedy: str = field(metadata={"meaning": "what to do"})
+    consequences: list[str] = field(metadata={"meaning": "faults that follow from this one"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

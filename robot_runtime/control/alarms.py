@@ -6,6 +6,7 @@ The runtime has one for the robot (`robot_runtime.control.faults`), the server o
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from graphlib import TopologicalSorter
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Alarm, Event, Severity
@@ -24,6 +25,18 @@ class FaultText:
     what: str
     cause: str
     remedy: str
+    consequences: tuple[str, ...] = ()
+    """Names of the faults that follow from this one, here or in the other list."""
+
+
+def check_consequences(*lists: Mapping[str, FaultText]) -> None:
+    """Raises ValueError where a consequence is no fault of these lists, or follows from itself."""
+    follows: dict[str, set[str]] = {}
+    for name, fault in (one for faults in lists for one in faults.items()):
+        follows.setdefault(name, set()).update(fault.consequences)
+    if unknown := {name for names in follows.values() for name in names} - follows.keys():
+        raise ValueError(f"consequences that are no faults: {', '.join(sorted(unknown))}")
+    TopologicalSorter(follows).prepare()
 
 
 class Alarms:
@@ -77,11 +90,13 @@ class Alarms:
             fault=name,
             severity=fault.severity,
             since=now,
+            until=None if active else now,
             active=active,
             acknowledged=False,
             what=what,
             cause=fault.cause,
             remedy=fault.remedy,
+            consequences=list(fault.consequences),
         )
         text = f"{what} {fault.cause} {fault.remedy}"
         self._on_event(Event(time=now, kind=name, severity=fault.severity, text=text))
@@ -107,7 +122,7 @@ class Alarms:
         if alarm.acknowledged:
             del self._alarms[alarm.fault]
         else:
-            self._alarms[alarm.fault] = replace(alarm, active=False)
+            self._alarms[alarm.fault] = replace(alarm, active=False, until=self._last[alarm.fault])
         text = f"Cleared: {alarm.what}"
         self._on_event(Event(time=self._clock.now(), kind=OVER, severity="info", text=text))
         self._changed()

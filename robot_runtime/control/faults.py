@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from robot_runtime.contract.documents import Mode, Severity
-from robot_runtime.control.alarms import FaultText
+from robot_runtime.control.alarms import FaultText, check_consequences
 
 CHECK_PERIOD = 0.1
 """s between two checks at most."""
@@ -35,6 +35,19 @@ class FaultRule(FaultText):
 
 _CABLE = "The board has no power or hangs, or a wire of the serial line is loose."
 _SENSOR = "Check its cable and reset the board. Arm again when the depth on Operate changes."
+_WITH_THE_BOARD = ("board_disarmed", "depth_stale", "imu_stale", "simulator_silent")
+"""Without its telemetry the simulated water stands still, too."""
+_WITH_THE_RUNTIME = (
+    "pilot_quiet",
+    "pilot_lost",
+    "server_silent",
+    "board_silent",
+    "board_disarmed",
+    "depth_stale",
+    "imu_stale",
+    "vision_stale",
+)
+"""What a runtime that stalled has missed seems to have been absent."""
 
 FAULTS = (
     FaultRule(
@@ -52,6 +65,7 @@ FAULTS = (
         what="No pilot input for 3 s.",
         cause="The page is hidden or closed, the gamepad is off, or the network is gone.",
         remedy="Check the network and the gamepad, then arm again.",
+        consequences=("pilot_quiet",),
     ),
     FaultRule(
         name="server_silent",
@@ -59,6 +73,7 @@ FAULTS = (
         what="The server sends no heartbeat; nobody could stop the robot.",
         cause="The server ended or hangs, or this computer is overloaded.",
         remedy="It restarts by itself. If this repeats, read its log.",
+        consequences=("pilot_quiet", "pilot_lost"),
     ),
     FaultRule(
         name="board_silent",
@@ -66,6 +81,7 @@ FAULTS = (
         what="The board sends nothing.",
         cause=_CABLE,
         remedy="The board stops the fins by itself. Check its power and cable.",
+        consequences=_WITH_THE_BOARD,
     ),
     FaultRule(
         name="board_restarted",
@@ -73,6 +89,7 @@ FAULTS = (
         what="The board restarted; it is disarmed.",
         cause="Its watchdog restarted a program that hung, or its supply voltage dropped.",
         remedy="The console shows the reason. Check the battery, then arm again.",
+        consequences=("board_silent", *_WITH_THE_BOARD),
     ),
     FaultRule(
         name="board_disarmed",
@@ -87,6 +104,7 @@ FAULTS = (
         what="The robot's software stalled for longer than the board waits.",
         cause="This computer is overloaded, or the process was suspended.",
         remedy="The board has stopped the fins by itself. Check the load of this computer, then arm again.",
+        consequences=_WITH_THE_RUNTIME,
     ),
     FaultRule(
         name="depth_stale",
@@ -103,6 +121,7 @@ FAULTS = (
         what="The pressure reading is frozen.",
         cause="The pressure sensor hangs; in simulated water, the simulator has ended.",
         remedy=_SENSOR,
+        consequences=("not_rising",),
     ),
     FaultRule(
         name="depth_range",
@@ -158,6 +177,7 @@ FAULTS = (
         what="The battery was below its alarm voltage for 20 s; the fins were slowed and stopped.",
         cause="The battery is empty or old.",
         remedy="Let the robot rise, and charge it.",
+        consequences=("board_disarmed",),
     ),
     FaultRule(
         name="fin_failing",
@@ -175,6 +195,7 @@ FAULTS = (
         what="The simulator has been silent for 0.5 s; the board has no sensor readings.",
         cause="The simulator ended, or the network to it is down.",
         remedy="Check that it runs and that the network works.",
+        consequences=("depth_stale", "depth_frozen", "imu_stale", "imu_frozen", "vision_stale"),
     ),
     FaultRule(
         name="control_failed",
@@ -185,3 +206,4 @@ FAULTS = (
     ),
 )
 BY_NAME = {one.name: one for one in FAULTS}
+check_consequences(BY_NAME)

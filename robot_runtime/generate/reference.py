@@ -91,6 +91,8 @@ FAULTS_INTRODUCTION = """\
 The runtime checks these at least ten times a second, and at each message of the board. *Within* is
 the time from the fault to the action, on a line of 115200 baud or more. *All-stop* sends STOP to the board
 and no command after it; the robot floats up. The alarm stays until the fault is over and acknowledged.
+*Consequences* are the faults that follow from it. Each is an alarm of its own, with its action and its event; the page
+shows it beneath its cause.
 """
 PARAMETERS_SOURCE = "the parameter registry (robot_runtime/parameters)"
 PARAMETERS_INTRODUCTION = """\
@@ -247,7 +249,7 @@ def faults_page() -> str:
         ),
         "## Faults\n",
         FAULTS_INTRODUCTION,
-        table(("fault", "within", "action", "alarm", "message"), map(_fault_row, FAULTS)),
+        table(("fault", "within", "action", "alarm", "message", "consequences"), map(_fault_row, FAULTS)),
     )
 
 
@@ -263,7 +265,8 @@ def _states() -> str:
 def _fault_row(fault: FaultRule) -> tuple[str, ...]:
     action = f"{fault.action}; alarm only in manual" if fault.automatic_only else fault.action
     message = f"{fault.what} {fault.cause} *{fault.remedy}*"
-    return f"`{fault.name}`", f"{fault.limit:g} s", action, fault.severity, message
+    consequences = ", ".join(f"`{one}`" for one in fault.consequences)
+    return f"`{fault.name}`", f"{fault.limit:g} s", action, fault.severity, message, consequences
 
 
 def parameters_page() -> str:

@@ -1,9 +1,11 @@
 """Faults of the processes around the robot that the server detects."""
 
-from robot_runtime.control.alarms import FaultText
+from robot_runtime.control.alarms import FaultText, check_consequences
+from robot_runtime.control.faults import BY_NAME
 
 _PART = "It crashed, was killed, or the computer ran out of memory."
 _LOGS = "It is started again by itself. Where that goes on, the System page and its log say more."
+_WITHOUT_WATER = BY_NAME["simulator_silent"].consequences
 FAULTS: dict[str, FaultText] = {
     "runtime_silent": FaultText(
         severity="alarm",
@@ -11,6 +13,7 @@ FAULTS: dict[str, FaultText] = {
         cause="It hangs, or the computer is overloaded.",
         remedy="The board stops the fins by itself after 1 s. After 10 s the runtime is ended and "
         "started again, disarmed; nothing is to be done.",
+        consequences=("runtime_down", "runtime_stalled", "board_disarmed"),
     ),
     "runtime_down": FaultText(
         severity="alarm",
@@ -19,14 +22,29 @@ FAULTS: dict[str, FaultText] = {
         remedy="It is started again by itself, except a service that was stopped by hand. Where it does not "
         "come back, the System page and its log say more.",
     ),
-    "board_down": FaultText(severity="alarm", what="", cause=_PART, remedy=_LOGS),
-    "simulator_down": FaultText(severity="caution", what="", cause=_PART, remedy=_LOGS),
-    "scene_down": FaultText(severity="caution", what="", cause=_PART, remedy=_LOGS),
+    "board_down": FaultText(
+        severity="alarm",
+        what="",
+        cause=_PART,
+        remedy=_LOGS,
+        consequences=("board_silent", "board_restarted", "board_disarmed", "simulator_silent"),
+    ),
+    "simulator_down": FaultText(
+        severity="caution",
+        what="",
+        cause=_PART,
+        remedy=_LOGS,
+        consequences=("simulator_silent", *_WITHOUT_WATER),
+    ),
+    "scene_down": FaultText(
+        severity="caution", what="", cause=_PART, remedy=_LOGS, consequences=("vision_stale",)
+    ),
     "simulator_silent": FaultText(
         severity="caution",
         what="The simulated water stands still.",
         cause="The simulator hangs, or the computer is overloaded.",
         remedy="End the simulator, which is then started again.",
+        consequences=_WITHOUT_WATER,
     ),
     "server_restarted": FaultText(
         severity="caution",
@@ -34,6 +52,7 @@ FAULTS: dict[str, FaultText] = {
         cause=_PART,
         remedy="A robot that was armed is stopped where the server is away for more than 4 s. "
         "Nothing is to be done; where it happens again, read the service's log: journalctl -u mucat.",
+        consequences=("server_silent", "pilot_quiet", "pilot_lost"),
     ),
     "server_task_failed": FaultText(
         severity="alarm",
@@ -47,6 +66,7 @@ FAULTS: dict[str, FaultText] = {
         cause="Recordings or exports have filled it.",
         remedy="Remove sessions or exports, or have old ones removed by themselves (keep_free in "
         "robot.toml).",
+        consequences=("store_failing",),
     ),
     "store_failing": FaultText(
         severity="alarm",
@@ -67,3 +87,4 @@ FAULTS: dict[str, FaultText] = {
         remedy="Surface, and charge the battery. Meanwhile the processor is slowed, and the card at risk.",
     ),
 }
+check_consequences(FAULTS, BY_NAME)

@@ -80,7 +80,7 @@ class Watchdog:
         if runtime is not None and self._silent > HUNG_SECONDS - SILENT_SECONDS:
             self._silent = 0.0
             runtime.end_hung(f"said nothing for {HUNG_SECONDS:g} s, and was ended")
-        see("simulator_silent", self._settings.mode != "robot" and self._is_silent("simulator"))
+        see("simulator_silent", self._does_water_stand())
         disk_there = self._look_at_disk()
         see("disk_low", self._is_disk_low)
         see("store_failing", self._store.failing is not None or not disk_there)
@@ -88,6 +88,13 @@ class Watchdog:
         if self._checked - self._supply_seen >= SUPPLY_SECONDS:
             see("undervoltage", self._is_supply_low())
         see("server_restarted", False)
+
+    def _does_water_stand(self) -> bool:
+        """True if the simulator is silent, but where the runtime has noticed it: one fault is one alarm."""
+        if self._settings.mode == "robot" or not self._is_silent("simulator"):
+            return False
+        listed = (self._monitor.state() or {}).get("alarms", []) if self._monitor.silence() is None else []
+        return not any(one["fault"] == "simulator_silent" and one["active"] for one in listed)
 
     def _look_at_disk(self) -> bool:
         """Note if the disk is almost full; False where it is gone, as a stick that was pulled."""

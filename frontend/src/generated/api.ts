@@ -2616,6 +2616,8 @@ export interface components {
             active: boolean;
             /** Cause */
             cause: string;
+            /** Consequences */
+            consequences: string[];
             /** Fault */
             fault: string;
             /** Remedy */
@@ -2627,6 +2629,8 @@ export interface components {
             severity: "info" | "caution" | "alarm";
             /** Since */
             since: number;
+            /** Until */
+            until: number | null;
             /** What */
             what: string;
         };

@@ -437,11 +437,13 @@ export interface Alarm {
   fault: string;
   severity: 'info' | 'caution' | 'alarm';
   since: number;
+  until: number | null;
   active: boolean;
   acknowledged: boolean;
   what: string;
   cause: string;
   remedy: string;
+  consequences: string[];
 }
 
 /** The period, s, at which the board sends a topic at this baud rate. */

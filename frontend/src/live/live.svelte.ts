@@ -15,7 +15,7 @@ import {
 } from '../generated/topics';
 import { readDocuments, readPicture, type Block } from './blocks';
 import { calendar, type Instant } from './clock';
-import { inOrder } from './alarms';
+import { groupAlarms, membersOf, type AlarmGroup } from './alarms';
 import type { Control } from './control.svelte';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
@@ -124,9 +124,21 @@ export class Live {
     return this.control === null ? connection.barred.replay : this.control.barred;
   }
 
-  /** Present alarms, and past ones that nobody has acknowledged; the most urgent first. */
+  /** Present alarms, and past ones that nobody has acknowledged, beneath their causes; the most urgent first. */
+  get alarmGroups(): readonly AlarmGroup[] {
+    return groupAlarms([...(this.state?.alarms ?? []), ...this.serverAlarms]);
+  }
+
+  /** The same, one after the other. */
   get alarms(): readonly Alarm[] {
-    return inOrder([...(this.state?.alarms ?? []), ...this.serverAlarms]);
+    return this.alarmGroups.flatMap(membersOf);
+  }
+
+  /** whether nobody knows if this alarm is active still: who raised it, server or runtime, says nothing */
+  isUnknown(alarm: Alarm): boolean {
+    if (this.replayed) return false;
+    if (this.connection !== 'open') return true;
+    return this.freshness('state').state === 'stale' && this.state?.alarms.includes(alarm) === true;
   }
 
   /** Let time pass for what is read at leisure. Returns what ends it. */

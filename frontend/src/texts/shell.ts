@@ -13,15 +13,17 @@ export const shell = {
   },
   alarms: {
     active: 'active',
-    over: 'over,',
-    when: (began: string, { active, acknowledged }: { active: boolean; acknowledged: boolean }) =>
-      `${active ? 'since' : 'began'} ${began}${acknowledged ? ', acknowledged' : ''}`,
+    over: 'over',
+    unknown: 'unknown',
+    when: (began: string, ended: string | null, acknowledged: boolean) =>
+      `${ended === null ? `since ${began}` : ended === began ? `at ${began}` : `from ${began} to ${ended}`}${acknowledged ? ', acknowledged' : ''}`,
     cause: 'Likely cause:',
     remedy: 'What to do:',
+    consequences: 'Because of it:',
     none: 'No alarms. Faults of the robot, its link and its computer appear here, with their likely causes and what to do.',
     title: 'Alarms',
-    count: (count: number, unacknowledged: number) =>
-      `${count === 1 ? '1 alarm' : `${count} alarms`}${count === 0 ? '' : `, ${unacknowledged} not acknowledged`}`,
+    count: (causes: number, consequences: number, unacknowledged: number) =>
+      `${causes === 1 ? '1 alarm' : `${causes} alarms`}${consequences === 0 ? '' : ` and ${consequences} because of ${causes === 1 ? 'it' : 'them'}`}${causes === 0 ? '' : `, ${unacknowledged} not acknowledged`}`,
     announced: { alarm: 'Alarm', caution: 'Caution', info: 'Information' },
     announce: (severity: string, what: string) => `${severity}: ${what}`,
     acknowledge: (count: number) => (count > 1 ? `Acknowledge all ${count}` : 'Acknowledge'),

@@ -1,6 +1,7 @@
 """Each limit to the millisecond, and the text, alarm and events of each fault."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import radians
 from typing import Literal
 
@@ -8,7 +9,7 @@ import pytest
 
 from robot_runtime.contract.documents import Mode
 from robot_runtime.contract.packets import DeviceFault, StatusFlag
-from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
+from robot_runtime.control.alarms import CLEAR_AFTER, Alarms, check_consequences
 from robot_runtime.control.fault_detector import REPEATS
 from robot_runtime.control.faults import BY_NAME, FAULTS
 from robot_runtime.control.hil_feed import SILENCE
@@ -40,6 +41,16 @@ def all_but(rig: Rig, missing: str) -> Callable[[], None]:
             rig.sense_attitude()
 
     return sense
+
+
+def checked(rig: Rig, sense: Callable[[], None]) -> Callable[[], None]:
+    """Sense, then have the supervisor look for faults."""
+
+    def check() -> None:
+        sense()
+        rig.supervisor.tick()
+
+    return check
 
 
 @pytest.fixture
@@ -209,6 +220,39 @@ def test_a_simulator_that_falls_silent_is_a_fault_also_while_disarmed() -> None:
     assert BY_NAME["simulator_silent"].stops("automatic")
     rig.hil.forward(WORD.to_bytes())
     assert wrong(rig) == set()
+
+
+def test_what_follows_from_a_silent_simulator_names_it_as_its_cause() -> None:
+    rig = Rig(in_the_loop=True)
+    rig.board.flags |= StatusFlag.HIL
+    rig.ready()
+    assert rig.hil is not None
+    rig.hil.forward(WORD.to_bytes())
+    rig.supervisor.arm()
+    live(rig, 1.0, checked(rig, rig.report))
+    alarms = {one.fault: one for one in rig.supervisor.alarms}
+    assert set(alarms) == {"simulator_silent", "depth_stale", "imu_stale"}
+    assert set(alarms) - {"simulator_silent"} <= set(alarms["simulator_silent"].consequences)
+    # None of them is left out of the record.
+    assert set(alarms) <= {event.kind for event in rig.events}
+
+
+def test_what_follows_from_a_silent_server_names_it_as_its_cause(rig: Rig) -> None:
+    rig.supervisor.arm("manual")
+    live(rig, 5.0, checked(rig, all_but(rig, "")))
+    alarms = {one.fault: one for one in rig.supervisor.alarms}
+    assert set(alarms) == {"server_silent", "pilot_quiet", "pilot_lost"}
+    assert alarms["server_silent"].consequences == ["pilot_quiet", "pilot_lost"]
+
+
+def test_a_consequence_is_a_fault_and_never_its_own_cause() -> None:
+    capsized = BY_NAME["capsized"]
+    with pytest.raises(ValueError, match="no faults: sunk"):
+        check_consequences({"capsized": replace(capsized, consequences=("sunk",))})
+    rolled = {"rolled": replace(capsized, consequences=("capsized",))}
+    with pytest.raises(ValueError, match="cycle"):
+        check_consequences({"capsized": replace(capsized, consequences=("rolled",))}, rolled)
+    check_consequences({"capsized": capsized}, rolled)
 
 
 def test_every_fault_has_a_text_a_cause_and_a_remedy() -> None:

@@ -24,6 +24,7 @@ from server.health.watchdog import (
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.managed_process import ManagedProcess
+from tests.server.blocks import state_block
 from tests.server.health.monitor_rig import MonitorRig
 from tests.server.new_database import place_with_samples
 from tests.server.waiting import until
@@ -95,6 +96,25 @@ def test_a_silent_process_is_an_alarm_until_it_sends_again(rig: AlarmRig) -> Non
     ]
     rig.alarms.acknowledge()
     assert rig.alarms.listed() == []
+
+
+@pytest.mark.parametrize("active", [True, False])
+def test_a_silent_simulator_that_the_runtime_has_noticed_is_no_second_alarm(
+    rig: AlarmRig, active: bool
+) -> None:
+    alarm = {"fault": "simulator_silent", "active": active}
+    rig.spend(3.0, runtime=lambda number: rig.monitor.see(state_block(number, alarms=[alarm])))
+    assert rig.active() == (set() if active else {"simulator_silent"})
+
+
+def test_an_alarm_says_what_follows_from_it_and_when_it_was_over(rig: AlarmRig) -> None:
+    rig.spend(3.0)
+    (silent,) = [one for one in rig.alarms.listed() if one.fault == "runtime_silent"]
+    assert (silent.until, "runtime_stalled" in silent.consequences) == (None, True)
+    last_seen = rig.clock.now()
+    rig.spend(2.0, all=rig.receive)
+    (silent,) = [one for one in rig.alarms.listed() if one.fault == "runtime_silent"]
+    assert silent.until == pytest.approx(last_seen)
 
 
 def test_an_acknowledged_alarm_disappears_with_its_fault(rig: AlarmRig) -> None:
