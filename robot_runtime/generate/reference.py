@@ -91,8 +91,8 @@ FAULTS_INTRODUCTION = """\
 The runtime checks these at least ten times a second, and at each message of the board. *Within* is
 the time from the fault to the action, on a line of 115200 baud or more. *All-stop* sends STOP to the board
 and no command after it; the robot floats up. The alarm stays until the fault is over and acknowledged.
-*Consequences* are the faults that follow from it. Each is an alarm of its own, with its action and its event; the page
-shows it beneath its cause.
+*Consequences* are the faults that follow from it. Each is an alarm of its own, with its action and its event;
+the page shows it beneath its cause.
 """
 PARAMETERS_SOURCE = "the parameter registry (robot_runtime/parameters)"
 PARAMETERS_INTRODUCTION = """\

@@ -7,6 +7,7 @@ for. Callbacks run in Zenoh's own threads.
 import json
 import logging
 import os
+import re
 import secrets
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -71,6 +72,7 @@ class ZenohTransport:
         self.run = secrets.token_hex(8)
         self.endpoints = tuple(listen)
         """The endpoints that it listens on."""
+        self.robot = robot
         self._prefix = f"mucat/{robot}/"
         # Zenoh reads it once, when a process opens its first session.
         os.environ.setdefault("ZENOH_RUNTIME", _THREADS)
@@ -78,7 +80,8 @@ class ZenohTransport:
             self._session = zenoh.open(_configuration(listen, connect, scouting, client, network))
         except zenoh.ZError as problem:
             does = "reach" if client else "listen on"
-            raise OSError(f"cannot {does} {', '.join(connect if client else listen)}: {problem}") from problem
+            where = ", ".join(connect if client else listen)
+            raise OSError(f"cannot {does} {where}: {describe_problem(problem)}") from problem
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._watched: dict[str, bool] = {}
         """Of the names that were asked for: if anybody subscribes to them now."""
@@ -173,16 +176,30 @@ class ZenohTransport:
 
 
 def join(robot: str, endpoints: Sequence[str], network: Mapping[str, Any] = LOCAL_ONLY) -> ZenohTransport:
-    """Connects to a robot as a client; waits until it answers."""
+    """Connects to a robot as a client; waits until it answers, and logs both."""
     warned = False
     while True:
         try:
-            return ZenohTransport(robot, connect=endpoints, client=True, network=network)
+            joined = ZenohTransport(robot, connect=endpoints, client=True, network=network)
         except OSError as problem:
             if not warned:
-                log.warning("%s; trying again until the robot answers", problem)
+                log.warning(
+                    "%s Trying again until it answers. Does the robot run, listen at this address "
+                    "(zenoh.listen), and is the certificate one of its own?",
+                    problem,
+                )
             warned = True
             time.sleep(_JOIN_RETRY)
+        else:
+            log.info("connected to %s", ", ".join(endpoints))
+            return joined
+
+
+def describe_problem(problem: zenoh.ZError) -> str:
+    """Returns Zenoh's words without the places in its source: paths of the computer that built it."""
+    text = re.sub(r"\s*\bat /\S+\.rs:\d+\.?", "", str(problem))
+    # "Single" is its type of a single endpoint.
+    return re.sub(r"Single\((.*?)\)", r"\1", text).strip()
 
 
 def _outcome(name: str, handler: Callable[[Answer], Mapping[str, Any] | None], data: bytes) -> Answer:

@@ -13,7 +13,7 @@ FAULTS: dict[str, FaultText] = {
         cause="It hangs, or the computer is overloaded.",
         remedy="The board stops the fins by itself after 1 s. After 10 s the runtime is ended and "
         "started again, disarmed; nothing is to be done.",
-        consequences=("runtime_down", "runtime_stalled", "board_disarmed"),
+        consequences=("runtime_down", "runtime_stalled", "board_disarmed", "simulator_silent"),
     ),
     "runtime_down": FaultText(
         severity="alarm",
@@ -21,6 +21,8 @@ FAULTS: dict[str, FaultText] = {
         cause=_PART,
         remedy="It is started again by itself, except a service that was stopped by hand. Where it does not "
         "come back, the System page and its log say more.",
+        # It passes on what a simulator of a board in the loop sends.
+        consequences=("simulator_silent",),
     ),
     "board_down": FaultText(
         severity="alarm",

@@ -14,6 +14,7 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.transport.blocks import Block
 from server import VERSION
+from server.platform.errors import UnavailableError
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.managed_process import ManagedProcess
@@ -33,7 +34,7 @@ NO_PICTURE = "no picture"
 """The beginning of the runtime's words for a camera that fails."""
 
 PartName = Literal["server", "database", "runtime", "link", "board", "simulator", "scene", "camera", "events"]
-PartState = Literal["ok", "starting", "failed", "absent"]
+PartState = Literal["ok", "starting", "failed", "absent", "unknown"]
 Condition = tuple[PartState, str]
 """The state of a part, and a sentence about it."""
 
@@ -105,6 +106,14 @@ class HealthMonitor:
         if "state" not in self._newest or self._fresh("state", STATE_SECONDS, None):
             return None
         return self._clock.now() - self._newest["state"][0]
+
+    def require_heard(self) -> None:
+        """Raises UnavailableError where the newest state is too old to be the robot's present one."""
+        if (age := self.silence()) is not None:
+            raise UnavailableError(
+                f"The robot's state is unknown: its runtime has said nothing for {age:.0f} s. "
+                "/api/health says why."
+            )
 
     def mission(self) -> dict[str, Any] | None:
         """The newest `mission` document; None without a readable one."""
@@ -192,8 +201,8 @@ class HealthMonitor:
         runtime = self._processes.get("runtime")
         if runtime is not None and runtime.state == "paused":
             return "absent", runtime.problem
-        if not self._fresh("state", STATE_SECONDS, runtime):
-            return self._silent(runtime, "Unknown: the runtime sends nothing.")
+        if (unknown := self._unknown(runtime)) is not None:
+            return unknown
         state = self.state() or {}
         text = str(state.get("connection", ""))
         if state.get("connected") is True:
@@ -210,7 +219,10 @@ class HealthMonitor:
             return "absent", runtime.problem
         if self._is_recent(self._bytes_grew, LINK_SECONDS, process or runtime):
             return "ok", "Sends data."
-        return self._silent(process or runtime, "Nothing arrives from it.")
+        known = self._fresh("link", LINK_SECONDS, runtime)
+        return (None if known else self._unknown(runtime)) or self._silent(
+            process or runtime, "Nothing arrives from it."
+        )
 
     def _simulator(self) -> Condition:
         if self._settings.mode == "robot":
@@ -241,13 +253,20 @@ class HealthMonitor:
 
     def _camera(self) -> Condition:
         runtime = self._processes.get("runtime")
-        if not self._fresh("state", STATE_SECONDS, runtime):
-            return "absent", "Unknown: the runtime sends nothing."
+        if (unknown := self._unknown(runtime)) is not None:
+            return unknown
         text = str((self.state() or {}).get("camera", ""))
         # A robot without pictures swims all the same.
         return (
             "absent" if text.startswith(NO_PICTURE) else "ok"
         ), f"{text[:1].upper()}{text[1:]}." if text else "Starting."
+
+    def _unknown(self, runtime: ManagedProcess | None) -> Condition | None:
+        """The condition of a part that the runtime alone knows, where that says nothing; else None."""
+        if self._fresh("state", STATE_SECONDS, runtime):
+            return None
+        state, text = self._silent(runtime, "The runtime sends nothing.")
+        return "unknown" if state == "failed" else state, text
 
     def _fresh(self, topic: str, seconds: float, process: ManagedProcess | None) -> bool:
         return topic in self._newest and self._is_recent(self._newest[topic][0], seconds, process)

@@ -25,6 +25,10 @@ config_option = click.option(
     help="The robot's configuration.  [default: $MUCAT_CONFIG, or robot.toml here or in the data folder]",
 )
 
+TAKE_OVER = click.option(
+    "--take-over", is_flag=True, help="Take control of the robot also from somebody else. Agree with them."
+)
+
 
 class NumberType(click.ParamType[float]):
     """A number with a decimal point; Python's own notations, such as 1_0 and nan, are none."""

@@ -6,6 +6,7 @@ import shutil
 import sys
 import time
 import zipfile
+from dataclasses import replace
 from typing import Any
 
 import httpx
@@ -13,7 +14,9 @@ import pytest
 
 import server.stream.bridge as bridge_module
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.config import DoorsConfig
 from robot_runtime.transport.blocks import read_blocks
+from server.features.doors.house import Doors
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.health import monitor
@@ -85,6 +88,31 @@ def test_the_state_of_a_silent_runtime_is_unknown(
         answer = await served.api.get("/robot")
         assert answer.status_code == 503
         assert "state is unknown: its runtime has said nothing for 0 s" in answer.json()["detail"]
+
+    play(settings, scenario)
+
+
+def test_nobody_is_sent_the_last_words_of_a_silent_runtime_for_present_ones(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario(served: Served) -> None:
+        doors = Doors(
+            replace(settings, doors=DoorsConfig(foxglove=True)),
+            served.container.clock,
+            served.container.hub,
+            served.container.budgets,
+        )
+        doors.see(state_block(0, armed=True))
+        doors.see_health([{"name": "runtime", "state": "ok", "text": "Sends data."}])
+        assert {one.source for one in doors.newest()} == {"state", "health"}
+        doors.see_health([{"name": "runtime", "state": "failed", "text": "Sends nothing."}])
+        assert [one.source for one in doors.newest()] == ["health"]
+
+        monkeypatch.setattr(served.container.monitor, "mission", lambda: {"phase": "running"})
+        served.runtime.publish(state_block(0, armed=True))
+        await until(served.container.monitor.state, "the state")
+        monkeypatch.setattr(monitor, "STATE_SECONDS", 0.0)
+        assert (await served.api.get("/missions/state")).status_code == 503
 
     play(settings, scenario)
 

@@ -1087,6 +1087,8 @@ export interface paths {
         /**
          * Return the running mission, or the last one, as on the live socket; null where there was none
          * @description Return the running mission, or the last one, as on the live socket; null where there was none.
+         *
+         *     503 where one was running, and the runtime says nothing now.
          */
         get: operations["getMissionState"];
         put?: never;
@@ -5260,7 +5262,7 @@ export interface components {
              * State
              * @enum {string}
              */
-            state: "ok" | "starting" | "failed" | "absent";
+            state: "ok" | "starting" | "failed" | "absent" | "unknown";
             /** Text */
             text: string;
         };

@@ -59,11 +59,16 @@ class HilSimulator:
 
     def run(self) -> None:
         """Simulates the received motion of the fins until `end` is called."""
-        receiving = True
+        receiving: bool | None = None
+        robot = self._messages.robot
         while not self._ending:
             if not self._arrived.wait(QUIET):
                 if receiving:
-                    log.warning("no motion of the fins is received; waiting for the robot and its board")
+                    log.warning("the robot “%s” is lost: nothing comes from its fins; waiting for it", robot)
+                elif receiving is None:
+                    log.warning(
+                        "nothing comes from a robot “%s”; waiting for it, and its board in the loop", robot
+                    )
                 receiving = False
                 continue
             self._arrived.clear()
@@ -71,7 +76,7 @@ class HilSimulator:
             if reading is None:
                 continue
             if not receiving:
-                log.info("motion of the fins is received")
+                log.info("joined the robot “%s”: its fins swim in this water", robot)
             receiving = True
             self._messages.publish("sense", _sense(reading).to_bytes())
             self._outbox.flush()

@@ -8,6 +8,7 @@ from time import time as utc_time
 from typing import Any, Literal
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
 from server.features.doors.channels import HEALTH, DoorChannel, Sample, read_samples
 from server.features.doors.foxglove_channels import foxglove_channels
@@ -103,8 +104,18 @@ class Doors:
             self._publish(HEALTH, [sample], self.doors.values())
 
     def newest(self) -> list[Sample]:
-        """The newest document of each topic of which the newest says everything."""
-        return [*self._newest.values()]
+        """The newest document of each topic of which the newest says everything.
+
+        While the runtime has failed, none of its own: nobody is sent for the present what was its last word.
+        """
+        health = self._newest.get(HEALTH)
+        parts = health.value["parts"] if health is not None and isinstance(health.value, Mapping) else []
+        silent = any(one["name"] == "runtime" and one["state"] == "failed" for one in parts)
+        return [
+            one
+            for name, one in self._newest.items()
+            if not (silent and name in BY_NAME and BY_NAME[name].sender == "runtime")
+        ]
 
     def document(self, name: str) -> Mapping[str, Any]:
         """The newest document of such a topic; an empty one before the first."""

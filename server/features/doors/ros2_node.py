@@ -10,6 +10,7 @@ from typing import Any
 import zenoh
 from zenoh.ext import CacheConfig, declare_advanced_publisher
 
+from robot_runtime.transport.zenoh_transport import describe_problem
 from server.features.doors.ros2_messages import PAYLOAD_MAX
 from server.features.doors.ros2_names import Attachment, Endpoint, Ros2Names, gid_of
 
@@ -70,12 +71,12 @@ class Ros2Node:
         try:
             self._session = zenoh.open(_configuration(socket))
         except zenoh.ZError as problem:
-            raise OSError(f"Zenoh cannot listen at {socket}: {problem}") from problem
+            raise OSError(f"Zenoh cannot listen at {socket}: {describe_problem(problem)}") from problem
         try:
             self._declare(endpoints)
         except zenoh.ZError as problem:
             self.close()
-            raise OSError(f"Zenoh refuses a declaration: {problem}") from problem
+            raise OSError(f"Zenoh refuses a declaration: {describe_problem(problem)}") from problem
 
     def publish(self, name: str, payload: bytes) -> None:
         """Send a message of this topic; one that finds Zenoh's queue full is dropped."""
@@ -93,7 +94,7 @@ class Ros2Node:
             with call.query as query:
                 query.reply(self._names.key(call.endpoint), payload, attachment=answered.to_bytes())
         except zenoh.ZError as problem:
-            raise OSError(f"Zenoh passes no answer on: {problem}") from problem
+            raise OSError(f"Zenoh passes no answer on: {describe_problem(problem)}") from problem
 
     def close(self) -> None:
         """End the session; nothing is received afterwards."""

@@ -25,7 +25,7 @@ UNKNOWN_COVARIANCE = [0.0] * 9
 """REP 145: all zeros mean that the covariance is not known."""
 LOG_LEVELS = {"info": 20, "caution": 30, "alarm": 40}
 DEBUG_LEVELS = (10, 20, 30, 40)
-HEALTH_LEVELS = {"ok": 0, "starting": 1, "absent": 0, "failed": 2}
+HEALTH_LEVELS = {"ok": 0, "starting": 1, "absent": 0, "failed": 2, "unknown": 3}
 PICTURES = {"picture": "camera", "observer": "observer", "mask": "camera", "balanced": "camera"}
 
 

@@ -8,9 +8,14 @@ from server.platform.settings import DataFolder, SetupError
 
 
 @contextmanager
-def in_control(folder: DataFolder) -> Iterator[None]:
-    """Take control if it is free. Raises SetupError where it is not."""
-    ask(folder, "POST", "/control/take")
+def in_control(folder: DataFolder, *, over: bool) -> Iterator[None]:
+    """Take control if it is free, `over` also from somebody else. Raises SetupError where it is not free."""
+    try:
+        ask(folder, "POST", f"/control/take{'?over=true' if over else ''}")
+    except SetupError as problem:
+        if over or "Control is with" not in str(problem):
+            raise
+        raise SetupError(f"{problem} The same command takes it over with --take-over.") from problem
     try:
         yield
     finally:

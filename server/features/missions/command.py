@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from server.platform.command_line import with_settings
+from server.platform.command_line import TAKE_OVER, with_settings
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
@@ -111,15 +111,16 @@ def _describe_span(good: "list[MissionTrialResult]") -> str:
 
 @mission.command()
 @MISSION
+@TAKE_OVER
 @with_settings
-def run(settings: Settings, file: str) -> int:
+def run(settings: Settings, file: str, take_over: bool) -> int:
     """Arm the robot of the running server, begin a mission, and follow it to its end. Ctrl-C ends it."""
     from server.features.lease.command import in_control, renew_control
     from server.platform.running_server import ask
 
     text, read = _read(file, settings)
     folder = settings.data
-    with in_control(folder):
+    with in_control(folder, over=take_over):
         last = ask(folder, "GET", "/missions/state")
         before = float("-inf") if last is None else last["time"]
         ask(folder, "POST", "/missions/start", {"text": text}, seconds=30.0)

@@ -31,6 +31,7 @@ from server.http.operations import MeantRun, Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
 from server.platform.disk_space import FileWriteError, check_room
+from server.platform.errors import UnavailableError
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge
 
@@ -107,11 +108,16 @@ async def start_mission(
     return summarize_mission(mission)
 
 
-@router.operation("GET /state", Need.VIEWER)
+@router.operation("GET /state", Need.VIEWER, UnavailableError)
 async def get_mission_state(monitor: Provided[HealthMonitor], bridge: Provided[Bridge]) -> Mission | None:
-    """Return the running mission, or the last one, as on the live socket; null where there was none."""
+    """Return the running mission, or the last one, as on the live socket; null where there was none.
+
+    503 where one was running, and the runtime says nothing now.
+    """
     await monitor.catch_up("mission", bridge.answered)
     state = monitor.mission()
+    if state is not None and state["phase"] in ("running", "paused"):
+        monitor.require_heard()
     return None if state is None else TypeAdapter(Mission).validate_python(state)
 
 

@@ -83,11 +83,7 @@ async def get_robot(monitor: Provided[HealthMonitor], bridge: Provided[Bridge]) 
     state = monitor.state()
     if state is None:
         raise UnavailableError("The robot's runtime has sent no state yet. /api/health says why.")
-    if (age := monitor.silence()) is not None:
-        raise UnavailableError(
-            f"The robot's state is unknown: its runtime has said nothing for {age:.0f} s. "
-            "/api/health says why."
-        )
+    monitor.require_heard()
     return state
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from server.platform.command_line import with_settings
+from server.platform.command_line import TAKE_OVER, with_settings
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
@@ -56,16 +56,21 @@ def check(settings: Settings, file: str) -> None:
     default="host",
     help="In simulated time: the firmware built for this computer, or on the emulated board.",
 )
+@TAKE_OVER
 @with_settings
 def run(
-    settings: Settings, file: str, place: Literal["simulated", "live"], board: Literal["host", "emulated"]
+    settings: Settings,
+    file: str,
+    place: Literal["simulated", "live"],
+    board: Literal["host", "emulated"],
+    take_over: bool,
 ) -> int:
     """Run a scenario, and record it as a session."""
     from server.features.scenarios.schemas import ScenarioStart
     from server.features.scenarios.shell_run import run_scenario
 
     text, _ = _read(file, settings.data.scenarios)
-    return run_scenario(ScenarioStart(text=text, place=place, board=board), settings)
+    return run_scenario(ScenarioStart(text=text, place=place, board=board), settings, take_over=take_over)
 
 
 def _read(file: str, own: Path) -> "tuple[str, Scenario]":

@@ -207,6 +207,8 @@ class LiveExecutor:
         state = self._monitor.state()
         if state is None:
             return ["The robot's runtime has said nothing yet. Wait a moment."]
+        if (age := self._monitor.silence()) is not None:
+            return [f"The robot's state is unknown: its runtime has said nothing for {age:.0f} s."]
         reasons = []
         if recording is not None:
             reasons.append(f"“{recording.name}” is being recorded. Stop the recording first.")

@@ -27,7 +27,7 @@ ENDED = "The run has ended, and another one since; the page Sessions has its rec
 TAKEN_OUT = "The run was taken out of the queue."
 
 
-def run_scenario(start: ScenarioStart, settings: Settings) -> int:
+def run_scenario(start: ScenarioStart, settings: Settings, *, take_over: bool) -> int:
     """Run a scenario and print its events as they come. Exit status: 1 if it did not complete.
 
     Raises SetupError if it cannot start.
@@ -35,7 +35,7 @@ def run_scenario(start: ScenarioStart, settings: Settings) -> int:
     with ExitStack() as claimed:
         if start.place == "simulated" and _enter(claimed, claim(settings.data)):
             return _conclude(_run_here(start, settings))
-    return _conclude(_run_there(start, settings.data))
+    return _conclude(_run_there(start, settings.data, take_over=take_over))
 
 
 def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
@@ -67,12 +67,12 @@ async def _simulate(start: ScenarioStart, settings: Settings, store: Store) -> E
     return last
 
 
-def _run_there(start: ScenarioStart, folder: DataFolder) -> EndedRun:
+def _run_there(start: ScenarioStart, folder: DataFolder, *, take_over: bool) -> EndedRun:
     """Run it by the running server; Ctrl-C cancels it there."""
     if start.place == "simulated":
         run = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
         return _follow(run, folder, lambda: None)
-    with in_control(folder):
+    with in_control(folder, over=take_over):
         run = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
         return _follow(run, folder, lambda: renew_control(folder))
 

@@ -1,3 +1,4 @@
+import re
 import select
 import subprocess
 import sys
@@ -167,3 +168,9 @@ def test_what_is_received_while_the_queue_is_full_does_not_stop_the_sending() ->
                 for _ in range(20):
                     sender.publish("flood", bytes(100_000))
                 assert reader.communicate("ask\n", 60)[0] == "reads nothing\n[]\n"
+
+
+def test_an_unreachable_robot_is_said_without_paths_of_zenoh_s_source(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="cannot reach unixsock-stream/") as found:
+        ZenohTransport("turtle", connect=[f"unixsock-stream/{tmp_path}/nobody"], client=True)
+    assert not re.search(r"\.rs\b|cargo|Single", str(found.value))

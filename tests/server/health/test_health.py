@@ -5,6 +5,7 @@ import pytest
 
 from robot_runtime.transport.blocks import Block
 from server.health.monitor import GRACE_SECONDS
+from server.platform.errors import UnavailableError
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import link_block, state_block, truth_block
@@ -31,7 +32,30 @@ def test_a_silent_process_is_starting_at_first_and_then_failed(rig: MonitorRig) 
     rig.clock.forward(GRACE_SECONDS - 0.1)
     assert rig.status == "starting"
     rig.clock.forward(0.2)
-    assert [rig.state(name) for name in ("runtime", "link", "board", "simulator")] == ["failed"] * 4
+    assert [rig.state(name) for name in ("runtime", "simulator")] == ["failed"] * 2
+
+
+def test_what_the_runtime_alone_knows_is_unknown_while_it_says_nothing(rig: MonitorRig) -> None:
+    rig.run_all()
+    rig.receive(0)
+    rig.receive(1)
+    assert [rig.state(name) for name in ("link", "board", "camera")] == ["ok"] * 3
+    rig.clock.forward(GRACE_SECONDS + 0.1)
+    assert [rig.state(name) for name in ("link", "board", "camera")] == ["unknown"] * 3
+    assert rig.text("board") == "The runtime sends nothing."
+    # A board whose process has ended is no riddle.
+    rig.parts["board"]._set("failed")
+    assert rig.state("board") == "failed"
+
+
+def test_a_mission_that_runs_is_unknown_while_the_runtime_says_nothing(rig: MonitorRig) -> None:
+    rig.run_all()
+    rig.monitor.require_heard()
+    rig.receive(0)
+    rig.monitor.require_heard()
+    rig.clock.forward(5.0)
+    with pytest.raises(UnavailableError, match="said nothing for 5 s"):
+        rig.monitor.require_heard()
 
 
 def test_it_is_alive_unless_the_database_or_the_runtime_fails(rig: MonitorRig, store: Store) -> None:
@@ -59,8 +83,11 @@ def test_a_state_of_long_ago_is_not_the_present_one(rig: MonitorRig) -> None:
     assert rig.monitor.silence() is None
 
 
-@pytest.mark.parametrize(("name", "limit"), [("runtime", 2.5), ("board", 3.0), ("simulator", 2.0)])
-def test_received_data_becomes_stale(rig: MonitorRig, name: str, limit: float) -> None:
+@pytest.mark.parametrize(
+    ("name", "limit", "state"),
+    [("runtime", 2.5, "failed"), ("board", 3.0, "unknown"), ("simulator", 2.0, "failed")],
+)
+def test_received_data_becomes_stale(rig: MonitorRig, name: str, limit: float, state: str) -> None:
     rig.run_all()
     rig.clock.forward(60)
     rig.receive(0)
@@ -68,7 +95,7 @@ def test_received_data_becomes_stale(rig: MonitorRig, name: str, limit: float) -
     rig.clock.forward(limit - 0.01)
     assert rig.state(name) == "ok"
     rig.clock.forward(0.02)
-    assert rig.state(name) == "failed"
+    assert rig.state(name) == state
 
 
 def test_a_silent_board_has_failed_even_while_link_statistics_arrive(rig: MonitorRig) -> None:

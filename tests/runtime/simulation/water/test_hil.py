@@ -14,6 +14,7 @@ import pytest
 from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.errors import RefusedError
+from robot_runtime.simulation.water import hil
 from robot_runtime.simulation.water.hil import GAP_MAX, HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
@@ -86,6 +87,31 @@ def robot(simulator: Simulator) -> Iterator[Robot]:
             finally:
                 loop.end()
                 thread.join()
+
+
+def test_it_says_whose_fins_swim_here_and_when_they_are_lost(
+    simulator: Simulator, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    caplog.set_level("INFO")
+    monkeypatch.setattr(hil, "QUIET", 0.05)
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        ZenohTransport("turtle", [f"unixsock-stream/{folder}/z"]) as here,
+        join("turtle", [f"unixsock-stream/{folder}/z"]) as there,
+    ):
+        loop = HilSimulator(simulator, there)
+        thread = threading.Thread(target=loop.run)
+        thread.start()
+        try:
+            wait_for(lambda: "nothing comes from a robot “turtle”" in caplog.text, "its first words")
+            wait_for(lambda: here.watched("motor"), "the water's ears")
+            Robot(here).move((100.0, motor(0.0)), (100.02, motor(0.0)))
+            wait_for(lambda: "joined the robot “turtle”" in caplog.text, "the words of its arrival")
+            wait_for(lambda: "the robot “turtle” is lost" in caplog.text, "the words of its loss")
+        finally:
+            loop.end()
+            thread.join()
+    assert f"connected to unixsock-stream/{folder}/z" in caplog.text
 
 
 def test_the_water_advances_by_the_board_s_clock_only(robot: Robot) -> None:

@@ -19,10 +19,10 @@ def with_address(scenario: Callable[[Served], Awaitable[None]]) -> Callable[[Ser
     return run
 
 
-def command(served: Served) -> None:
+def command(served: Served, *, over: bool = False) -> None:
     """Arm the robot, as a command in a shell does it."""
     folder = served.settings.data
-    with in_control(folder):
+    with in_control(folder, over=over):
         ask(folder, "POST", "/robot/commands/arm")
         renew_control(folder)
         ask(folder, "POST", "/robot/commands/arm")
@@ -41,10 +41,21 @@ def test_a_command_does_not_take_control_over(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with open_page(served) as page:
             await page.ask("/control/take")
-            with pytest.raises(SetupError, match="Control is with the shell of this computer"):
+            with pytest.raises(SetupError, match=r"Control is with the shell of this .* with --take-over"):
                 await asyncio.to_thread(command, served)
             assert served.runtime.asked == []
             assert served.container.arbiter.lease.holder == page.client
+
+    play(settings, with_address(scenario))
+
+
+def test_a_command_takes_control_over_on_purpose(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with open_page(served) as page:
+            await page.ask("/control/take")
+            await asyncio.to_thread(command, served, over=True)
+            assert served.runtime.asked == [("arm", {})] * 2
+            assert served.container.arbiter.lease.holder is None
 
     play(settings, with_address(scenario))
 
@@ -55,7 +66,7 @@ def test_a_command_whose_control_is_taken_over_does_not_take_it_back(settings: S
 
             def lose() -> None:
                 folder = served.settings.data
-                with in_control(folder):
+                with in_control(folder, over=False):
                     asyncio.run_coroutine_threadsafe(page.ask("/control/take?over=true"), loop).result()
                     renew_control(folder)
                     ask(folder, "POST", "/robot/commands/arm")
