@@ -13,6 +13,13 @@ export const operate = {
     events: 'Events',
     own: 'Own',
   },
+  surface: {
+    above: (metres: string) =>
+      `The depth is ${metres} m above the surface. Probably the weather has changed since the board measured the air’s pressure, or it was switched on under water.`,
+    air: (hectopascals: string) =>
+      `All depths are uncertain: ${hectopascals} hPa, which the board took for the surface’s pressure, is not the air’s. It was switched on under water, or its sensor is damaged.`,
+    lost: 'The depth is uncertain: the board lost its supply while it was armed or under water.',
+  },
   arm: {
     title: 'Arm',
     titleReplay: 'Arming',
