@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.control.faults import BY_NAME
 from tests.in_the_loop import CUT_SECONDS
 from tests.stack import ROOT
 from tests.two_hosts import available
@@ -68,6 +69,11 @@ def test_a_lost_simulator_is_a_fault_and_stops_the_robot(
     events = table(archive, "event")
     lost = next(event for event in events if "The simulator has been silent for 0.5 s" in event["text"])
     assert (lost["kind"], lost["severity"]) == ("simulator_silent", "alarm")
+    # What else it brings is a consequence of it: the page shows the cause first.
+    faults = {
+        event["kind"] for event in events if float(event["time [s]"]) >= float(lost["time [s]"])
+    } & BY_NAME.keys()
+    assert faults <= {"simulator_silent", *BY_NAME["simulator_silent"].consequences}
     armed = next(float(event["time [s]"]) for event in events if event["kind"] == "armed")
     disarmed = next(float(event["time [s]"]) for event in events if event["kind"] == "disarmed")
     times = [float(line["time [s]"]) for line in table(archive, "depth")]

@@ -38,6 +38,9 @@ class Monitor:
         self._newest = next(self._states, self._newest)
         return self._newest
 
+    def silence(self) -> None:
+        """A state that comes is a present one."""
+
 
 def executor(settings: Settings, monitor: Monitor) -> LiveExecutor:
     nobody = cast(Any, None)
