@@ -184,4 +184,11 @@ describe('readAt', () => {
   ])('reads at %f s over %f s', (time, width, expected) => {
     expect(read(time, width)).toEqual(expected);
   });
+
+  it('reads angles on both sides of the wrap as the short way between them', () => {
+    const angles = new RowRing(ROW_TOPICS.control, 3);
+    angles.append(new DataView(join(...[3.125, -3.125].map((error, at) => rowBytes(ROW_TOPICS.control, 1 + at / 10, { error: [error] }))).buffer), 0);
+    const { least, most } = readAt(angles, angles.column('error'), 1, 0.5, 3, true) ?? { least: NaN, most: NaN };
+    expect([least, most]).toEqual([3.125, expect.closeTo(2 * Math.PI - 3.125, 6)]);
+  });
 });

@@ -1,4 +1,5 @@
 import { describe, expect, it } from 'vitest';
+import { AnglePen, wrapRange } from '../src/charts/angles';
 import { Columns, type Span } from '../src/charts/columns';
 import { paintTrace, type Scale } from '../src/charts/paint';
 import { ROW_TOPICS } from '../src/generated/topics';
@@ -12,20 +13,20 @@ const SCALE: Scale = { left: 0, column: 1, zero: 100, unit: -10 };
 const WIDE = 1.75;
 
 /** Samples of one value a column, or several where a column has a list of them. */
-function columnsOf(values: readonly (number | readonly number[])[]): Columns {
+function columnsOf(values: readonly (number | readonly number[])[], angle = false): Columns {
   const rows = values.flatMap((value, column) => {
     const some = typeof value === 'number' ? [value] : value;
     return some.map((one, at) => rowBytes(topic, column + (at + 0.5) / some.length, { error: [one] }));
   });
   const ring = new RowRing(topic, rows.length);
   ring.append(new DataView(join(...rows).buffer), -Infinity);
-  const columns = new Columns(ring, ring.column('error'));
+  const columns = new Columns(ring, ring.column('error'), angle);
   columns.update(SPAN, 1.5);
   return columns;
 }
 
 /** What is painted: the lines, each by its corners, and how wide they are. */
-function painted(columns: Columns) {
+function painted(columns: Columns, angle = false) {
   const lines: (readonly [number, number])[][] = [];
   const context = {
     lineWidth: WIDE,
@@ -34,7 +35,8 @@ function painted(columns: Columns) {
     lineTo: (x: number, y: number) => lines.at(-1)?.push([x, y]),
     stroke: () => undefined,
   };
-  paintTrace(context as unknown as CanvasRenderingContext2D, columns, SPAN, SCALE, null, null);
+  const canvas = context as unknown as CanvasRenderingContext2D;
+  paintTrace(canvas, columns, SPAN, SCALE, null, null, angle ? new AnglePen(canvas, SCALE.zero, SCALE.unit) : canvas);
   return { lines, width: context.lineWidth };
 }
 
@@ -96,5 +98,42 @@ describe('a painted trace', () => {
       expect(Math.min(...reached)).toBeCloseTo(Math.min(...some), 4);
       expect(Math.max(...reached)).toBeCloseTo(Math.max(...some), 4);
     });
+  });
+});
+
+describe('a painted angle', () => {
+  const EDGES = [100 - 10 * Math.PI, 100 + 10 * Math.PI];
+  /** The longest way up or down of any piece of the lines, px. */
+  const steepest = (lines: readonly (readonly (readonly [number, number])[])[]) =>
+    Math.max(...lines.flatMap((line) => line.slice(1).map(([, y], at) => Math.abs(y - (line[at]?.[1] ?? NaN)))));
+  const wrapped = (angle: number) => Math.atan2(Math.sin(angle), Math.cos(angle));
+
+  it.each([1, -1])('ends at one edge and goes on at the other where it wraps, turning %i', (way) => {
+    const { lines } = painted(columnsOf([2.9, 3.1, -3.1, -2.9].map((angle) => way * angle), true), true);
+    expect(lines).toHaveLength(2);
+    expect(lines[0]?.at(-1)?.[1]).toBeCloseTo(EDGES[way > 0 ? 0 : 1] ?? NaN, 4);
+    expect(lines[1]?.[0]?.[1]).toBeCloseTo(EDGES[way > 0 ? 1 : 0] ?? NaN, 4);
+    expect(steepest(lines)).toBeLessThan(2.1);
+  });
+
+  it('has no line from edge to edge where it trembles about the wrap within its columns', () => {
+    const trembling = Array.from({ length: MANY }, (_, at) => [0.02, -0.03, 0.01, -0.01].map((by) => wrapped(Math.PI + by + 0.02 * Math.sin(at))));
+    const { lines } = painted(columnsOf(trembling, true), true);
+    expect(steepest(lines)).toBeLessThan(1);
+    for (const [, y] of lines.flat()) expect(Math.min(...EDGES.map((edge) => Math.abs(y - edge)))).toBeLessThan(1);
+  });
+
+  it('turns several times, and never leaves its range', () => {
+    const { lines } = painted(columnsOf(Array.from({ length: MANY }, (_, at) => wrapped(at * 0.5)), true), true);
+    expect(lines).toHaveLength(1 + Math.round((MANY * 0.5) / (2 * Math.PI)));
+    expect(steepest(lines)).toBeLessThan(5.1);
+    for (const [, y] of lines.flat()) expect(Math.abs(y - 100)).toBeLessThan(10 * Math.PI + 1e-6);
+  });
+
+  it('takes all of a turn only where it wraps', () => {
+    expect(wrapRange([3, 3.4])).toEqual([-Math.PI, Math.PI]);
+    expect(wrapRange([-0.5, 1])).toEqual([-0.5, 1]);
+    const [least, most] = wrapRange([6.2, 6.4]);
+    expect([least, most]).toEqual([expect.closeTo(6.2 - 2 * Math.PI, 9), expect.closeTo(6.4 - 2 * Math.PI, 9)]);
   });
 });

@@ -1,4 +1,5 @@
 import type { Column } from '../live/ring';
+import { unwrap } from './angles';
 import type { View } from './view';
 
 /** The part of a ring that `Columns` reads. */
@@ -53,12 +54,19 @@ export class Columns {
   #row = 0;
   #revision = -1;
   #before = NaN;
+  #newest = NaN;
 
-  /** @param ring whose `column` this is */
+  /** @param ring whose `column` this is; @param angle whether its values are angles, which are unwrapped */
   constructor(
     private readonly ring: TimedColumns,
     private readonly column: Column,
+    private readonly angle = false,
   ) {}
+
+  /** The newest value that was taken in; NaN before the first. */
+  get newest(): number {
+    return this.#newest;
+  }
 
   /** Where the column of this number stands in the arrays. */
   readonly place = (number: number): number => number % this.#room;
@@ -98,6 +106,15 @@ export class Columns {
     return least <= most ? [least, most] : null;
   }
 
+  /** The value with which the line begins in `span`; NaN where that is empty. */
+  oldest({ first, columns }: Span): number {
+    for (let number = first; number < first + columns; number += 1) {
+      const place = this.place(number);
+      if (this.order[place] !== Order.NONE) return (this.order[place] === Order.RISING ? this.low[place] : this.high[place]) ?? NaN;
+    }
+    return NaN;
+  }
+
   #begin({ first, columns, width }: Span): void {
     if (columns > this.#room) {
       this.#room = columns + 64;
@@ -110,7 +127,7 @@ export class Columns {
     this.#end = first;
     this.#revision = this.ring.revision;
     this.#row = this.ring.end - this.ring.length + this.ring.firstSince(first * width);
-    this.#before = NaN;
+    this.#before = this.#newest = NaN;
   }
 
   #take(end: number, gap: number): void {
@@ -123,7 +140,8 @@ export class Columns {
       const time = ring.time[at] ?? NaN;
       const number = Math.floor(time / width);
       if (number >= end) break;
-      const value = column[at] ?? NaN;
+      const read = column[at] ?? NaN;
+      const value = this.angle ? unwrap(read, this.#newest) : read;
       if (number < this.#first) continue;
       if (Number.isNaN(value)) {
         // Until the next value the line is broken, however soon that comes.
@@ -143,6 +161,7 @@ export class Columns {
         order[place] = Order.RISING;
       }
       this.#before = time;
+      this.#newest = value;
     }
     this.#row = row;
   }

@@ -1,3 +1,4 @@
+import type { Pen } from './angles';
 import { Order, type Columns, type Span } from './columns';
 
 /** Where columns and values lie on the canvas, in pixels. */
@@ -24,6 +25,8 @@ const THIN = 1;
  * `before` and `after` are the samples next to the span, to which the line goes on where it does. Where it goes
  * up and down much, as with noise, the line is thin: wide ones that lie so close take a browser ten times as long. It
  * then begins each column at the nearer end, since the order cannot be seen and the way between is drawn twice else.
+ *
+ * `pen` draws the line on `context`; that itself where it is left out.
  */
 export function paintTrace(
   context: CanvasRenderingContext2D,
@@ -32,6 +35,7 @@ export function paintTrace(
   scale: Scale,
   before: Spot | null,
   after: Spot | null,
+  pen: Pen = context,
 ): void {
   const dense = travel(columns, span) * Math.abs(scale.unit) > DENSE;
   if (dense) context.lineWidth = THIN;
@@ -42,11 +46,11 @@ export function paintTrace(
   let level = NaN;
   let y = before?.[1] ?? NaN;
   const rest = () => {
-    if (!Number.isNaN(level)) context.lineTo(level, y);
+    if (!Number.isNaN(level)) pen.lineTo(level, y);
     level = NaN;
   };
   context.beginPath();
-  if (before !== null) context.moveTo(...before);
+  if (before !== null) pen.moveTo(...before);
   for (let index = 0; index < span.columns; index += 1) {
     const place = columns.place(span.first + index);
     const kind = order[place];
@@ -62,23 +66,23 @@ export function paintTrace(
       if (open && least === y) level = x + column / 2;
       else {
         rest();
-        if (open) context.lineTo(x + column / 2, least);
-        else context.moveTo(x + column / 2, least);
+        if (open) pen.lineTo(x + column / 2, least);
+        else pen.moveTo(x + column / 2, least);
       }
       y = least;
     } else {
       rest();
       const rising = dense && open ? Math.abs(least - y) < Math.abs(most - y) : kind === Order.RISING;
       const begin = rising ? least : most;
-      if (open) context.lineTo(x + column / 4, begin);
-      else context.moveTo(x + column / 4, begin);
+      if (open) pen.lineTo(x + column / 4, begin);
+      else pen.moveTo(x + column / 4, begin);
       y = rising ? most : least;
-      context.lineTo(x + 0.75 * column, y);
+      pen.lineTo(x + 0.75 * column, y);
     }
     open = true;
   }
   rest();
-  if (after !== null && open) context.lineTo(...after);
+  if (after !== null && open) pen.lineTo(...after);
   context.stroke();
 }
 

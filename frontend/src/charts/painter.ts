@@ -2,6 +2,7 @@ import type { Live } from '../live/live.svelte';
 import { staleAfter } from '../live/freshness';
 import { Pace } from '../live/pace';
 import type { Column } from '../live/ring';
+import { AnglePen, unwrap, wrapRange } from './angles';
 import { Columns, spanOf, type Span, type TimedColumns } from './columns';
 import type { Frame } from './frame';
 import { paintBand, paintFlags, paintTrace, type Scale, type Spot } from './paint';
@@ -77,7 +78,7 @@ export class StripPainter {
   ) {
     this.#lines = strip.traces.map(({ signal, colour }) => {
       const { ring, column } = source(live, signal);
-      return { signal, ring, column, columns: new Columns(ring, column), colour: options.token(colour) };
+      return { signal, ring, column, columns: new Columns(ring, column, signal.angle), colour: options.token(colour) };
     });
     const { info, caution, alarm } = SEVERITIES;
     this.#colours = {
@@ -146,7 +147,8 @@ export class StripPainter {
       context.lineWidth = line.signal.wanted ? 1.5 : 1.75;
       context.setLineDash(line.signal.wanted ? DASH : []);
       const [before, after] = neighbours(line, span, scale, gaps[at] ?? Infinity);
-      paintTrace(context, line.columns, span, scale, before, after);
+      const pen = line.signal.angle ? new AnglePen(context, scale.zero, scale.unit) : context;
+      paintTrace(context, line.columns, span, scale, before, after, pen);
     });
     context.setLineDash([]);
     context.lineWidth = 1;
@@ -169,9 +171,10 @@ export class StripPainter {
   #choose(span: Span): Range {
     let least = Infinity;
     let most = -Infinity;
-    for (const { columns } of this.#lines) {
-      const range = columns.range(span);
-      if (range === null) continue;
+    for (const { columns, signal } of this.#lines) {
+      const found = columns.range(span);
+      if (found === null) continue;
+      const range = signal.angle ? wrapRange(found) : found;
       least = Math.min(least, range[0]);
       most = Math.max(most, range[1]);
     }
@@ -183,18 +186,19 @@ export class StripPainter {
 
 /** The samples next to the span on either side, where the line goes on to them. */
 function neighbours(line: Line, span: Span, scale: Scale, gap: number): [Spot | null, Spot | null] {
-  const { ring, column } = line;
+  const { ring, column, columns, signal } = line;
   const start = span.first * span.width;
   const end = start + span.columns * span.width;
   const first = ring.firstSince(start);
   const next = ring.firstSince(end);
-  const spot = (order: number): Spot | null => {
+  const spot = (order: number, beside: number): Spot | null => {
     const place = ring.place(order);
-    const value = column[place] ?? NaN;
+    const read = column[place] ?? NaN;
+    const value = signal.angle ? unwrap(read, beside) : read;
     if (Number.isNaN(value)) return null;
     return [scale.left + (((ring.time[place] ?? NaN) - start) / span.width) * scale.column, scale.zero + scale.unit * value];
   };
   const near = (order: number) =>
     order > 0 && order < ring.length && (ring.time[ring.place(order)] ?? 0) - (ring.time[ring.place(order - 1)] ?? 0) <= gap;
-  return [near(first) ? spot(first - 1) : null, near(next) ? spot(next) : null];
+  return [near(first) ? spot(first - 1, columns.oldest(span)) : null, near(next) ? spot(next, columns.newest) : null];
 }

@@ -20,6 +20,8 @@ export interface Signal {
   readonly wanted: boolean;
   /** a depth, which is drawn downwards */
   readonly downwards: boolean;
+  /** after π comes -π */
+  readonly angle: boolean;
 }
 
 const QUATERNION = ['w', 'x', 'y', 'z'];
@@ -62,6 +64,7 @@ function signalsOf(topic: keyof Rows, field: Field): Signal[] {
       meaning: field.meaning,
       wanted: WANTED.test(field.name),
       downwards: DEPTHS.has(name),
+      angle: field.unit === 'rad',
     };
   });
 }

@@ -185,8 +185,10 @@ class Comparer:
             return {}
         view = _shift(query.view, one.offset) if query.view else Span(0.0, max(one.row.duration, 1e-3))
         found = self._samples.read(one.recording, query.signals)
+        known = list_signals(one.recording, {split(name)[0] for name in found})
+        angles = {signal.name for signal in known if signal.unit == "rad"}
         drawn = {
-            name: decimate(found[name], view.start, view.end, query.points)
+            name: decimate(found[name], view.start, view.end, query.points, angle=name in angles)
             for name in query.signals
             if name in found
         }

@@ -1,7 +1,9 @@
+from math import pi
+
 import numpy as np
 import pytest
 
-from server.features.comparison.decimation import decimate
+from server.features.comparison.decimation import Envelope, decimate
 from server.features.metrics.series import Series
 
 
@@ -57,3 +59,35 @@ def test_nan_does_not_hide_other_samples() -> None:
     values[::3] = np.nan
     drawn = decimate(Series(times, values), 0.0, 20.0, 20)
     assert drawn.low.tolist() == drawn.high.tolist() == [1.0] * drawn.time.size
+
+
+def longest_way(drawn: Envelope) -> float:
+    """The longest way up or down of the line through each column's minimum and maximum."""
+    line = np.stack([drawn.low, drawn.high], axis=1).ravel()
+    return float(np.nanmax(np.abs(np.diff(line))))
+
+
+@pytest.mark.parametrize("points", [60, 10_000])
+@pytest.mark.parametrize("way", [1, -1])
+def test_an_angle_breaks_where_it_wraps(points: int, way: int) -> None:
+    times = np.arange(0, 100, 0.02)
+    turning = way * (2.0 + 0.05 * times)
+    angles = np.arctan2(np.sin(turning), np.cos(turning))
+    drawn = decimate(Series(times, angles), 0.0, 100.0, points, angle=True)
+    assert longest_way(drawn) < 0.3
+    assert np.isnan(drawn.low).sum() == np.isnan(drawn.high).sum() == 1
+    assert (np.nanmin(drawn.low), np.nanmax(drawn.high)) == (angles.min(), angles.max())
+    other = decimate(Series(times, angles), 0.0, 100.0, points)
+    assert longest_way(other) > 6
+
+
+def test_an_angle_that_trembles_about_the_wrap_stays_at_the_edges() -> None:
+    times = np.arange(0, 100, 0.02)
+    turning = pi + 0.1 * np.sin(50 * times)
+    angles = np.arctan2(np.sin(turning), np.cos(turning))
+    angles[::7] = np.nan
+    drawn = decimate(Series(times, angles), 0.0, 100.0, 50, angle=True)
+    assert longest_way(drawn) < 0.2
+    assert np.diff(drawn.time).min() >= 0
+    assert drawn.time.size <= 4 * 52
+    assert min(np.nanmin(np.abs(drawn.low)), np.nanmin(np.abs(drawn.high))) > pi - 0.11
