@@ -57,11 +57,30 @@ export function timeOfDay(date: Date, tenths = false): string {
   return tenths ? `${seconds}.${Math.floor(date.getMilliseconds() / 100)}` : seconds;
 }
 
-/** Local date and time of day of an ISO 8601 time. */
-export function dateTime(iso: string): string {
-  const date = new Date(iso);
+/** Local date and time of day; the zone has to be named beside it. */
+export function dateTime(at: Date | string): string {
+  const date = new Date(at);
   const day = date.toLocaleDateString(undefined, { year: 'numeric', month: 'short', day: 'numeric' });
   return `${day}, ${timeOfDay(date)}`;
+}
+
+/** Local date and time of day with the zone's offset, which may be another in summer. */
+export function zonedDateTime(at: Date | string): string {
+  const date = new Date(at);
+  return `${dateTime(date)} ${zoneOffset(date)}`;
+}
+
+/** How far local time is ahead of UTC at that time: UTC, UTC+2, UTC−3:30. */
+export function zoneOffset(date: Date): string {
+  const minutes = -date.getTimezoneOffset();
+  if (minutes === 0) return 'UTC';
+  const [hours, rest] = [Math.floor(Math.abs(minutes) / 60), Math.abs(minutes) % 60];
+  return `UTC${minutes < 0 ? MINUS : '+'}${hours}${rest === 0 ? '' : `:${String(rest).padStart(2, '0')}`}`;
+}
+
+/** The heading of a list of local times, with the zone's name such as Europe/Tallinn. */
+export function inZone(heading: string): string {
+  return `${heading}, ${new Intl.DateTimeFormat().resolvedOptions().timeZone}`;
 }
 
 /** A line speed as people say it: 250k. */

@@ -1,5 +1,5 @@
-import { describe, expect, it } from 'vitest';
-import { age, baud, bytes, count, duration, fixed, heading, MISSING } from '../src/format';
+import { afterEach, describe, expect, it, vi } from 'vitest';
+import { age, baud, bytes, count, dateTime, duration, fixed, heading, inZone, MISSING, zonedDateTime, zoneOffset } from '../src/format';
 
 describe('fixed', () => {
   it('keeps its decimals and writes a true minus', () => {
@@ -48,4 +48,25 @@ it('writes counts and sizes', () => {
   expect(count(1234567)).toBe('1\u202f234\u202f567');
   expect([999, 1500, 2_340_000, 5e9].map(bytes)).toEqual(['999 B', '1.5 kB', '2.3 MB', '5.00 GB']);
   expect([250_000, 9600, 115_200].map(baud)).toEqual(['250k', '9600', '115200']);
+});
+
+describe('local times', () => {
+  afterEach(() => vi.restoreAllMocks());
+
+  it.each([
+    [-120, 'UTC+2'],
+    [-345, 'UTC+5:45'],
+    [210, 'UTC\u22123:30'],
+    [0, 'UTC'],
+  ])('name their zone, %i min from UTC', (minutes, offset) => {
+    vi.spyOn(Date.prototype, 'getTimezoneOffset').mockReturnValue(minutes);
+    expect(zoneOffset(new Date())).toBe(offset);
+    expect(zonedDateTime('2026-01-15T12:00:00Z')).toBe(`${dateTime('2026-01-15T12:00:00Z')} ${offset}`);
+  });
+
+  it('name the zone of a whole list in its heading', () => {
+    const options = new Intl.DateTimeFormat().resolvedOptions();
+    vi.spyOn(Intl.DateTimeFormat.prototype, 'resolvedOptions').mockReturnValue({ ...options, timeZone: 'Europe/Tallinn' });
+    expect(inZone('Started')).toBe('Started, Europe/Tallinn');
+  });
 });

@@ -34,9 +34,16 @@ def check_start(document: MissionDocument, senses: MissionSenses, parameters: Re
 def check_sights(document: MissionDocument, settings: VisionSettings) -> list[str]:
     """Returns what steps wait to see and a robot with these settings cannot, each with the step's path."""
     return [
-        f"Step {step.place}: {problem}"
+        f"Step {place}: {problem}"
+        for place, sight in list_sights(document)
+        if (problem := find_sight_problem(sight, settings))
+    ]
+
+
+def list_sights(document: MissionDocument) -> list[tuple[str, str]]:
+    """Returns what steps wait to see, each with the step's path."""
+    return [
+        (step.place, step.node.sees)
         for step in document.root.walk()
-        if isinstance(step.node, IsLeaf | WaitForLeaf)
-        and step.node.sees is not None
-        and (problem := find_sight_problem(step.node.sees, settings))
+        if isinstance(step.node, IsLeaf | WaitForLeaf) and step.node.sees is not None
     ]

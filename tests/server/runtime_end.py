@@ -58,8 +58,8 @@ class RuntimeEnd:
             self._answer(name, gate)
         self.frames: dict[str, Any] = {"time": 1.0, "frames": [], "fault": None}
         self._messages.serve("query/frames", lambda _: self.frames)
-        settings = VisionSettings().table()
-        self._messages.serve("query/vision", lambda _: {"settings": settings, "configured": settings})
+        self.vision = VisionSettings().table()
+        self._messages.serve("query/vision", lambda _: {"settings": self.vision, "configured": self.vision})
         self.picked: list[dict[str, Any]] = []
         self._messages.serve("query/pick", self._pick)
         self.state: dict[str, Any] = {"mode": "disarmed", "loops": []}

@@ -1027,8 +1027,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Check a mission: its problems by entry, or its summary
-         * @description Check a mission: its problems by entry, or its summary.
+         * Check a mission: its problems by entry, or its summary and what the robot cannot see
+         * @description Check a mission: its problems by entry, or its summary and what the robot cannot see.
          */
         post: operations["checkMission"];
         delete?: never;
@@ -4639,6 +4639,11 @@ export interface components {
             table: {
                 [key: string]: components["schemas"]["JsonValue"];
             } | null;
+            /**
+             * Unseen
+             * @description what steps wait to see and the robot with its vision settings cannot, each with the step's path; empty while the robot does not answer
+             */
+            unseen: string[];
         };
         /**
          * MissionEndCommand

@@ -37,6 +37,7 @@ export const missions = {
     unsaved: 'Not saved',
     valid: 'Valid',
     atMost: (seconds: string, depth: string, time: string) => `takes ${seconds} at most · limits ${depth} m, ${time}`,
+    unseen: 'But with the robot’s vision it would not begin:',
     invalid: (count: number) => (count === 1 ? '1 problem' : `${count} problems`),
     undo: 'Undo',
     redo: 'Redo',

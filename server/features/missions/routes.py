@@ -7,6 +7,11 @@ from pydantic import TypeAdapter
 from robot_runtime.contract.commands import MissionCommand
 from robot_runtime.contract.documents import Mission
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.parsing import parse
+from robot_runtime.contract.vision_settings import VisionSettings
+from robot_runtime.errors import RefusedError
+from robot_runtime.missions.checks import check_sights, list_sights
+from robot_runtime.missions.document import MissionDocument
 from server.features.lease.admission import admit, require_control
 from server.features.missions.library import MissionLibrary, UnknownMissionError, read_table
 from server.features.missions.nodes import list_node_kinds
@@ -33,7 +38,7 @@ from server.http.sign_in.policy import Need
 from server.platform.disk_space import FileWriteError, check_room
 from server.platform.errors import UnavailableError
 from server.platform.settings import Settings
-from server.stream.bridge import Bridge
+from server.stream.bridge import Bridge, RuntimeSilentError
 
 REFUSED = {409: "Refused now", 422: "The mission cannot be used"}
 
@@ -78,14 +83,27 @@ def list_mission_nodes() -> list[MissionNodeKind]:
 
 
 @router.operation("POST /check", Need.VIEWER, TooManyHeavyError)
-def check_mission(_: Turn, settings: Provided[Settings], body: MissionBody) -> MissionCheck:
-    """Check a mission: its problems by entry, or its summary."""
-    table = read_table(body.text)
+async def check_mission(
+    _: Turn, settings: Provided[Settings], bridge: Provided[Bridge], body: MissionBody
+) -> MissionCheck:
+    """Check a mission: its problems by entry, or its summary and what the robot cannot see."""
+    table = await run_in_threadpool(read_table, body.text)
     try:
-        summary = summarize_mission(_library(settings).read(body.text))
-        return MissionCheck(problems=[], summary=summary, table=table)
+        mission = await run_in_threadpool(_library(settings).read, body.text)
     except ConfigError as problem:
-        return MissionCheck(problems=list(problem.problems), summary=None, table=table)
+        return MissionCheck(problems=list(problem.problems), summary=None, unseen=[], table=table)
+    unseen = await _find_unseen(mission, bridge)
+    return MissionCheck(problems=[], summary=summarize_mission(mission), unseen=unseen, table=table)
+
+
+async def _find_unseen(mission: MissionDocument, bridge: Bridge) -> list[str]:
+    if not list_sights(mission):
+        return []
+    try:
+        answer = await bridge.query("vision")
+    except (RefusedError, RuntimeSilentError):
+        return []
+    return check_sights(mission, parse(VisionSettings, answer["settings"]))
 
 
 @router.operation("POST /start", Need.CONTROL, REFUSED, *COMMAND_ERRORS, status_code=201)

@@ -84,6 +84,10 @@ class MissionCheck(BaseModel):
 
     problems: list[EntryProblem]
     summary: MissionSummary | None
+    unseen: list[str] = Field(
+        description="what steps wait to see and the robot with its vision settings cannot, each with the "
+        "step's path; empty while the robot does not answer"
+    )
     table: dict[str, JsonValue] | None = Field(description="what the TOML says; null where it is no TOML")
 
 

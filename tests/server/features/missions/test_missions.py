@@ -262,6 +262,25 @@ def test_the_session_that_a_mission_starts_names_who_started_it(settings: Settin
     play(settings, scenario)
 
 
+def test_a_check_names_what_the_robot_s_vision_settings_cannot_see(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async def unseen(text: str) -> list[str]:
+            answer = (await served.api.post("/missions/check", json={"text": text})).json()
+            assert answer["problems"] == []
+            return list(answer["unseen"])
+
+        typo = mission("{ do = 'wait_for', sees = 'purpel', timeout = 9 }")
+        (said,) = await unseen(typo)
+        assert said.startswith("Step 1: Nothing is called 'purpel'; there are red,")
+        assert await unseen(mission("{ do = 'wait_for', sees = 'red', timeout = 9 }")) == []
+        assert await unseen(OWN) == []
+        # Those in force decide, not those of a file.
+        served.runtime.vision["colours"]["purpel"] = served.runtime.vision["colours"]["red"]
+        assert await unseen(typo) == []
+
+    play(settings, scenario)
+
+
 def test_the_shell_s_check_names_what_the_camera_would_never_see(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
