@@ -60,6 +60,10 @@ def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, t
     strokes.get_by_role("button").nth(2).hover()
     expect(page.get_by_text("The robot was never armed in this session.")).to_be_visible()
 
+    page.set_viewport_size({"width": 1100, "height": 900})
+    expect(page.locator(".main-svg").first).to_have_attribute("width", re.compile("^10"))
+    expect(page.locator(LINES).first).to_be_visible()
+
     page.get_by_label("Align at").select_option("armed")
     expect(page.get_by_text("never armed in this session. It is not drawn.")).to_be_visible(timeout=STEP_MS)
     expect(page.get_by_text("s since arming")).to_be_visible()

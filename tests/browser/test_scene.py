@@ -25,6 +25,8 @@ def test_the_bystander_shows_the_robot_and_can_be_turned(any_page: Page) -> None
     assert answered.value.status == 204
     expect(any_page.get_by_role("button", name="top", exact=True)).to_have_attribute("aria-pressed", "true")
 
+    any_page.reload()
+    expect(picture).to_be_visible(timeout=SCENE_MS)
     any_page.get_by_role("button", name="robot", exact=True).click()
     expect(picture).to_be_hidden()
 

@@ -129,7 +129,7 @@ export const sessions = {
     formats: {
       csv: { title: 'CSV, one table per topic', text: 'For MATLAB, scripts and spreadsheets. Every sample at its own time.' },
       'csv-grid': { title: 'CSV, one joined table', text: 'Selected columns side by side, one row per time step.' },
-      xlsx: { title: 'Excel workbook', text: 'For Excel and LibreOffice: a sheet per topic, with numbers and dates of every country.' },
+      xlsx: { title: 'Excel workbook', text: 'For Excel and LibreOffice in any language: one sheet per topic.' },
       mcap: { title: 'MCAP', text: 'For Foxglove and Lichtblick: depth, attitude, camera and log.' },
       parquet: { title: 'Parquet', text: 'For pandas and other tools for large tables: small files, exact numbers.' },
       jsonl: { title: 'JSON Lines', text: 'For programs: one object per sample, ordered by time.' },
