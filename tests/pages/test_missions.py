@@ -231,6 +231,11 @@ def test_toml_changes_the_cards_and_cards_write_toml(page: Page, site: Site) -> 
     expect(card(page, "3")).to_contain_text("remark")
     assert tomllib.loads(toml.input_value()) == document
 
+    toml.fill(text.replace("red", "purpel"))
+    expect(page.get_by_text("with the robot’s vision it would not begin")).to_be_visible()
+    expect(page.get_by_text("Step 2: Nothing is called 'purpel'; there are red,")).to_be_visible()
+    expect(page.get_by_text(VALID)).to_be_visible()
+
 
 def test_an_emptied_text_is_checked_and_can_be_undone(page: Page, site: Site) -> None:
     page.goto(f"{site.url}/#/missions")

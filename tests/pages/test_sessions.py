@@ -46,6 +46,7 @@ def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
     page.get_by_label("Search sessions").fill("north hover")
     expect(found).to_have_count(2)
     expect(found.nth(1)).to_contain_text("hover in a current")
+    expect(found.first.get_by_role("columnheader", name=re.compile("^Started, [A-Z]"))).to_be_visible()
     page.get_by_label("Search sessions").fill("nothing is like this")
     expect(page.get_by_text("No matching sessions")).to_be_visible()
     page.get_by_role("button", name=re.compile("^Show all")).click()

@@ -66,7 +66,7 @@ export const parts = {
   notLoaded: 'This part of the page could not be loaded: the server is offline or was updated. The robot is not affected.',
   closeHint: 'To close, press ✕ or outside. Esc is STOP.',
   camera: (detected: readonly string[]) => `Camera: ${detected.length > 0 ? `${detected.join(', ')} detected` : 'nothing detected'}`,
-  armed: { unknown: 'armed –', yes: 'ARMED', no: 'Disarmed' },
+  armed: { unknown: 'Armed?', unknownHint: 'Not known: nothing newer has come from the robot', yes: 'ARMED', no: 'Disarmed' },
   battery: { title: 'Battery', low: 'low' },
   mode: {
     title: 'Mode and controller',

@@ -7,7 +7,6 @@ export const replay = {
   sessions: 'Go to Sessions',
   refused: 'This is a replay. Commands are not possible here. Exit the replay first.',
   of: 'of',
-  date: (date: string) => `, ${date}`,
   states: 'State of the robot in the recording',
   exit: 'Exit',
   exitLong: 'replay',
