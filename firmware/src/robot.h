@@ -18,6 +18,8 @@ class Robot {
   // One pass of the main loop: handles received messages, and one tick's work if a tick is due.
   void step();
   bool armed() const { return arming_.armed(); }
+  // Sends a line of the sketch's own to the console; without room in the queue it is dropped and counted.
+  void debug(DebugLine& line) { link_.queue_line(line); }
 
  private:
   void handle(const Message& message);

@@ -19,6 +19,7 @@ from server.platform.settings import Settings
 from tests.documents import test_commands, test_recipes
 from tests.documents.blocks import DOCS, Block, read_blocks
 from tests.notebooks.runner import NAMES, read_cells
+from tests.server.blocks import debug_block
 from tests.server.conftest import settings as settings
 from tests.server.features.doors.rig import make_token, play_open, rows_block
 from tests.server.serving import Served
@@ -80,8 +81,8 @@ def is_run(page: str, block: Block) -> bool:
     """True for a block that some test runs as it stands."""
     if block.language == "toml":
         return page in READERS or bool(block.title)
-    if page.startswith("develop/add-a-"):
-        return bool(block.title) or block.language == "sh"
+    if page.startswith("develop/add-a-") and (block.title or block.language == "sh"):
+        return True
     if block.language in PYTHON:
         return page in ON_A_SERVER or page == "use/export.md"
     return block.language == "sh" and page in test_commands.RUN
@@ -125,7 +126,7 @@ from mucat import Robot
 robot, best, gains = Robot("http://turtle.local:8000", "mucat_..."), "hard", {"hard": (9.0, 0.4, 2.0)}
 """
 """What the cells before have made, for the blocks of a notebook's text."""
-ON_A_SERVER = ("use/doors.md", *NOTEBOOKS)
+ON_A_SERVER = ("develop/add-a-debug-line.md", "use/doors.md", *NOTEBOOKS)
 
 
 def test_the_cells_of_a_notebook_are_the_blocks_of_its_page() -> None:
@@ -179,10 +180,12 @@ def test_a_program_runs(settings: Settings, program: str) -> None:
 
 
 async def dive(served: Served) -> None:
-    """A robot at 1.2 m, which sends its depth ten times a second."""
+    """A robot at 1.2 m, which sends its depth and a line of its firmware ten times a second."""
     number = 0
     while True:
         depth = Depth(time=number, depth=1.2, pressure=113_000, temperature=18.5)
-        served.runtime.publish(rows_block("depth", number, (served.container.clock.now(), depth)))
+        now = served.container.clock.now()
+        served.runtime.publish(rows_block("depth", number, (now, depth)))
+        served.runtime.publish(debug_block(number, "passes: 40 thousand", start=now - number))
         number += 1
         await asyncio.sleep(0.1)

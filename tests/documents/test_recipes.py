@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from robot_runtime.contract.packets import Debug, DebugLevel
+from tests.board.host import BAUD, Robot, all_of
+from tests.board.rig import OPTIBOOT, Rig
 from tests.documents.blocks import apply, read_blocks
 from tests.sources import copy_sources
 
@@ -61,6 +64,19 @@ def test_a_command_is_added(tree: Path) -> None:
     assert "| `POST /api/robot/commands/say` | control |" in (tree / "docs/reference/http.md").read_text()
     assert "  say: SayCommand;" in (tree / "frontend/src/generated/commands.ts").read_text()
     assert len(changed_modules("develop/add-a-command.md")) == 2
+
+
+def test_a_debug_line_is_added(tree: Path, tmp_path: Path) -> None:
+    # Its firmware is built into the copy: that of the tree belongs to other tests.
+    (tree / "build").unlink()
+    follow("develop/add-a-debug-line.md", tree)
+    firmware = tree / "build/firmware/robot.elf"
+    with Rig(firmware, tmp_path, "--bootloader", str(OPTIBOOT), baud=BAUD) as rig:
+        board = Robot(rig)
+        board.listen(0.3)
+        board.greet()
+        lines = [one for one in all_of(board.converse(3.0), Debug) if one.level == DebugLevel.INFO]
+    assert sum("thousand" in one.text for one in lines) >= 2, lines
 
 
 def test_a_controller_is_added(tree: Path) -> None:
