@@ -15,6 +15,9 @@ SMALL_MEMORY = 1_000_000_000
 """Bytes; with less a Raspberry Pi needs compressed swap."""
 GROUPS = ("dialout", "gpio", "video")
 REINSTALL = "sudo mucat uninstall (the data stay), then sudo sh RELEASE/install.sh; or make setup"
+PI_LINES = ("serial0", "serial1", "ttyS0", "ttyAMA")
+"""Names of a Raspberry Pi's own serial lines."""
+DEBUG_CONNECTOR = "ttyAMA10"
 RESET_LABELS = ("pinctrl-bcm", "pinctrl-rp1")
 """Beginnings of the labels of a Raspberry Pi's own GPIO chips."""
 
@@ -129,15 +132,20 @@ def check_port_takers(machine: Machine) -> Finding | None:
 def check_uart(machine: Machine) -> Finding | None:
     """The Pi's serial port is the full UART: the small one follows the processor's clock."""
     report = Reporter("uart", "UART")
-    if not machine.model or machine.mode == "emulated" or not machine.port.startswith("/dev/serial"):
+    name = machine.port_target or machine.port.removeprefix("/dev/")
+    if not machine.model or machine.mode == "emulated" or not name.startswith(PI_LINES):
         return None
     lines = {line.split("#")[0].replace(" ", "") for line in machine.boot_settings.splitlines()}
     missing = [one for one in ("enable_uart=1", "dtoverlay=disable-bt") if one not in lines]
-    if machine.port_target == "ttyS0":
+    if name == "ttyS0":
         text = f"{machine.port} is the small UART (ttyS0), whose speed follows the processor's clock."
-        return report.wrong(text, "sudo mucat install, then restart the Raspberry Pi")
-    if machine.port_target.startswith("ttyAMA"):
-        return report.ok(f"{machine.port} is the full UART ({machine.port_target}).")
+        named = "" if machine.port_target else 'Set link.port in robot.toml to "/dev/serial0"; '
+        return report.wrong(text, f"{named}sudo mucat install, then restart the Raspberry Pi")
+    if name == DEBUG_CONNECTOR:
+        text = f"{machine.port} is the Raspberry Pi 5's debug connector ({name}), not pins 8 and 10."
+        return report.wrong(text, 'Set link.port in robot.toml to "/dev/ttyAMA0"')
+    if name.startswith("ttyAMA"):
+        return report.ok(f"{machine.port} is the full UART ({name}).")
     if missing:
         text = f"{machine.boot_folder}/config.txt lacks {' and '.join(missing)}."
         return report.wrong(text, "sudo mucat install, then restart the Raspberry Pi")
@@ -150,6 +158,8 @@ def check_console(machine: Machine) -> Finding | None:
     if machine.mode == "emulated" or not machine.port_there:
         return None
     names = {machine.port.removeprefix("/dev/"), machine.port_target} - {""}
+    if machine.serial0_target in names:
+        names.add("serial0")
     consoles = [
         word
         for word in machine.kernel_line.split()

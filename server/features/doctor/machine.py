@@ -60,6 +60,8 @@ class Machine:
     port_there: bool = True
     port_target: str = ""
     """Device that the port's link leads to."""
+    serial0_target: str = ""
+    """Device that /dev/serial0 leads to, by which name the kernel's console is set."""
     port_problem: str = ""
     other_ports: tuple[str, ...] = ()
     """The serial ports that are there."""
@@ -122,7 +124,7 @@ def read_machine(
     boot = next((one for one in ("boot/firmware", "boot") if (root / one / "config.txt").exists()), "")
     units = {one.name: _read(one) for one in (root / "etc/systemd/system").glob("mucat*.*")}
     user = _service_user(units.get(SERVICE, ""))
-    port = Path(settings.link.port)
+    port, serial0 = Path(settings.link.port), root / "dev/serial0"
     runtime = running_parts(settings.data.run).get("runtime")
     serves = runner_of(settings.data) is not None
     reset_label, reset_problem = _read_reset(settings.link.reset)
@@ -146,6 +148,7 @@ def read_machine(
         port=str(port),
         port_there=port.exists(),
         port_target=port.resolve().name if port.is_symlink() else "",
+        serial0_target=serial0.resolve().name if serial0.is_symlink() else "",
         port_problem="" if runtime or not thorough else _try_port(port, settings.link.baud),
         other_ports=tuple(list_ports(root / "dev")),
         port_takers=_find_port_takers(root),

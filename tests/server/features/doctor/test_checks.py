@@ -66,6 +66,12 @@ CASES: dict[str, tuple[dict[str, Any], str, str]] = {
     "port_takers: ModemManager": (BY_USB | {"port_takers": ("ModemManager",)}, "look", "ModemManager writes"),
     "port: refused": ({"port_problem": "Permission denied"}, "wrong", "Permission"),
     "uart: the small one": ({"port_target": "ttyS0"}, "wrong", "small UART"),
+    "uart: the small one, by name": (
+        {"port": "/dev/ttyS0", "port_target": ""},
+        "wrong",
+        "/dev/ttyS0 is the small UART",
+    ),
+    "uart: the debug connector": ({"port_target": "ttyAMA10"}, "wrong", "not pins 8 and 10"),
     "uart: not set": ({"port_target": "", "boot_settings": "enable_uart=1"}, "wrong", "lacks dtoverlay"),
     "uart: commented out": (
         {"port_target": "", "boot_settings": UART.replace("dt", "#dt")},
@@ -75,6 +81,16 @@ CASES: dict[str, tuple[dict[str, Any], str, str]] = {
     "uart: not yet in force": ({"port_target": ""}, "look", "next start"),
     "console: kernel": ({"kernel_line": "console=serial0,115200 console=tty1"}, "wrong", "console=serial0"),
     "console: kernel, by device": ({"kernel_line": "console=ttyAMA0,115200"}, "wrong", "console=ttyAMA0"),
+    "console: kernel, by the line's other name": (
+        {
+            "port": "/dev/ttyAMA0",
+            "port_target": "",
+            "serial0_target": "ttyAMA0",
+            "kernel_line": "console=serial0,115200",
+        },
+        "wrong",
+        "console=serial0",
+    ),
     "console: login": ({"login_on_port": True}, "wrong", "login prompt"),
     "board: other firmware": (
         {"link_state": "failed", "link_text": "Definitions differ."},
@@ -161,6 +177,8 @@ def test_an_emulated_robot_is_asked_nothing_about_pins() -> None:
     [
         ({"model": ""}, "uart"),
         ({"port": "/dev/ttyUSB0", "port_target": ""}, "uart"),
+        ({"port": "/dev/serial/by-id/usb-1a86", "port_target": "ttyUSB0"}, "uart"),
+        ({"port": "/dev/serial/by-id/usb-1a86", "port_target": "", "port_there": False}, "uart"),
         ({"broken_libraries": None}, "libraries"),
         ({"port_takers": ("brltty", "ModemManager")}, "port_takers"),
         ({"reset": "dtr"}, "reset"),

@@ -164,11 +164,14 @@ def test_a_raspberry_pi_is_read_from_its_files(settings: Settings, tmp_path: Pat
     write(tmp_path, "sys/class/video4linux/video1/name", "bcm2835-codec\n")
     write(tmp_path, "etc/systemd/system/mucat.service", "[Service]\nUser=nobody\n")
     write(tmp_path, "etc/systemd/system/getty.target.wants/serial-getty@serial0.service", "")
+    (tmp_path / "dev").mkdir()
+    (tmp_path / "dev/serial0").symlink_to("ttyS0")
     machine = look(settings, tmp_path)
     assert machine.system == "Debian GNU/Linux 13 (trixie)"
     assert machine.model == "Raspberry Pi Zero 2 W Rev 1.0"
     assert (machine.boot_settings, machine.kernel_line) == ("enable_uart=1\n", "console=tty1\n")
     assert machine.boot_folder == "/boot/firmware"
+    assert machine.serial0_target == "ttyS0"
     assert machine.swaps == ("/dev/zram0",)
     assert machine.throttled == 0x50005
     assert machine.cameras == ("unicam-image",)
