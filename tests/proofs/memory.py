@@ -182,11 +182,13 @@ class _Day:
                     pass
 
     async def _visit(self) -> None:
-        """A page that comes, reads its first messages and goes away."""
+        """A page that comes, reads what there is and goes away."""
         async with self._served.connect() as socket:
-            for _ in range(10):
-                await asyncio.wait_for(socket.recv(), 10)
             await socket.send(json.dumps({"op": "ping", "id": 1}))
+            while True:
+                message = await asyncio.wait_for(socket.recv(), 10)
+                if isinstance(message, str) and json.loads(message)["op"] == "pong":
+                    return
 
     async def _send(self, begin: float, end: float) -> None:
         totals, depth = self._served.container.hub.rows, BY_NAME["depth"].id

@@ -179,15 +179,17 @@ def test_an_impossible_start_is_refused_in_one_line(settings: Settings, tmp_path
 
 
 def test_commands_take_the_last_configuration_and_a_server_at_a_shell_does_not(
-    settings: Settings, tmp_path: Path
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    monkeypatch.setattr("server.features.board.reservation.PORT_SECONDS", 0.1)
     bad = tmp_path / "bad.toml"
     bad.write_text("")
     settings.data.last_config.write_text('[robot]\nmode = "robot"\n[link]\nport = "/dev/nowhere"\n')
     where = ("--data", str(settings.data.path), "--config", str(bad))
-    upload = mucat("upload", *where)
-    assert "seems to be cut off" in upload.stderr.splitlines()[0]
-    assert "/dev/nowhere" in upload.stderr.splitlines()[-1]
+    assert cli.main(["upload", *where]) == 1
+    said = capsys.readouterr().err.splitlines()
+    assert "seems to be cut off" in said[0]
+    assert "/dev/nowhere" in said[-1]
     bad.write_text("[robot")
     assert_refused(mucat("run", *where), "bad.toml cannot be read")
 
