@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from server.app import create_app
+from server.features.board import reservation
 from server.platform.settings import DataFolder, Settings
 from tests.board.rig import ROOT
 from tests.proofs.interface import Surface, run_surface
@@ -21,7 +22,9 @@ def operations() -> list[str]:
 
 @pytest.fixture(scope="module")
 def surface() -> Iterator[Surface]:
-    with run_surface() as surface:
+    with pytest.MonkeyPatch.context() as patch, run_surface() as surface:
+        # Nobody is there to disarm the robot, for which each request that needs its board would wait.
+        patch.setattr(reservation, "DISARM_SECONDS", 0.1)
         yield surface
 
 

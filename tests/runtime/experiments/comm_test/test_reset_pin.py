@@ -19,6 +19,9 @@ from tests.board.rig import ROOT, build
 from tests.runtime.experiments.comm_test.gpio_chip import GpioChip
 from tests.runtime.experiments.comm_test.lab_process import run_lab
 
+pytestmark = pytest.mark.stack
+"""avrdude waits by its own clock."""
+
 LINE = 4
 GPIO_SIM = Path("/sys/kernel/config/gpio-sim")
 PULL = """

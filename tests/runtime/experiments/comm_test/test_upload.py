@@ -17,6 +17,9 @@ from robot_runtime.experiments.comm_test.upload import UploadError, avrdude_vers
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient, EmulatorProcess
 from tests.runtime.experiments.comm_test.conftest import make_test
 
+pytestmark = pytest.mark.stack
+"""avrdude waits by its own clock."""
+
 TEST, CELL = make_test(framing="robot"), GridCell(115200, 0.0, 0.0)
 Empty = tuple[EmulatorProcess, EmulatorClient]
 
