@@ -273,6 +273,27 @@ def test_a_program_drives_with_control_and_not_without(settings: Settings) -> No
     play_open(settings, scenario)
 
 
+UNUSABLE_NUMBERS = ("NaN", "-Infinity", "1e400", "null", '"0.5"', "true", "[0.5]", "{}", "9007199254740993")
+
+
+def test_what_is_no_usable_number_drives_nothing_and_is_answered_in_words(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await served.api.post("/control/release")
+        async with open_rosbridge(served, await make_token(served)) as socket:
+            client = RosbridgeClient(socket)
+            await client.call("/mucat/take_control")
+            for number in UNUSABLE_NUMBERS:
+                await socket.send(
+                    f'{{"op": "publish", "topic": "/cmd_vel", "msg": {{"linear": {{"x": {number}}}}}}}'
+                )
+                assert (await client.next("status"))["msg"].endswith("."), number
+            await client.say(op="publish", topic="/cmd_vel", msg={})
+            await until(lambda: served.runtime.driven, "the neutral command")
+            assert [one["axes"] for one in served.runtime.driven] == [[0.0] * 6]
+
+    play_open(settings, scenario)
+
+
 @pytest.mark.parametrize(
     "message",
     [
