@@ -106,7 +106,6 @@ class Dive:
     def _make_rows(self, name: str, rate: float, seconds: float) -> NDArray[np.void]:
         topic = BY_NAME[name]
         assert topic.kind is Kind.ROWS
-        assert topic.record is not None
         assert issubclass(topic.record, Record)
         since = np.arange(round(seconds * rate)) / rate
         wires = topic.record.wires

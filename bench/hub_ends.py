@@ -84,7 +84,7 @@ def _source(data: Path, ended: threading.Event) -> None:
     def add(now: float) -> None:
         number = next(tick)
         for name in TOPICS:
-            outbox.add_row(name, now, _RECORDS[name][number % len(_RECORDS[name])])
+            outbox.add_row(BY_NAME[name], now, _RECORDS[name][number % len(_RECORDS[name])])
 
     def send(now: float) -> None:
         add(now)

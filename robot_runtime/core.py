@@ -41,7 +41,24 @@ from robot_runtime.contract.packets import (
     Parameter,
     Status,
 )
-from robot_runtime.contract.topics import TELEMETRY, TOPICS, Kind
+from robot_runtime.contract.topics import (
+    CALIBRATION,
+    DEBUG,
+    DETECTION,
+    EVENT,
+    EXPERIMENT,
+    IMU,
+    LINK,
+    MISSION,
+    MOTOR,
+    PARAMETERS,
+    STATE,
+    TELEMETRY,
+    THUMBNAIL,
+    TOPICS,
+    VISION,
+    Kind,
+)
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.controllers.base import Controller
 from robot_runtime.control.experiments import Experiments
@@ -109,7 +126,7 @@ class Core:
         """s; when the messages of the board took everything queued along."""
         self.line = line
         self._paces = [
-            Pace(topic=TELEMETRY[packet.type], period=period)
+            Pace(topic=TELEMETRY[packet.type].name, period=period)
             for packet, period in periods(config.link.baud).items()
         ]
         self.board_parameters = BoardParameters(clock, line.send, config.link.baud)
@@ -119,7 +136,7 @@ class Core:
             config.link.baud,
             armed=lambda: self.supervisor.armed or self.supervisor.board_armed,
             tell=self._tell_calibration,
-            publish=partial(self.bus.publish_document, "calibration"),
+            publish=partial(self.bus.publish_document, CALIBRATION),
         )
         self.supervisor = Supervisor(
             clock,
@@ -136,8 +153,8 @@ class Core:
             detection=self._take_detection,
             event=self.publish_event,
             picture=outbox.send_picture,
-            thumbnail=partial(outbox.add_picture, "thumbnail"),
-            watched=watched,
+            thumbnail=partial(outbox.add_picture, THUMBNAIL),
+            watched=lambda topic: watched(topic.name),
         )
         self.vision = (open_vision or self._open_vision)(outputs)
         self._every: list[tuple[float, Callable[[], None]]] = [
@@ -159,7 +176,7 @@ class Core:
             MissionSenses(self.bus, clock, self.control, self.supervisor.detector, self.vision),
             self.parameters,
             self.supervisor.stop,
-            partial(self.bus.publish_document, "mission"),
+            partial(self.bus.publish_document, MISSION),
             self.publish_event,
         )
         self._parameters_published: Parameters | None = None
@@ -170,7 +187,7 @@ class Core:
 
     def publish_event(self, event: Event) -> None:
         """Publishes an event and the changed state."""
-        self.bus.publish_document("event", event)
+        self.bus.publish_document(EVENT, event)
         self._state_changed.set()
 
     def _change_mode(self, mode: Mode) -> None:
@@ -179,8 +196,8 @@ class Core:
 
     def _publish_experiment(self, experiment: Experiment) -> None:
         # The state first: a receiver of the end then has the restored loop already.
-        self.bus.publish_document("state", self.state())
-        self.bus.publish_document("experiment", experiment)
+        self.bus.publish_document(STATE, self.state())
+        self.bus.publish_document(EXPERIMENT, experiment)
 
     def _tell_calibration(self, text: str, severity: Severity) -> None:
         event = Event(time=self.clock.now(), kind="calibration", severity=severity, text=text)
@@ -257,7 +274,7 @@ class Core:
                 action()
         if self._state_changed.is_set():
             self._state_changed.clear()
-            self.bus.publish_document("state", self.state())
+            self.bus.publish_document(STATE, self.state())
             self._publish_parameters()
         if not heard:
             self.outbox.flush()
@@ -355,15 +372,15 @@ class Core:
             Calibration.type: lambda _, payload: self.calibrator.board.see(Calibration.from_bytes(payload)),
             Debug.type: self._see_debug,
         }
-        self.bus.on_row("motor", self._check_motor)
-        self.bus.on_row("imu", self.calibrator.see_imu)
+        self.bus.on_row(MOTOR, self._check_motor)
+        self.bus.on_row(IMU, self.calibrator.see_imu)
         for topic in TOPICS:
             if topic.kind is Kind.ROWS:
-                self.bus.on_row(topic.name, self.outbox.add_row)
+                self.bus.on_row(topic, partial(self.outbox.add_row, topic))
             elif topic.kind is Kind.DOCUMENTS:
-                self.bus.on_document(topic.name, self.outbox.add_document)
+                self.bus.on_document(topic, partial(self.outbox.add_document, topic))
 
-    def _check_motor(self, _topic: str, _time: float, record: bytes) -> None:
+    def _check_motor(self, _time: float, record: bytes) -> None:
         if self.supervisor.mode == "test":
             self.supervisor.fin_check.see(Motor.from_bytes(record))
 
@@ -375,7 +392,7 @@ class Core:
             or now.time - published.time >= _PARAMETERS_EVERY
         ):
             self._parameters_published = now
-            self.bus.publish_document("parameters", now)
+            self.bus.publish_document(PARAMETERS, now)
 
     def _arming_obstacles(self) -> list[str]:
         return [
@@ -385,11 +402,11 @@ class Core:
         ]
 
     def _publish_statistics(self) -> None:
-        self.bus.publish_row("link", self.clock.now(), self.line.statistics().to_bytes())
+        self.bus.publish_row(LINK, self.clock.now(), self.line.statistics().to_bytes())
 
     def _publish_vision(self) -> None:
         now = self.clock.now()
-        self.bus.publish_document("vision", VisionInForce(time=now, settings=self.vision.settings))
+        self.bus.publish_document(VISION, VisionInForce(time=now, settings=self.vision.settings))
 
     def _check_fins(self) -> None:
         command = self.supervisor.fin_check.step()
@@ -429,7 +446,7 @@ class Core:
 
     def _see_debug(self, time: float, payload: bytes) -> None:
         debug = Debug.from_bytes(payload)
-        self.bus.publish_document("debug", DebugLine(time=time, level=debug.level, text=debug.text))
+        self.bus.publish_document(DEBUG, DebugLine(time=time, level=debug.level, text=debug.text))
 
     def link_changed(self) -> None:
         """Publishes that the connection was established or lost, and soon the link's counters."""
@@ -442,7 +459,7 @@ class Core:
 
     def _take_detection(self, detection: Detection) -> None:
         self.supervisor.detector.see_picture(detection.taken)
-        self.bus.publish_document("detection", replace(detection, latency=self.control.picture_age))
+        self.bus.publish_document(DETECTION, replace(detection, latency=self.control.picture_age))
 
 
 def _describe(loop: ControlLoop) -> Loop:

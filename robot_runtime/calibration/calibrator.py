@@ -45,7 +45,7 @@ class Calibrator:
         missing = [STEPS[name] for name in stored.missing] if stored else []
         self._publish(CalibrationKept(time=self._clock.now(), values=stored, missing=missing))
 
-    def see_imu(self, _topic: str, time: float, record: bytes) -> None:
+    def see_imu(self, time: float, record: bytes) -> None:
         """Takes a reading of the IMU at `time` (s)."""
         if (gyro := self._gyro) is not None:
             gyro.see(time, record)

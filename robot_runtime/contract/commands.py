@@ -11,6 +11,7 @@ from enum import IntEnum
 from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform, get_type_hints
 
 from robot_runtime.contract.calibration import CalibrationValues
+from robot_runtime.contract.declarations import Declarations
 from robot_runtime.contract.documents import ParameterValue, Steering
 from robot_runtime.contract.limits import (
     SET_POINTS,
@@ -89,7 +90,7 @@ class RobotCommand:
 
 
 C = TypeVar("C", bound=RobotCommand)
-COMMANDS: dict[str, type[RobotCommand]] = {}
+COMMANDS: Declarations[str, type[RobotCommand]] = Declarations("the name of a command")
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(field,))
@@ -114,7 +115,7 @@ def command(
             disturbs_experiment=disturbs_experiment,
             words=words,
         )
-        COMMANDS[name] = made
+        COMMANDS.add(name, made, depth=1)
         return made
 
     return declare

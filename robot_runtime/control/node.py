@@ -11,7 +11,6 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import (
     Control,
     Detection,
-    Document,
     Event,
     Mode,
     Severity,
@@ -19,6 +18,7 @@ from robot_runtime.contract.documents import (
     Turning,
 )
 from robot_runtime.contract.packets import Beacon, Depth, Imu, Navigation
+from robot_runtime.contract.topics import BEACON, CONTROL, DEPTH, DETECTION, EVENT, IMU, NAVIGATION, TURNING
 from robot_runtime.control.attitude import euler_angles, heave_acceleration
 from robot_runtime.control.faults import BY_NAME, CHECK_PERIOD
 from robot_runtime.control.loop import ControlLoop
@@ -92,10 +92,10 @@ class ControlNode:
         self._course = (0.0, 0.0)
         self._course_override: Course | None = None
         self._beacons = (float("-inf"), False, False)
-        bus.on_row("depth", self._take_depth)
-        bus.on_row("imu", self._take_imu)
-        bus.on_row("beacon", self._take_beacon)
-        bus.on_document("detection", self._take_detection)
+        bus.on_row(DEPTH, self._take_depth)
+        bus.on_row(IMU, self._take_imu)
+        bus.on_row(BEACON, self._take_beacon)
+        bus.on_document(DETECTION, self._take_detection)
 
     def change_mode(self, mode: Mode) -> None:
         """Sets the robot's mode. It never blocks, because a STOP takes this way, too."""
@@ -198,7 +198,7 @@ class ControlNode:
     def command(self, command: Navigation) -> None:
         """Sends a command to the board and publishes it."""
         self._send(command)
-        self._bus.publish_row("navigation", self._clock.now(), command.to_bytes())
+        self._bus.publish_row(NAVIGATION, self._clock.now(), command.to_bytes())
 
     def _send_newest(self, mode: Mode) -> None:
         # One at a time, so that no older input is sent after a newer one.
@@ -293,9 +293,9 @@ class ControlNode:
                 output=self.depth.output or 0.0,
                 latency=now - taken,
             )
-            self._bus.publish_row("control", now, tick.to_bytes())
+            self._bus.publish_row(CONTROL, now, tick.to_bytes())
         if self._imu is not None:
-            self._bus.publish_row("turning", now, self._turning().to_bytes())
+            self._bus.publish_row(TURNING, now, self._turning().to_bytes())
 
     def _turning(self) -> Turning:
         set_point, measured, output = zip(
@@ -341,21 +341,20 @@ class ControlNode:
         if mode != "manual" or not self.depth.on:
             self.depth.set_point = set_point
 
-    def _take_depth(self, _: str, time: float, record: bytes) -> None:
+    def _take_depth(self, time: float, record: bytes) -> None:
         self._depths.append((time, record))
 
-    def _take_imu(self, _topic: str, _time: float, record: bytes) -> None:
+    def _take_imu(self, _time: float, record: bytes) -> None:
         self._imu = record
         self._imus.append(record)
 
-    def _take_beacon(self, _: str, time: float, record: bytes) -> None:
+    def _take_beacon(self, time: float, record: bytes) -> None:
         seen = Beacon.from_bytes(record)
         self._beacons = (time, bool(seen.right), bool(seen.left))
 
-    def _take_detection(self, _: str, document: Document) -> None:
-        if isinstance(document, Detection):
-            self._detection = document
+    def _take_detection(self, detection: Detection) -> None:
+        self._detection = detection
 
     def _publish_event(self, kind: str, text: str, severity: Severity = "info") -> None:
         event = Event(time=self._clock.now(), kind=kind, severity=severity, text=text)
-        self._bus.publish_document("event", event)
+        self._bus.publish_document(EVENT, event)

@@ -16,7 +16,7 @@ PLAIN_TYPES = {str: "string", int: "integer", NoneType: "null"}
 def schema() -> str:
     """The whole text of packets.schema.json."""
     definitions = {cls.__name__: _object(cls) for cls in PACKETS.values()}
-    records = [topic.record for topic in TOPICS if topic.record is not None]
+    records = [topic.record for topic in TOPICS]
     definitions |= {cls.__name__: _object(cls) for cls in records if issubclass(cls, Record)}
     document = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

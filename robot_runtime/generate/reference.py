@@ -13,7 +13,7 @@ from robot_runtime.contract.limits import Range
 from robot_runtime.contract.packets import DEFINITIONS_HASH, ENUMERATIONS, FRAME_BYTES_MAX, PACKETS, Packet
 from robot_runtime.contract.packets.layout import C_TYPES, Record, Text, Wire
 from robot_runtime.contract.published_events import PublishedEvent
-from robot_runtime.contract.topics import TOPICS, Kind, Topic
+from robot_runtime.contract.topics import TOPICS, AnyTopic, Kind
 from robot_runtime.control.faults import FAULTS, FaultRule
 from robot_runtime.control.transitions import TRANSITIONS
 from robot_runtime.core import Core
@@ -160,13 +160,13 @@ def topics_page() -> str:
     head = ("topic", "number", "kind", "sender", "recorded", "", "meaning")
     parts = [TOPICS_INTRODUCTION, table(head, map(_topic_row, TOPICS))]
     for topic in TOPICS:
-        if topic.record is not None:
+        if topic.kind is not Kind.PICTURE:
             parts += [f"## {topic.name}\n", f"{_one_line(topic.record)}\n"]
             parts.append(table(("field", "type", "meaning"), _topic_fields(topic.record)))
     return page("Topics", TOPICS_SOURCE, *parts)
 
 
-def _topic_row(topic: Topic) -> tuple[str, ...]:
+def _topic_row(topic: AnyTopic) -> tuple[str, ...]:
     name = f"`{topic.name}`" if topic.kind is Kind.PICTURE else f"[{topic.name}](#{topic.name})"
     rules = [words for words, holds in (("newest only", topic.newest_only), ("lines", topic.lines)) if holds]
     return (

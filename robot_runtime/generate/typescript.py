@@ -10,7 +10,7 @@ from robot_runtime.contract import documents
 from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
 from robot_runtime.contract.packets import DEFINITIONS_HASH, ENUMERATIONS
 from robot_runtime.contract.packets.layout import Record, Wire
-from robot_runtime.contract.topics import TIME, TOPICS, Kind, Topic
+from robot_runtime.contract.topics import TIME, TOPICS, AnyTopic, Kind
 
 _HEAD = f"""\
 // Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
@@ -91,7 +91,7 @@ def _enum(enum: type[IntEnum] | type[IntFlag]) -> str:
     return f"export const {enum.__name__} = {{\n{members}\n}} as const;\n"
 
 
-def _row_topic(topic: Topic) -> str:
+def _row_topic(topic: AnyTopic) -> str:
     record = typing.cast("type[Record]", topic.record)
     offset = TIME.size
     fields: list[str] = []
@@ -118,7 +118,7 @@ def _field(name: str, wire: Wire, offset: int) -> str:
     return "{ " + ", ".join(f"{key}: {value}" for key, value in entries.items()) + " }"
 
 
-def _row_interface(topic: Topic) -> str:
+def _row_interface(topic: AnyTopic) -> str:
     record = typing.cast("type[Record]", topic.record)
     lines = ["  /** s, steady clock of the robot's computer */", "  time: number;"]
     for name, wire in record.wires.items():
@@ -130,7 +130,7 @@ def _row_interface(topic: Topic) -> str:
     return f"export interface {_row_name(topic)} {{\n" + "\n".join(lines) + "\n}\n"
 
 
-def _row_name(topic: Topic) -> str:
+def _row_name(topic: AnyTopic) -> str:
     return f"{topic.name.capitalize()}Row"
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import ClassVar, Literal, Protocol, TypeVar, dataclass_transform
 
+from robot_runtime.contract.declarations import Declarations
 from robot_runtime.contract.documents import ParameterValue
 
 Claim = Literal["depth", "heading", "course"]
@@ -157,7 +158,7 @@ class Branch(MissionNode):
 
 
 N = TypeVar("N", bound=MissionNode)
-NODES: dict[str, type[MissionNode]] = {}
+NODES: Declarations[str, type[MissionNode]] = Declarations("the name of a mission's node")
 """Every leaf and branch by its name in documents; the page's editor and the reference list these."""
 
 
@@ -168,7 +169,7 @@ def mission_node(do: str) -> Callable[[type[N]], type[N]]:
     def declare(cls: type[N]) -> type[N]:
         made = dataclass(kw_only=True)(cls)
         made.do = do
-        NODES[do] = made
+        NODES.add(do, made, depth=1)
         return made
 
     return declare

@@ -1,8 +1,9 @@
 """Everything that missions know of the robot: depth, attitude, light, battery and camera."""
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.documents import Detection, Document
+from robot_runtime.contract.documents import Detection
 from robot_runtime.contract.packets import Beacon
+from robot_runtime.contract.topics import BEACON, DETECTION
 from robot_runtime.control.fault_detector import FaultDetector
 from robot_runtime.control.node import BEACON_STALE, VISION_STALE, ControlNode
 from robot_runtime.missions.sights import LIGHT, find_sight_problem
@@ -25,8 +26,8 @@ class MissionSenses:
         self._vision = vision
         self._detection: Detection | None = None
         self._light = (float("-inf"), False)
-        bus.on_row("beacon", self._take_beacon)
-        bus.on_document("detection", self._take_detection)
+        bus.on_row(BEACON, self._take_beacon)
+        bus.on_document(DETECTION, self._take_detection)
 
     @property
     def depth(self) -> float:
@@ -63,10 +64,9 @@ class MissionSenses:
         """The reason why this cannot be seen; empty if it can."""
         return find_sight_problem(what, self._vision.settings)
 
-    def _take_beacon(self, _: str, time: float, record: bytes) -> None:
+    def _take_beacon(self, time: float, record: bytes) -> None:
         seen = Beacon.from_bytes(record)
         self._light = time, bool(seen.right or seen.left)
 
-    def _take_detection(self, _: str, document: Document) -> None:
-        if isinstance(document, Detection):
-            self._detection = document
+    def _take_detection(self, detection: Detection) -> None:
+        self._detection = detection

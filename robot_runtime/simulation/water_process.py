@@ -8,6 +8,7 @@ from pathlib import Path
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
+from robot_runtime.contract.topics import CRAFT, TRUTH
 from robot_runtime.simulation.boards.board_protocol import BoardLineError, LineBuffer, read_fins, write_sense
 from robot_runtime.simulation.boards.stepped_board import PERIOD
 from robot_runtime.simulation.water.craft_report import CraftReport
@@ -101,8 +102,8 @@ class WaterProcess:
             # The board was away, so that there is nothing to publish for that time.
             self._truth_due = now + TRUTH_PERIOD
         if (craft := self._craft.due(now)) is not None:
-            self._outbox.add_document("craft", craft)
-        self._outbox.add_row("truth", now, self._simulator.truth().to_bytes())
+            self._outbox.add_document(CRAFT, craft)
+        self._outbox.add_row(TRUTH, now, self._simulator.truth().to_bytes())
         self._outbox.flush()
 
 

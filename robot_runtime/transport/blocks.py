@@ -18,7 +18,7 @@ from typing import Any, Self
 
 from robot_runtime.contract import documents
 from robot_runtime.contract.packets.layout import LayoutError, Record
-from robot_runtime.contract.topics import BY_ID, ROW_BYTES, TIME, Kind, Topic
+from robot_runtime.contract.topics import BY_ID, ROW_BYTES, TIME, AnyTopic, Kind
 
 HEADER = Struct("<BBHII")
 NUMBERS = 1 << 32
@@ -35,14 +35,14 @@ class Block:
     not frozen, because hundreds are made a second, and a frozen dataclass takes four times as long to make.
     """
 
-    topic: Topic
+    topic: AnyTopic
     count: int
     first: int
     data: bytes
     run: str = ""
 
     @classmethod
-    def of(cls, topic: Topic, count: int, first: int, payload: bytes, run: str = "") -> Self:
+    def of(cls, topic: AnyTopic, count: int, first: int, payload: bytes, run: str = "") -> Self:
         """The block around a payload."""
         header = HEADER.pack(topic.id, topic.kind, count, first % NUMBERS, len(payload))
         return cls(topic, count, first, header + payload, run)
@@ -129,7 +129,6 @@ def read_blocks(data: bytes, run: str = "") -> list[Block]:
 def read_rows(block: Block) -> list[tuple[float, Record]]:
     """The times and records of a block of rows. Raises TypeError on a block of another kind."""
     size, record = block.topic.row_bytes, block.topic.record
-    assert record is not None
     assert issubclass(record, Record)
     rows = (block.data[at : at + size] for at in range(HEADER.size, len(block.data), size))
     return [(TIME.unpack_from(one)[0], record.from_bytes(one[TIME.size :])) for one in rows]

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Callable
 
 from robot_runtime.contract.documents import Document
-from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.contract.topics import TOPICS, AnyTopic
 from robot_runtime.transport.blocks import Block, pack_documents, row
 from robot_runtime.transport.replay_cache import ReplayCache
 
@@ -19,7 +19,7 @@ SIMULATOR_STREAM = "simulator/stream"
 
 
 class Outbox:
-    """Queues rows and documents until `flush` sends them; `watched` is true for topics with a subscriber.
+    """Queues rows and documents until `flush` sends them; `watched`: a topic of this name has a subscriber.
 
     Sent messages go to `cache` too, for a server that restarts. Every method may be called from any thread.
     """
@@ -37,21 +37,21 @@ class Outbox:
         self._cache = cache
         self._lock = threading.Lock()
         self._sending = threading.Lock()
-        self._rows: defaultdict[str, list[bytes]] = defaultdict(list)
-        self._documents: defaultdict[str, list[Document]] = defaultdict(list)
-        self._next = dict.fromkeys(BY_NAME, 0)
+        self._rows: defaultdict[AnyTopic, list[bytes]] = defaultdict(list)
+        self._documents: defaultdict[AnyTopic, list[Document]] = defaultdict(list)
+        self._next = dict.fromkeys((topic.name for topic in TOPICS), 0)
 
-    def add_row(self, topic: str, time: float, record: bytes) -> None:
+    def add_row(self, topic: AnyTopic, time: float, record: bytes) -> None:
         """Queue one row."""
         with self._lock:
             self._rows[topic].append(row(time, record))
 
-    def add_picture(self, topic: str, time: float, jpeg: bytes) -> None:
+    def add_picture(self, topic: AnyTopic, time: float, jpeg: bytes) -> None:
         """Queues a picture in place of the topic's queued one."""
         with self._lock:
             self._rows[topic] = [row(time, jpeg)]
 
-    def add_document(self, topic: str, document: Document) -> None:
+    def add_document(self, topic: AnyTopic, document: Document) -> None:
         """Queue one document."""
         with self._lock:
             self._documents[topic].append(document)
@@ -63,25 +63,25 @@ class Outbox:
                 rows, self._rows = self._rows, defaultdict(list)
                 documents, self._documents = self._documents, defaultdict(list)
             blocks = {
-                name: self._block(name, len(waiting), b"".join(waiting)) for name, waiting in rows.items()
+                topic: self._block(topic, len(waiting), b"".join(waiting)) for topic, waiting in rows.items()
             }
-            for name, batch in documents.items():
-                blocks[name] = self._block(name, len(batch), pack_documents(batch))
+            for topic, batch in documents.items():
+                blocks[topic] = self._block(topic, len(batch), pack_documents(batch))
             if blocks:
                 message = b"".join(blocks.values())
                 if self._cache is not None:
                     self._cache.add(message, self._next)
                 self._send(self._stream, message)
-            for name, block in blocks.items():
-                if self._watched(name):
-                    self._send(name, block)
+            for topic, block in blocks.items():
+                if self._watched(topic.name):
+                    self._send(topic.name, block)
 
-    def send_picture(self, topic: str, time: float, jpeg: bytes) -> None:
+    def send_picture(self, topic: AnyTopic, time: float, jpeg: bytes) -> None:
         """Send a picture at once."""
         with self._sending:
-            self._send(topic, self._block(topic, 1, row(time, jpeg)))
+            self._send(topic.name, self._block(topic, 1, row(time, jpeg)))
 
-    def _block(self, name: str, count: int, payload: bytes) -> bytes:
-        first = self._next[name]
-        self._next[name] = first + count
-        return Block.of(BY_NAME[name], count, first, payload).data
+    def _block(self, topic: AnyTopic, count: int, payload: bytes) -> bytes:
+        first = self._next[topic.name]
+        self._next[topic.name] = first + count
+        return Block.of(topic, count, first, payload).data

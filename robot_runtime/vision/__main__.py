@@ -81,9 +81,9 @@ class PictureLoop:
         outputs = VisionOutputs(
             detection=lambda detection: self._send({"detection": asdict(detection)}),
             event=lambda event: self._send({"event": asdict(event)}),
-            picture=lambda topic, time, jpeg: self._send({"picture": topic, "time": time}, jpeg),
+            picture=lambda topic, time, jpeg: self._send({"picture": topic.name, "time": time}, jpeg),
             thumbnail=lambda time, jpeg: self._send({"thumbnail": time}, jpeg),
-            watched=lambda topic: topic in self._watched,
+            watched=lambda topic: topic.name in self._watched,
         )
         self._node = VisionNode(config, self._clock, outputs, open_camera, self._connect)
         self._card: str | None = start["card"]

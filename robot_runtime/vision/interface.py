@@ -8,6 +8,7 @@ from typing import Any
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS
 from robot_runtime.contract.documents import Detection, Event
+from robot_runtime.contract.topics import BALANCED, MASK, PICTURE, Topic
 from robot_runtime.contract.vision_settings import VisionSettings, marker_name
 from robot_runtime.errors import RefusedError
 
@@ -15,7 +16,7 @@ NO_PICTURE = "no picture: "
 """The beginning of the text on a camera that fails."""
 STARTING = "starting"
 """The text on a camera of which there was no picture yet."""
-WATCHABLE = ("picture", "mask", "balanced")
+WATCHABLE = (PICTURE, MASK, BALANCED)
 """The topics whose pictures are made only while somebody watches them."""
 
 
@@ -29,9 +30,9 @@ class VisionOutputs:
 
     detection: Callable[[Detection], None]
     event: Callable[[Event], None]
-    picture: Callable[[str, float, bytes], None] = lambda *_: None
+    picture: Callable[[Topic[bytes], float, bytes], None] = lambda *_: None
     thumbnail: Callable[[float, bytes], None] = lambda *_: None
-    watched: Callable[[str], bool] = lambda _: False
+    watched: Callable[[Topic[bytes]], bool] = lambda _: False
 
 
 class Vision(ABC):

@@ -12,6 +12,7 @@ from robot_runtime.config import VisionConfig
 from robot_runtime.contract.documents import Detection, Event, Severity
 from robot_runtime.contract.limits import VISION_RATE
 from robot_runtime.contract.parsing import parse
+from robot_runtime.contract.topics import BALANCED, MASK, PICTURE, Topic
 from robot_runtime.errors import RefusedError
 from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
 from robot_runtime.vision.interface import NO_PICTURE, STARTING, Vision, VisionOutputs
@@ -241,10 +242,10 @@ class VisionNode(Vision):
     def _pass_on(self, frame: CameraFrame, sight: "Sight") -> None:
         from robot_runtime.vision import pipeline
 
-        made: dict[str, Callable[[], Picture]] = {
-            "picture": lambda: frame.picture,
-            "mask": lambda: pipeline.draw_mask(sight.target_patches),
-            "balanced": lambda: sight.balanced,
+        made: dict[Topic[bytes], Callable[[], Picture]] = {
+            PICTURE: lambda: frame.picture,
+            MASK: lambda: pipeline.draw_mask(sight.target_patches),
+            BALANCED: lambda: sight.balanced,
         }
         for topic, make in made.items():
             if self._outputs.watched(topic):

@@ -49,6 +49,7 @@ PICK_SECONDS = 1.5
 """s that a picked colour may take; the server waits for 2 s."""
 _END_SECONDS = 2.0
 """s that the process has for its end."""
+_PICTURES = {topic.name: topic for topic in WATCHABLE}
 _ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
 """NumPy's matrices are not used: their threads would take 90 MB of room for each processor, and time."""
 
@@ -235,10 +236,8 @@ class VisionProcess(Vision):
             if "event" in table:
                 return partial(self._outputs.event, parse(Event, table["event"]))
             if "picture" in table:
-                topic, time = str(table["picture"]), float(table["time"])
-                if topic not in WATCHABLE:
-                    raise MessageError(f"a picture for {topic}")
-                return partial(self._outputs.picture, topic, time, message.attachment)
+                topic = _PICTURES[str(table["picture"])]
+                return partial(self._outputs.picture, topic, float(table["time"]), message.attachment)
             if "thumbnail" in table:
                 return partial(self._outputs.thumbnail, float(table["thumbnail"]), message.attachment)
             if "camera" in table:
@@ -275,7 +274,7 @@ class VisionProcess(Vision):
 
     def _watch(self) -> None:
         """Tells the process which pictures are watched. Asked when one comes, so that nothing polls."""
-        watched = [topic for topic in WATCHABLE if self._outputs.watched(topic)]
+        watched = [name for name, topic in _PICTURES.items() if self._outputs.watched(topic)]
         if watched != self._watched:
             self._watched = watched
             self._tell({"watched": watched})

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
 
-from robot_runtime.contract.topics import BY_ID, TIME, Kind, Topic
+from robot_runtime.contract.topics import BY_ID, TIME, AnyTopic, Kind
 from robot_runtime.transport.blocks import COUNT_MAX, HEADER, Block
 
 CHUNK_SECONDS = 2.0
@@ -62,7 +62,7 @@ class BroadcastBuffer:
             raise IndexError(f"message {number} is not among {self.first} to {self.end - 1}")
         return self._messages[number - self.first]
 
-    def lost(self, seen: Totals) -> list[tuple[Topic, int]]:
+    def lost(self, seen: Totals) -> list[tuple[AnyTopic, int]]:
         """Dropped samples after the totals `seen`, by topic."""
         before = self._messages[0].before if self._messages else self.totals
         counts = ((topic, total - seen.get(topic, 0)) for topic, total in before.items())
@@ -81,7 +81,7 @@ class _Chunk:
 class _TopicBacklog:
     """Backlog of one topic: the newest blocks as they came, older ones merged into chunks."""
 
-    def __init__(self, topic: Topic) -> None:
+    def __init__(self, topic: AnyTopic) -> None:
         self.topic = topic
         self.bytes = 0
         self._chunks: deque[_Chunk] = deque()

@@ -8,7 +8,7 @@ sample is passed on once and in order.
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 
-from robot_runtime.contract.topics import Topic
+from robot_runtime.contract.topics import AnyTopic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from robot_runtime.transport.replay_cache import BacklogReply
 
@@ -22,7 +22,7 @@ class GapFiller:
     `deliver` is called with its blocks, in order. Blocks before `begin_delivery` wait.
     """
 
-    def __init__(self, topics: Sequence[Topic], ask: Ask, deliver: Callable[[list[Block]], None]) -> None:
+    def __init__(self, topics: Sequence[AnyTopic], ask: Ask, deliver: Callable[[list[Block]], None]) -> None:
         self.topics = topics
         self._ask = ask
         self._deliver = deliver

@@ -24,7 +24,7 @@ class BlinkCommand(RobotCommand):
 
 
 '''
-TOPIC = '    Topic(11, "lamp", _ROWS, documents.Truth, "light of the lamp", sender="simulator"),\n'
+TOPIC = 'LAMP = topic(11, "lamp", _ROWS, documents.Truth, "light of the lamp", sender="simulator")\n'
 
 
 def insert(path: Path, before: str, text: str) -> None:
@@ -46,7 +46,7 @@ def test_an_added_command_and_topic_are_found_everywhere(tmp_path: Path) -> None
     source = source.replace("import (\n    SET_POINTS,", "import (\n    SET_POINTS,\n    Range,", 1)
     source = source.replace("from typing import Any,", "from typing import Annotated, Any,", 1)
     (contract / "commands.py").write_text(source, encoding="utf-8")
-    insert(contract / "topics.py", '    Topic(16, "state"', TOPIC)
+    insert(contract / "topics.py", 'STATE = topic(16, "state"', TOPIC)
     done = subprocess.run(
         [sys.executable, "-m", "tests.contract.added"],
         cwd=tmp_path,

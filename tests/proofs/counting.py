@@ -12,6 +12,7 @@ from cobs.cobs import decode
 
 from robot_runtime.config import LinkConfig
 from robot_runtime.contract.packets import PACKETS, Status
+from robot_runtime.contract.topics import STATUS
 from robot_runtime.experiments.scenario.boards import BUILD
 from robot_runtime.simulation.boards.emulated_board import EmulatedBoard
 from robot_runtime.simulation.boards.emulator_process import Water
@@ -81,7 +82,7 @@ def count(seconds: float, seed: int) -> tuple[Counts, Counts]:
     with Flight(make) as flight:
         wire = wires[0]
         told: list[Status] = []
-        flight.robot.bus.on_row("status", lambda _, __, record: told.append(Status.from_bytes(record)))
+        flight.robot.bus.on_row(STATUS, lambda _, record: told.append(Status.from_bytes(record)))
         flight.arm()
         flight.run(SETTLE)
         before, board_before = flight.robot.link.statistics(), told[-1].frames_invalid

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from robot_runtime.commands import Commands
 from robot_runtime.contract.commands import MissionCommand
 from robot_runtime.contract.documents import Mission
+from robot_runtime.contract.topics import MISSION
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.rig import SimulatedRobot
@@ -81,7 +82,7 @@ class MissionSwim(Flight):
         self.missions: list[Mission] = []
         super().__init__(partial(self._make, board))
         self.supervisor._heartbeat = HEARTBEAT
-        self.robot.bus.on_document("mission", self._see_mission)
+        self.robot.bus.on_document(MISSION, self._see_mission)
         self.until(lambda: not self.supervisor.refusals(), CALM)
         self.before = self.settings()
 
@@ -126,10 +127,10 @@ class MissionSwim(Flight):
         self.robot = stage.robot = SimulatedRobot(scenario, stage.clock, lambda _: None, stage._open_camera)
         self.supervisor = self.robot.supervisor
         self.robot.link.attach(stage.board.write)
-        self.robot.bus.on_document("mission", self._see_mission)
+        self.robot.bus.on_document(MISSION, self._see_mission)
         self._performance = _RunLoop(stage, Told(), lambda: False)
 
-    def _see_mission(self, _: str, document: object) -> None:
+    def _see_mission(self, document: object) -> None:
         assert isinstance(document, Mission)
         self.missions.append(document)
 

@@ -11,6 +11,7 @@ from enum import IntEnum, IntFlag
 from hashlib import sha256
 from typing import Annotated, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
+from robot_runtime.contract.declarations import Declarations
 from robot_runtime.contract.packets.chip_parameters import CHIP_PARAMETERS
 from robot_runtime.contract.packets.layout import LayoutError, Record, Text, Wire, record
 
@@ -125,7 +126,7 @@ class Packet(Record):
 
 
 P = TypeVar("P", bound=Packet)
-PACKETS: dict[int, type[Packet]] = {}
+PACKETS: Declarations[int, type[Packet]] = Declarations("the number of a packet")
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True)
@@ -137,7 +138,7 @@ def _packet(
         made.type = type_
         made.reliable = reliable
         made.telemetry = telemetry
-        PACKETS[type_] = made
+        PACKETS.add(type_, made, depth=1)
         return made
 
     return register

@@ -9,6 +9,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config, LinkConfig, VisionConfig
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.contract.documents import Event
+from robot_runtime.contract.topics import CRAFT, TRUTH
 from robot_runtime.core import Core
 from robot_runtime.experiments.scenario.cameras import RenderedSceneCamera
 from robot_runtime.experiments.scenario.document import Scenario
@@ -164,8 +165,8 @@ class ScenarioRig:
         self._swum += 1
         if self._swum % _TRUTH_EVERY == 0:
             if (craft := self._craft.due(self._swum * PERIOD)) is not None:
-                self.robot.bus.publish_document("craft", craft)
-            self.robot.bus.publish_row("truth", self._swum * PERIOD, self.simulator.truth().to_bytes())
+                self.robot.bus.publish_document(CRAFT, craft)
+            self.robot.bus.publish_row(TRUTH, self._swum * PERIOD, self.simulator.truth().to_bytes())
         return reading
 
     def _open_camera(self) -> Camera:

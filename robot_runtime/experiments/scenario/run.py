@@ -12,7 +12,8 @@ from typing import Any, Protocol
 from robot_runtime.commands import Commands
 from robot_runtime.contract.commands import ArmCommand, MissionCommand
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
-from robot_runtime.contract.documents import MISSION_MARK, Document, Event
+from robot_runtime.contract.documents import MISSION_MARK, Event
+from robot_runtime.contract.topics import EVENT
 from robot_runtime.control.supervisor import ARM_WAIT, Arming
 from robot_runtime.core import PUBLISH_EVERY
 from robot_runtime.errors import RefusedError
@@ -103,7 +104,7 @@ class _RunLoop:
             PeriodicTask(now, PUBLISH_EVERY, rig.robot.publish_tick),
         ]
         self._has_camera = needs_camera(rig.scenario)
-        rig.robot.bus.on_document("event", self._see_event)
+        rig.robot.bus.on_document(EVENT, self._see_event)
 
     def wait_for_start(self) -> None:
         """Runs the prelude."""
@@ -218,9 +219,9 @@ class _RunLoop:
         self._remarks.append(f"At {event.at:g} s: {words}")
         self._add_bookmark(words)
 
-    def _see_event(self, _: str, document: Document) -> None:
-        if isinstance(document, Event) and document.kind == MISSION_MARK:
-            self._add_bookmark(document.text)
+    def _see_event(self, event: Event) -> None:
+        if event.kind == MISSION_MARK:
+            self._add_bookmark(event.text)
 
     def _add_bookmark(self, words: str) -> None:
         self._listener.event("marker", time=_round_time(self._rig.clock.now()), text=words)

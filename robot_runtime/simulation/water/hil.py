@@ -16,6 +16,7 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.packets.layout import LayoutError
+from robot_runtime.contract.topics import CRAFT, TRUTH
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.craft_report import CraftReport
 from robot_runtime.simulation.water.fins import Four
@@ -128,8 +129,8 @@ class HilSimulator:
         if time >= self._truth_due:
             self._truth_due = time + TRUTH_PERIOD
             if (craft := self._craft.due(time)) is not None:
-                self._outbox.add_document("craft", craft)
-            self._outbox.add_row("truth", time, self._simulator.truth().to_bytes())
+                self._outbox.add_document(CRAFT, craft)
+            self._outbox.add_row(TRUTH, time, self._simulator.truth().to_bytes())
         return reading
 
 

@@ -19,7 +19,7 @@ from struct import Struct
 from typing import Any
 
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import RECORDED, TIME, Kind, Topic
+from robot_runtime.contract.topics import RECORDED, TIME, AnyTopic, Kind
 
 ROWS_ENCODING = "shuffle-zlib"
 DOCUMENTS_ENCODING = "lines-zlib"
@@ -75,7 +75,7 @@ def unpack(data: bytes, limit: int = CHUNK_BYTES_MAX) -> bytes:
     return unpacked
 
 
-def encode(topic: Topic, payloads: Sequence[bytes], count: int) -> tuple[str, bytes, float, float]:
+def encode(topic: AnyTopic, payloads: Sequence[bytes], count: int) -> tuple[str, bytes, float, float]:
     """The encoding of these payloads of a topic, their chunk, and its first and last sample's times.
 
     Raises ValueError, RecursionError or zlib.error for payloads that do not fit the topic.
@@ -189,9 +189,9 @@ def row_names(field: dict[str, Any]) -> Iterator[str]:
         yield from (f"{name}_{place}" for place in range(count))
 
 
-def _describe(topic: Topic) -> dict[str, Any]:
+def _describe(topic: AnyTopic) -> dict[str, Any]:
     described: dict[str, Any] = {"meaning": topic.meaning, "kind": topic.kind.name.lower()}
-    if topic.record is None:
+    if topic.kind is Kind.PICTURE:
         described["fields"] = []
     elif issubclass(topic.record, Record):
         described["row_bytes"] = topic.row_bytes

@@ -21,7 +21,7 @@ from sqlalchemy import Connection, bindparam, insert, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.topics import BY_NAME, Topic
+from robot_runtime.contract.topics import BY_NAME, AnyTopic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from server.features.sessions.chunks import encode
 from server.features.sessions.provenance import ProvenanceWatch
@@ -61,7 +61,7 @@ class RecordingRefusedError(ConflictError):
 class _Span:
     """Consecutive samples of one topic and of one run of its sender, as they arrived."""
 
-    topic: Topic
+    topic: AnyTopic
     run: str
     first: int
     count: int = 0

@@ -15,7 +15,7 @@ from typing import Any
 from sqlalchemy import bindparam
 from sqlmodel import col, select
 
-from robot_runtime.contract.topics import BY_NAME, CHART_SECONDS, LINES, TIME, Kind, Topic
+from robot_runtime.contract.topics import BY_NAME, CHART_SECONDS, LINES, TIME, AnyTopic, Kind
 from robot_runtime.transport.blocks import COUNT_MAX, Block
 from server import VERSION
 from server.features.sessions.chunks import (
@@ -180,7 +180,7 @@ def _rows(rows: bytes, size: int) -> _Samples:
     )
 
 
-def _documents(lines: list[bytes], topic: Topic | None) -> _Samples:
+def _documents(lines: list[bytes], topic: AnyTopic | None) -> _Samples:
     """Lines of JSON, rewritten to `topic` if one is given."""
 
     def payload(first: int, last: int) -> tuple[int, bytes]:
@@ -200,7 +200,7 @@ def _pictures(pictures: list[tuple[float, bytes]]) -> _Samples:
 class _Reader:
     """Makes blocks from one topic's chunks; `recorded` describes the topic if its definition has changed."""
 
-    def __init__(self, topic: Topic, recorded: Mapping[str, Any] | None) -> None:
+    def __init__(self, topic: AnyTopic, recorded: Mapping[str, Any] | None) -> None:
         self.left_out = 0
         self._topic = topic
         self._given_as = BY_NAME["picture"] if topic.kind is Kind.PICTURE else topic
@@ -278,7 +278,7 @@ def _count_before(samples: _Samples, chunk: _StoredChunk, time: float) -> int:
     return next((place for place in range(chunk.count) if samples.time(place) >= time), chunk.count)
 
 
-def _rewrite_lines(lines: list[bytes], topic: Topic) -> Iterator[bytes]:
+def _rewrite_lines(lines: list[bytes], topic: AnyTopic) -> Iterator[bytes]:
     for line in lines:
         try:
             document = rewrite_document(json.loads(line), topic)

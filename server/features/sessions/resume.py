@@ -8,7 +8,7 @@ from sqlmodel import col, func, select
 
 from robot_runtime.clock import boot
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME, Topic
+from robot_runtime.contract.topics import BY_NAME, AnyTopic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from robot_runtime.transport.replay_cache import BacklogReply
 from server.features.sessions.session import REAL_ORIGINS
@@ -81,7 +81,7 @@ def find_interrupted(store: Store) -> InterruptedSession | None:
 
 
 def find_missing(
-    interrupted: InterruptedSession, topics: Sequence[Topic], backlog: BacklogReply
+    interrupted: InterruptedSession, topics: Sequence[AnyTopic], backlog: BacklogReply
 ) -> MissingSamples:
     """Compare the stored samples with the backlog of the sender of these topics."""
     blocks: dict[int, list[Block]] = {topic.id: [] for topic in topics}
@@ -109,7 +109,7 @@ def find_missing(
     return MissingSamples(first, same_run, whole, sent if same_run else {})
 
 
-def _new(interrupted: InterruptedSession, topics: Sequence[Topic], backlog: BacklogReply) -> bool:
+def _new(interrupted: InterruptedSession, topics: Sequence[AnyTopic], backlog: BacklogReply) -> bool:
     """True if nothing of this sender is stored yet, and it is the one with which the session began.
 
     The `state` stored at the start tells it for the runtime. Any simulator is accepted.

@@ -12,7 +12,7 @@ from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import TIME, Topic
+from robot_runtime.contract.topics import TIME, AnyTopic
 
 FLOAT_MAX = 3.4028235e38
 """The largest number of four bytes."""
@@ -26,14 +26,13 @@ class MissingFieldError(NoCounterpartError):
     """A document without a field that this version needs, as an older version may have written it."""
 
 
-def rewrite_rows(rows: bytes, recorded: Mapping[str, Any], topic: Topic) -> bytes:
+def rewrite_rows(rows: bytes, recorded: Mapping[str, Any], topic: AnyTopic) -> bytes:
     """The rows as this version's `topic` has them; `recorded` is what `chunks.describe_topics` said of them.
 
     Fields go by name, values by scale, rounded to what the field can hold. A field that was not there, or had
     another unit, is 0. Columns that are the same are copied whole, without NumPy: it costs a small computer
     memory, and its libraries may end the process.
     """
-    assert topic.record is not None
     assert issubclass(topic.record, Record)
     then = {column.name: column for column in _columns(recorded["fields"])}
     old_size, new_size = _row_bytes(then.values()), topic.row_bytes
@@ -96,14 +95,13 @@ def _convert(
         packed.pack_into(new, place * new_size + column.offset, value)
 
 
-def rewrite_document(document: Mapping[str, Any], topic: Topic) -> dict[str, Any]:
+def rewrite_document(document: Mapping[str, Any], topic: AnyTopic) -> dict[str, Any]:
     """The document as this version's `topic` has it: fields unknown now are dropped, missing ones get their
     default; without one None, an empty list or an empty text where that is allowed.
 
     Raises NoCounterpartError where a field is missing that has no such thing, or holds what is not allowed
     now.
     """
-    assert topic.record is not None
     made = _rewrite(document, topic.record)
     assert isinstance(made, dict)
     return made

@@ -150,7 +150,7 @@ def readings(
             forward, right, down = rate(0.01 * number)
             turning = (forward + (noise if number % 2 else -noise), right, down)
             imu = Imu(time=0, attitude=(1, 0, 0, 0), rate=turning, force=(0, 0, -9.8))
-            rig.calibrator.see_imu("imu", 0.01 * number, imu.to_bytes())
+            rig.calibrator.see_imu(0.01 * number, imu.to_bytes())
             number += 1
 
     thread = threading.Thread(target=stream)

@@ -7,7 +7,7 @@ import pytest
 from robot_runtime.contract.documents import DebugLine
 from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME, Kind
+from robot_runtime.contract.topics import BY_NAME, DEBUG, DEPTH, PICTURE, Kind
 from robot_runtime.transport.blocks import Block, read_blocks, read_rows
 from robot_runtime.transport.outbox import Outbox
 
@@ -24,9 +24,9 @@ def test_rows_arrive_as_one_numbered_block() -> None:
     sent: list[tuple[str, bytes]] = []
     outbox = sent_by(sent)
     for index in range(3):
-        outbox.add_row("depth", 10.0 + index, depth(index).to_bytes())
+        outbox.add_row(DEPTH, 10.0 + index, depth(index).to_bytes())
     outbox.flush()
-    outbox.add_row("depth", 20.0, depth(9).to_bytes())
+    outbox.add_row(DEPTH, 20.0, depth(9).to_bytes())
     outbox.flush()
     outbox.flush()
     assert [name for name, _ in sent] == ["stream", "stream"]
@@ -38,8 +38,8 @@ def test_rows_arrive_as_one_numbered_block() -> None:
 def test_all_topics_share_a_message_and_one_can_be_taken_alone() -> None:
     sent: list[tuple[str, bytes]] = []
     outbox = Outbox(lambda name, data: sent.append((name, data)), lambda name: name == "debug")
-    outbox.add_row("depth", 1.0, depth(0.1).to_bytes())
-    outbox.add_document("debug", DebugLine(time=1.0, level=1, text="one"))
+    outbox.add_row(DEPTH, 1.0, depth(0.1).to_bytes())
+    outbox.add_document(DEBUG, DebugLine(time=1.0, level=1, text="one"))
     outbox.flush()
     assert [name for name, _ in sent] == ["stream", "debug"]
     assert [block.topic.name for block in read_blocks(sent[0][1])] == ["depth", "debug"]
@@ -49,8 +49,8 @@ def test_all_topics_share_a_message_and_one_can_be_taken_alone() -> None:
 def test_documents_arrive_as_json_in_order() -> None:
     sent: list[tuple[str, bytes]] = []
     outbox = sent_by(sent)
-    outbox.add_document("debug", DebugLine(time=1.0, level=1, text="one"))
-    outbox.add_document("debug", DebugLine(time=2.0, level=2, text="zwei ü"))
+    outbox.add_document(DEBUG, DebugLine(time=1.0, level=1, text="one"))
+    outbox.add_document(DEBUG, DebugLine(time=2.0, level=2, text="zwei ü"))
     outbox.flush()
     (block,) = read_blocks(sent[0][1])
     assert block.topic.kind is Kind.DOCUMENTS
@@ -59,7 +59,7 @@ def test_documents_arrive_as_json_in_order() -> None:
 
 def test_a_picture_is_sent_at_once_with_its_time() -> None:
     sent: list[tuple[str, bytes]] = []
-    sent_by(sent).send_picture("picture", 3.5, b"jpeg")
+    sent_by(sent).send_picture(PICTURE, 3.5, b"jpeg")
     (block,) = read_blocks(sent[0][1])
     assert (block.topic.name, block.payload[8:]) == ("picture", b"jpeg")
 
@@ -88,6 +88,6 @@ def test_damaged_blocks_are_refused(data: bytes, why: str) -> None:
 
 def test_values_that_json_lacks_are_refused() -> None:
     outbox = sent_by([])
-    outbox.add_document("debug", DebugLine(time=float("nan"), level=1, text=""))
+    outbox.add_document(DEBUG, DebugLine(time=float("nan"), level=1, text=""))
     with pytest.raises(ValueError, match="Out of range"):
         outbox.flush()

@@ -7,6 +7,7 @@ from typing import Any, Self
 from robot_runtime.commands import Commands
 from robot_runtime.contract.documents import Event, Mode
 from robot_runtime.contract.packets import Navigation
+from robot_runtime.contract.topics import EVENT, NAVIGATION
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
@@ -36,9 +37,9 @@ class Flight:
         self._commands = Commands(self.robot).do
         self._water = changes(self.stage.simulator)
         self._performance = _RunLoop(self.stage, Told(), lambda: False)
-        self.robot.bus.on_document("event", self._hear)
+        self.robot.bus.on_document(EVENT, self._hear)
         self.robot.bus.on_row(
-            "navigation", lambda _, time, record: self.sent.append((time, Navigation.from_bytes(record)))
+            NAVIGATION, lambda time, record: self.sent.append((time, Navigation.from_bytes(record)))
         )
         self._performance.wait_for_start()
         self.run(0.5)
@@ -102,6 +103,6 @@ class Flight:
         """True if this alarm is active."""
         return any(one.fault == fault and one.active for one in self.supervisor.alarms)
 
-    def _hear(self, _: str, document: object) -> None:
+    def _hear(self, document: object) -> None:
         assert isinstance(document, Event)
         self.events.append(document)

@@ -9,6 +9,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.commands import RelayExperimentCommand, StepExperimentCommand
 from robot_runtime.contract.documents import Experiment, State
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.topics import EXPERIMENT, STATE
 from robot_runtime.control.experiments import RelayExperiment, StepExperiment
 from robot_runtime.errors import RefusedError
 from tests.runtime.control.flight import Flight
@@ -53,8 +54,8 @@ class Lab:
         self.set_points: list[float] = []
         """The depth's, as the newest state has it at each word of the experiment."""
         self._state: State | None = None
-        flight.robot.bus.on_document("experiment", self._hear)
-        flight.robot.bus.on_document("state", self._hear_state)
+        flight.robot.bus.on_document(EXPERIMENT, self._hear)
+        flight.robot.bus.on_document(STATE, self._hear_state)
 
     def begin(self, wanted: dict[str, Any]) -> None:
         begin(self.flight, wanted)
@@ -66,13 +67,13 @@ class Lab:
     def phases(self) -> list[str]:
         return list(dict.fromkeys(one.phase for one in self.told))
 
-    def _hear(self, _: str, document: object) -> None:
+    def _hear(self, document: object) -> None:
         assert isinstance(document, Experiment)
         self.told.append(document)
         assert self._state is not None
         self.set_points.append(self._state.loops[0].set_point)
 
-    def _hear_state(self, _: str, document: object) -> None:
+    def _hear_state(self, document: object) -> None:
         assert isinstance(document, State)
         self._state = document
 

@@ -6,6 +6,7 @@ from math import acos, pi
 import pytest
 
 from robot_runtime.contract.packets import Motor, StatusFlag
+from robot_runtime.contract.topics import LINK, MOTOR
 from robot_runtime.control.fault_detector import TILT_MAX
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.pilot import PATIENCE
@@ -100,7 +101,7 @@ def tilt(flight: Flight) -> float:
 def test_a_low_battery_turns_the_fins_down_and_is_an_alarm() -> None:
     with Flight(more="[robot]\nbattery_full = 6.0") as flight:
         motors: list[Motor] = []
-        flight.robot.bus.on_row("motor", lambda _, __, record: motors.append(Motor.from_bytes(record)))
+        flight.robot.bus.on_row(MOTOR, lambda _, record: motors.append(Motor.from_bytes(record)))
         flight.sticks = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
         flight.arm("manual")
         flight.until(lambda: flight.supervisor.mode == "failsafe", 25.0)
@@ -145,7 +146,7 @@ def test_a_board_that_restarts_stops_the_robot(flight: Flight) -> None:
 
 def test_a_restored_link_is_reported_with_its_counters_at_once(flight: Flight) -> None:
     reported: list[float] = []
-    flight.robot.bus.on_row("link", lambda _, time, __: reported.append(time))
+    flight.robot.bus.on_row(LINK, lambda time, _: reported.append(time))
     # Without a reason there is one report a second, which may come soon by chance.
     for pause in (1.0, 1.3, 1.6):
         flight.cut(on=True)

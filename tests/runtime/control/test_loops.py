@@ -8,6 +8,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Mode, Turning
 from robot_runtime.contract.packets import Depth, Imu, Navigation
+from robot_runtime.contract.topics import DEPTH, IMU, TURNING
 from robot_runtime.control.attitude import GRAVITY
 from robot_runtime.control.controllers.bang_bang import BangBang
 from robot_runtime.control.loop import LoopOverride
@@ -27,7 +28,7 @@ class Rig:
         self.turning: list[Turning] = []
         self.pilot = Pilot(self.clock)
         self.node = ControlNode(self.bus, self.clock, self.commands.append, self.pilot)
-        self.bus.on_row("turning", lambda _, __, record: self.turning.append(Turning.from_bytes(record)))
+        self.bus.on_row(TURNING, lambda _, record: self.turning.append(Turning.from_bytes(record)))
         self.node.change_mode(mode)
         self._sequence = 0
         self._sticks: dict[str, float] = {}
@@ -36,18 +37,18 @@ class Rig:
 
     def depth(self, metres: float) -> None:
         record = Depth(time=0, depth=metres, pressure=0, temperature=0.0)
-        self.bus.publish_row("depth", self.clock.now(), record.to_bytes())
+        self.bus.publish_row(DEPTH, self.clock.now(), record.to_bytes())
 
     def attitude(self, heading: float = 0.0, pitch: float = 0.0, roll: float = 0.0) -> None:
         rest = (0.0, 0.0, 0.0)
         record = Imu(time=0, attitude=quaternion(heading, pitch, roll), rate=rest, force=rest)
-        self.bus.publish_row("imu", self.clock.now(), record.to_bytes())
+        self.bus.publish_row(IMU, self.clock.now(), record.to_bytes())
 
     def feel(self, *force: float) -> None:
         """A specific force, m/s², in body axes, of a hull that lies on its right side."""
         x, y, z = force
         record = Imu(time=0, attitude=quaternion(2.0, 0.0, pi / 2), rate=(0.0, 0.0, 0.0), force=(x, y, z))
-        self.bus.publish_row("imu", self.clock.now(), record.to_bytes())
+        self.bus.publish_row(IMU, self.clock.now(), record.to_bytes())
 
     def push(self, **axes: float) -> None:
         """Move the sticks to this position."""

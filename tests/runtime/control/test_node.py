@@ -3,8 +3,9 @@
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.documents import Control, Detection, Document, Event, Mode
+from robot_runtime.contract.documents import Control, Detection, Event, Mode
 from robot_runtime.contract.packets import Beacon, Depth, Navigation
+from robot_runtime.contract.topics import BEACON, CONTROL, DEPTH, DETECTION, EVENT
 from robot_runtime.control.node import BEACON_STALE, ControlNode
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.errors import RefusedError
@@ -23,22 +24,19 @@ class Rig:
         self.node = ControlNode(self.bus, self.clock, self.commands.append, self.pilot)
         self.node.change_mode("automatic")
         self.node.colour = "yellow"
-        self.bus.on_row(
-            "control", lambda _topic, _time, record: self.ticks.append(Control.from_bytes(record))
-        )
-        self.bus.on_document("event", self._event)
+        self.bus.on_row(CONTROL, lambda _, record: self.ticks.append(Control.from_bytes(record)))
+        self.bus.on_document(EVENT, self._event)
 
-    def _event(self, _: str, document: Document) -> None:
-        assert isinstance(document, Event)
-        self.events.append(document.text)
+    def _event(self, event: Event) -> None:
+        self.events.append(event.text)
 
     def depth(self, metres: float) -> None:
         record = Depth(time=0, depth=metres, pressure=0, temperature=0.0)
-        self.bus.publish_row("depth", self.clock.now(), record.to_bytes())
+        self.bus.publish_row(DEPTH, self.clock.now(), record.to_bytes())
 
     def lights(self, right: bool, left: bool) -> None:
         record = Beacon(time=0, right=int(right), left=int(left))
-        self.bus.publish_row("beacon", self.clock.now(), record.to_bytes())
+        self.bus.publish_row(BEACON, self.clock.now(), record.to_bytes())
 
     def see(self, colour: str | None, target: str | None = None, set_point: float | None = None) -> None:
         now = self.clock.now()
@@ -52,7 +50,7 @@ class Rig:
             target=colour if target is None else target,
             set_point=set_point,
         )
-        self.bus.publish_document("detection", seen)
+        self.bus.publish_document(DETECTION, seen)
 
     def tick(self) -> None:
         self.clock.forward(0.1)

@@ -9,6 +9,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.commands import Commands
 from robot_runtime.config import Config
 from robot_runtime.contract.packets import Depth
+from robot_runtime.contract.topics import DEPTH
 from robot_runtime.control.controllers.pid import Pid
 from robot_runtime.core import Core
 from robot_runtime.link.link_driver import LinkDriver
@@ -35,7 +36,7 @@ class Swimmer(Core):
         self.supervisor.mode = "automatic"
         self.control.change_mode("automatic")
         depth = Depth(time=0, depth=1.0, pressure=111_000, temperature=20.0)
-        self.bus.publish_row("depth", clock.now(), depth.to_bytes())
+        self.bus.publish_row(DEPTH, clock.now(), depth.to_bytes())
 
     def check_faults(self) -> None:
         """Report no fault."""

@@ -8,7 +8,7 @@ import robot_runtime.transport.replay_cache as cache_module
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import DebugLine
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.contract.topics import BY_NAME, DEBUG, DEPTH
 from robot_runtime.transport.blocks import NUMBERS, Block
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
@@ -26,11 +26,11 @@ class Writer:
 
     def depths(self, *numbers: int) -> None:
         for number in numbers:
-            self.outbox.add_row("depth", self.clock.now(), depth_record(number).to_bytes())
+            self.outbox.add_row(DEPTH, self.clock.now(), depth_record(number).to_bytes())
         self.outbox.flush()
 
     def debug(self, text: str) -> None:
-        self.outbox.add_document("debug", DebugLine(time=self.clock.now(), level=1, text=text))
+        self.outbox.add_document(DEBUG, DebugLine(time=self.clock.now(), level=1, text=text))
         self.outbox.flush()
 
     def ask(self, **wanted: int) -> BacklogReply:

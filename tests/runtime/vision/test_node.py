@@ -43,9 +43,9 @@ class Listener:
         return VisionOutputs(
             detection=self.detections.append,
             event=self.events.append,
-            picture=lambda topic, time, jpeg: self.pictures.append((topic, time, jpeg)),
+            picture=lambda topic, time, jpeg: self.pictures.append((topic.name, time, jpeg)),
             thumbnail=lambda time, jpeg: self.thumbnails.append((time, jpeg)),
-            watched=lambda topic: topic in self.watching,
+            watched=lambda topic: topic.name in self.watching,
         )
 
 

@@ -46,9 +46,9 @@ class Seen:
         self.outputs = VisionOutputs(
             detection=self.detections.append,
             event=self.events.append,
-            picture=lambda topic, _, jpeg: self.pictures.append((topic, jpeg)),
+            picture=lambda topic, _, jpeg: self.pictures.append((topic.name, jpeg)),
             thumbnail=lambda _, jpeg: self.thumbnails.append(jpeg),
-            watched=lambda topic: topic in self.watching,
+            watched=lambda topic: topic.name in self.watching,
         )
 
     @property

@@ -1,7 +1,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.contract.topics import BY_NAME, Topic
+from robot_runtime.contract.topics import BY_NAME, AnyTopic
 from robot_runtime.transport.blocks import read_blocks
 from server.stream.broadcast import CHUNK_SECONDS, BroadcastBuffer, TopicHistory
 from tests.server.blocks import debug_block, depth_block, link_block, state_block
@@ -52,7 +52,7 @@ def test_lost_samples_are_counted_exactly(counts: list[int], read: int) -> None:
     assert dict(lane.lost(seen)) == ({DEPTH: expected, DEBUG: lost} if lost else {})
 
 
-def numbers(data: bytes, topic: Topic = DEPTH) -> list[int]:
+def numbers(data: bytes, topic: AnyTopic = DEPTH) -> list[int]:
     return [
         number
         for block in read_blocks(data)

@@ -25,7 +25,6 @@ from tests.server.features.sessions.recorder_rig import RecorderRig
 
 def truth_block(first: int, count: int, start: float = 100.0) -> Block:
     topic = BY_NAME["truth"]
-    assert topic.record is not None
     assert issubclass(topic.record, Record)
     rows = [
         row(start + 0.05 * place, bytes(topic.record.layout.size)) for place in range(first, first + count)

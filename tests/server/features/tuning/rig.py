@@ -4,6 +4,7 @@ from typing import Any
 
 from robot_runtime.contract.documents import Control, Experiment
 from robot_runtime.contract.packets import Motor
+from robot_runtime.contract.topics import CONTROL, EXPERIMENT, MOTOR
 from server.features.tuning.curve import SampleBuffer
 from server.features.tuning.evaluation import measure_run
 from server.features.tuning.schemas import MeasuredLimitCycle, RelayStart, StepStart
@@ -20,9 +21,9 @@ class Rig:
         self._gathering = SampleBuffer("depth")
         self._told: list[Experiment] = []
         bus = flight.robot.bus
-        bus.on_row("control", self._tick)
-        bus.on_row("motor", self._fins)
-        bus.on_document("experiment", self._take_progress)
+        bus.on_row(CONTROL, self._tick)
+        bus.on_row(MOTOR, self._fins)
+        bus.on_document(EXPERIMENT, self._take_progress)
         flight.arm()
 
     def step(self, start: float, target: float, seconds: float) -> dict[str, float | None]:
@@ -71,15 +72,15 @@ class Rig:
         assert problem == ""
         return found
 
-    def _tick(self, _: str, time: float, record: bytes) -> None:
+    def _tick(self, time: float, record: bytes) -> None:
         tick = Control.from_bytes(record)
         self._gathering.curve.add(time, tick.set_point, tick.depth, tick.output)
 
-    def _fins(self, _: str, time: float, record: bytes) -> None:
+    def _fins(self, time: float, record: bytes) -> None:
         self._gathering.fin_times.append(time)
         for kept, angle in zip(self._gathering.fins, Motor.from_bytes(record).angle, strict=True):
             kept.append(angle)
 
-    def _take_progress(self, _: str, document: object) -> None:
+    def _take_progress(self, document: object) -> None:
         assert isinstance(document, Experiment)
         self._told.append(document)
