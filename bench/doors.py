@@ -16,7 +16,7 @@ from bench.hub import process
 from bench.processes import core_percent, cpu_seconds
 from bench.ros2_programs import Ros2Door
 from bench.websocket_programs import foxglove_door, rosbridge_door
-from robot_runtime.config import DoorsConfig
+from server.features.doors.config import DoorsConfig
 from server.platform.authority import Authority
 from server.platform.settings import DataFolder, Settings
 from tests.stack import free_port
@@ -39,7 +39,7 @@ def measure() -> dict[str, float]:
             data=DataFolder(Path(folder)),
             config=Path("robot.toml"),
             port=free_port(),
-            doors=DoorsConfig(rosbridge=True, foxglove=True, ros2=True, ros2_listen=ros2),
+            sections={DoorsConfig: DoorsConfig(rosbridge=True, foxglove=True, ros2=True, ros2_listen=ros2)},
         )
         settings.data.run.mkdir()
         Authority(settings).prepare()

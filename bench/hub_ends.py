@@ -17,12 +17,12 @@ from pathlib import Path
 from struct import Struct
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.config import DoorsConfig
 from robot_runtime.contract.topics import BY_NAME, TIME
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from server.app import create_app
+from server.features.doors.config import DoorsConfig
 from server.http.listener import open_socket
 from server.http.serving import make_server
 from server.platform.schema import prepare
@@ -62,8 +62,9 @@ def _every_tick(do: Callable[[float], None], ended: threading.Event) -> None:
 async def _serve(
     data: Path, port: int, page: Path, ended: threading.Event, doors: DoorsConfig | None = None
 ) -> None:
-    folder, opened = DataFolder(data), doors or DoorsConfig()
-    settings = Settings(data=folder, config=Path("robot.toml"), port=port, page=page, doors=opened)
+    settings = Settings(data=DataFolder(data), config=Path("robot.toml"), port=port, page=page)
+    if doors is not None:
+        settings = settings.with_section(doors)
     prepare(settings.data)
     server = make_server(create_app(settings, ()))
     with open_socket("127.0.0.1", port) as listener:

@@ -15,6 +15,7 @@ import httpx
 import zenoh
 
 from bench.connected_programs import END_SECONDS, steady_time
+from server.features.doors.config import DoorsConfig
 from server.http.sign_in.tokens import digest
 from server.platform.authority import Authority
 from server.platform.settings import Settings
@@ -57,7 +58,7 @@ class Ros2Door:
         """Open a session, at another address perhaps. Raises OSError."""
         while len(self._certificates) <= number // _PROGRAMS_OF_CERTIFICATE:
             self._certificates.append(issue(self._settings, f"program-{len(self._certificates)}"))
-        host, port = address or self._settings.doors.ros2_address
+        host, port = address or self._settings.section(DoorsConfig).ros2_address
         folder = self._certificates[number // _PROGRAMS_OF_CERTIFICATE]
         try:
             session = zenoh.open(_configuration(folder, f"tls/{host}:{port}"))
@@ -85,7 +86,7 @@ class Ros2Door:
         Raises ConnectionError where it is not disconnected.
         """
         came = threading.Event()
-        with _Relay(self._settings.doors.ros2_address) as relay:
+        with _Relay(self._settings.section(DoorsConfig).ros2_address) as relay:
             session = self.open_one(
                 2 * _PROGRAMS_OF_CERTIFICATE, lambda _: came.set(), _TOPICS + _MORE, relay.address
             )

@@ -1,10 +1,12 @@
-"""The configuration in robot.toml as typed, checked values, with the default of each entry."""
+"""The robot's part of robot.toml as typed, checked values, with the default of each entry.
+
+The other sections are the server's and its features', which declare them.
+"""
 
 import re
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Annotated, Literal
-from urllib.parse import SplitResult, quote, urlsplit
+from typing import Annotated, Any, Literal
 
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, Craft, CraftDocument, load_craft
 from robot_runtime.contract.limits import SCENE_HEIGHT, SCENE_WIDTH, SET_POINT, ConfigError, Range
@@ -17,7 +19,6 @@ from robot_runtime.contract.vision_settings import VisionSettings
 
 NETWORK_ENDPOINT = re.compile(r"tls/[^\s/#?;]+:[0-9]+")
 """A Zenoh endpoint with certificates. What may follow in one, from ? or # on, could switch them off."""
-ROS2_NAMESPACE = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]{0,63}){0,4}")
 HIL_BAUD_MIN = 115_200
 """bit/s from which the line carries the fins' angles at full rate."""
 
@@ -133,112 +134,8 @@ class ZenohConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ServerConfig:
-    """The web server: its address, the host names that browsers may use, TLS, and the proxy before it."""
-
-    host: str = "127.0.0.1"
-    port: Annotated[int, Range(1, 65535)] = 8000
-    allowed_hosts: list[str] = field(default_factory=lambda: ["localhost", "127.0.0.1", "[::1]"])
-    tls: bool = False
-    public_url: str = ""
-    trusted_proxies: list[str] = field(default_factory=list)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SessionsConfig:
-    """Automatic recording and retention; times in days, free space in GB of 10^9 bytes; 0 disables a rule."""
-
-    record_at_arming: bool = True
-    undo_days: Annotated[float, Range(0, 3650)] = 7.0
-    keep_days: Annotated[float, Range(0, 36500)] = 0.0
-    keep_free: Annotated[float, Range(0, 100_000)] = 0.5
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DoorsConfig:
-    """The doors for other programs: `/rosbridge` and `/foxglove` of the server, ROS 2; closed unless true.
-
-    For ROS 2: the endpoint, the domain, and the namespace, "" or as "/name".
-    """
-
-    rosbridge: bool = False
-    foxglove: bool = False
-    ros2: bool = False
-    ros2_listen: str = "tls/127.0.0.1:7448"
-    ros2_domain: Annotated[int, Range(0, 232)] = 0
-    ros2_namespace: str = ""
-
-    def __post_init__(self) -> None:
-        if not NETWORK_ENDPOINT.fullmatch(self.ros2_listen):
-            raise ConfigError(
-                f"doors.ros2_listen is {self.ros2_listen!r}, which would let in programs without a "
-                'certificate of this robot; use "tls/ADDRESS:PORT"'
-            )
-        if not ROS2_NAMESPACE.fullmatch(self.ros2_namespace):
-            raise ConfigError(
-                f'doors.ros2_namespace is {self.ros2_namespace!r}; use a name of ROS 2 such as "/turtle", or '
-                '"" for none'
-            )
-
-    @property
-    def ros2_address(self) -> tuple[str, int]:
-        """Returns the host and port of the door for ROS 2."""
-        host, _, port = self.ros2_listen.removeprefix("tls/").rpartition(":")
-        return host.strip("[]"), int(port)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EventsConfig:
-    """The broker and the address that are told of alarms, sessions, tests and missions; off unless named.
-
-    Files are beside this one, or have a whole path, and are readable by the robot's user alone.
-    """
-
-    mqtt: str = ""
-    mqtt_user: str = ""
-    mqtt_password_file: str = ""
-    webhook: str = ""
-    webhook_token_file: str = ""
-    ca_file: str = ""
-
-    def __post_init__(self) -> None:
-        broker = _check_address("events.mqtt", self.mqtt, ("mqtt", "mqtts"))
-        receiver = _check_address("events.webhook", self.webhook, ("http", "https"))
-        if self.mqtt and (broker.path or broker.query):
-            raise ConfigError(f"events.mqtt is {self.mqtt!r}; it ends with the broker's name and port")
-        if bool(self.mqtt_user) != bool(self.mqtt_password_file):
-            raise ConfigError("events.mqtt_user and events.mqtt_password_file go together; one is missing")
-        if self.mqtt_password_file and broker.scheme == "mqtt" and not _is_here(broker):
-            raise ConfigError("events.mqtt would send the password for everybody to read; use mqtts://")
-        if self.webhook_token_file and receiver.scheme == "http" and not _is_here(receiver):
-            raise ConfigError("events.webhook would send the token for everybody to read; use https://")
-
-
-def _check_address(name: str, address: str, schemes: tuple[str, str]) -> SplitResult:
-    """The parts of an address, which may be empty. Raises ConfigError."""
-    try:
-        parts = urlsplit(address)
-        # Encoded as it is looked up, which a name with an empty part cannot be.
-        host = parts.hostname and parts.hostname.encode("idna")
-        usable = parts.scheme in schemes and host and parts.port != 0 and "@" not in parts.netloc
-    except ValueError:
-        usable = False
-    if address and (not usable or "#" in address or not address.isprintable() or " " in address):
-        raise ConfigError(f"{name} is {address!r}; use {schemes[0]}://NAME or {schemes[1]}://NAME")
-    other = "".join(one for one in parts.path + parts.query if not one.isascii())
-    if other:
-        raise ConfigError(f"{name} has {other!r}, which addresses write as {quote(other)}")
-    return parts
-
-
-def _is_here(address: SplitResult) -> bool:
-    name = address.hostname or ""
-    return name in ("localhost", "::1") or name.startswith("127.")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Config:
-    """The whole configuration."""
+    """The sections that the robot's runtime reads."""
 
     robot: RobotConfig = RobotConfig()
     link: LinkConfig = LinkConfig()
@@ -248,10 +145,6 @@ class Config:
     vision: VisionConfig = VisionConfig()
     missions: MissionLimits = NO_LIMITS
     zenoh: ZenohConfig = ZenohConfig()
-    server: ServerConfig = ServerConfig()
-    sessions: SessionsConfig = SessionsConfig()
-    doors: DoorsConfig = DoorsConfig()
-    events: EventsConfig = EventsConfig()
 
     def __post_init__(self) -> None:
         if self.robot.mode == "hil" and self.link.baud < HIL_BAUD_MIN:
@@ -279,11 +172,17 @@ def load_with_text(path: Path) -> tuple[Config, str]:
 
 def parse_text(text: str, path: Path) -> Config:
     """Returns the configuration in this text of the file `path`. Raises ConfigError if it cannot be used."""
+    table = read_table(text, path)
+    own = {one.name for one in fields(Config)}
+    return parse(Config, {name: one for name, one in table.items() if name in own}, DocumentEntry(path.name))
+
+
+def read_table(text: str, path: Path) -> dict[str, Any]:
+    """Returns the sections in this text of the file `path`. Raises ConfigError if it is no TOML."""
     try:
-        table = read_toml(text)
+        return read_toml(text)
     except TomlError as problem:
         raise ConfigError(f"{path} cannot be read: it {problem}") from problem
-    return parse(Config, table, DocumentEntry(path.name))
 
 
 def craft_path(config: Config, path: Path, data: Path) -> Path:

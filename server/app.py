@@ -3,44 +3,22 @@
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from functools import cache
+from pkgutil import resolve_name
 
 from fastapi import Depends, FastAPI
 from starlette.routing import BaseRoute
 
 from server import VERSION
-from server.container import Container
-from server.features.backup import routes as backup
-from server.features.board import routes as board
-from server.features.bring_up import routes as bring_up
-from server.features.comm_tests import routes as comm_tests
-from server.features.comparison import routes as compare
-from server.features.doctor import routes as doctor
-from server.features.doors import routes as doors
-from server.features.exports import routes as exports
-from server.features.identification import routes as identification
-from server.features.layouts import routes as layouts
-from server.features.lease import routes as control
+from server.container import Container, features_on
+from server.feature import Feature
 from server.features.lease.admission import admit
-from server.features.live import routes as live
-from server.features.missions import routes as missions
-from server.features.operate import routes as robot
-from server.features.panels import routes as panels
-from server.features.parameters import routes as parameters
-from server.features.people import audit
-from server.features.people import routes as access
-from server.features.scenarios import routes as scenarios
-from server.features.sessions import routes as sessions
-from server.features.simulator import routes as simulator
-from server.features.tuning import routes as tuning
-from server.features.updates import routes as updates
-from server.features.vision import routes as vision
 from server.http.addresses import make_unknown_router
 from server.http.audit import AuditMiddleware
 from server.http.description import DescribedApp
 from server.http.error_handlers import add_error_handlers
 from server.http.head_requests import HeadRequests
 from server.http.help_pages import HelpPages, make_help_router
-from server.http.operations import EVERYWHERE
+from server.http.operations import EVERYWHERE, Operations
 from server.http.page import Page, make_router
 from server.http.proxies import RequestsOfAddress
 from server.http.security import SecurityMiddleware
@@ -51,12 +29,6 @@ from server.http.start_problems import StartProblems, explaining_start
 from server.http.turns import RequestTurns
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
-
-ROUTES = (
-    *(access, audit, backup, board, bring_up, comm_tests, compare, control, doctor, doors, exports),
-    *(identification, layouts, live, missions, panels, parameters, robot, scenarios, sessions),
-    *(simulator, tuning, updates, vision),
-)
 
 
 def create_app(
@@ -110,18 +82,26 @@ def create_app(
     app.add_middleware(AuditMiddleware)
     app.add_middleware(StartProblems)
     add_error_handlers(app)
-    app.router.routes.extend(_build_routes())
-    for door in doors.open_routes(settings):
-        app.router.routes.extend(door.build())
+    for feature in features_on(settings):
+        for place in feature.routes:
+            app.router.routes.extend(_build_routes(place, feature, settings))
     app.include_router(make_unknown_router())
     app.include_router(make_help_router(HelpPages(settings.help_pages)))
     app.include_router(make_router(Page(settings.page)))
     return app
 
 
+def _build_routes(place: str, feature: Feature, settings: Settings) -> list[BaseRoute]:
+    """The routes at this place of a feature's code, each behind admission."""
+    found = resolve_name(place)
+    if isinstance(found, Operations):
+        return _build(found)
+    assert feature.section is not None
+    return [route for made in found(settings.section(feature.section)) for route in _build(made)]
+
+
 @cache
-def _build_routes() -> list[BaseRoute]:
-    """The routes of every feature, each behind admission; the same for all servers of a process."""
-    return [
-        route for module in ROUTES for route in module.router.build([Depends(admit)], responses=EVERYWHERE)
-    ]
+def _build(operations: Operations) -> list[BaseRoute]:
+    """The same for all servers of a process."""
+    checks = [] if operations.admits_itself else [Depends(admit)]
+    return operations.build(checks, responses=EVERYWHERE)

@@ -10,48 +10,36 @@ import click
 from robot_runtime.durable_files import keep_private
 from robot_runtime.transport.lifetime import limit_library_threads
 from server import VERSION
+from server.feature import list_features
 from server.platform.terminal import PlainFormatter
 
 COMMANDS = {
     "run": "server.startup:run",
     "runtime": "server.processes.runtime_service:run_runtime",
-    "install": "server.features.installation.command:install",
-    "update": "server.features.installation.command:update",
-    "rollback": "server.features.installation.command:rollback",
-    "uninstall": "server.features.installation.command:uninstall",
-    "doctor": "server.features.doctor.command:doctor",
-    "bring-up": "server.features.bring_up.command:bring_up",
-    "upload": "server.features.board.command:upload",
-    "commtest": "server.features.comm_tests.command:commtest",
-    "simulator": "server.features.simulator.command:simulator",
-    "scenario": "server.features.scenarios.command:scenario",
-    "mission": "server.features.missions.command:mission",
-    "report": "server.features.comparison.command:report",
-    "identify": "server.features.identification.command:identify",
-    "export": "server.features.exports.command:export_session",
-    "import": "server.features.exports.command:import_session",
-    "sessions": "server.features.sessions.command:sessions",
-    "record": "server.features.sessions.command:record",
-    "backup": "server.features.backup.command:backup",
-    "restore": "server.features.backup.command:restore",
-    "pair": "server.features.people.command:pair",
-    "access": "server.features.people.command:access",
-    "certificate": "server.features.simulator.certificates:certificate",
     "completion": "server.cli:completion",
 }
-"""Module and function of each command. Only the called one is loaded: a Raspberry Pi Zero is slow at that."""
+"""Module and function of the server's own commands; a feature declares its own."""
+
+
+def places_of_commands() -> dict[str, str]:
+    """The place of each command. Only the called one is loaded: a Raspberry Pi Zero is slow at that."""
+    places = dict(COMMANDS)
+    for feature in list_features().values():
+        places |= feature.commands
+    return dict(sorted(places.items()))
 
 
 class LazyGroup(click.Group):
     """Commands that are imported when they are needed."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
-        """Return the names in the order of the table."""
-        return list(COMMANDS)
+        """Return the names in alphabetical order."""
+        return list(places_of_commands())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
         """Import a command; None where there is none of this name."""
-        command: click.Command | None = resolve_name(COMMANDS[cmd_name]) if cmd_name in COMMANDS else None
+        place = places_of_commands().get(cmd_name)
+        command: click.Command | None = None if place is None else resolve_name(place)
         return command
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from robot_runtime.simulation.boards.mistakes import check_mistake, write_list
+from server.features.doors.config import DoorsConfig
 from server.platform.command_line import CommandError, with_settings
 from server.platform.folder_lock import claim
 from server.platform.last_configuration import keep_configuration
@@ -83,11 +84,12 @@ def _serve(settings: Settings) -> int:
     from server.http.listener import open_socket
     from server.processes.server_runner import ServerRunner
 
-    if settings.zenoh.listen or settings.doors.ros2:
+    ros2 = settings.section(DoorsConfig).ros2
+    if settings.zenoh.listen or ros2:
         from server.platform.authority import Authority
 
         Authority(settings).prepare()
-    if settings.doors.ros2:
+    if ros2:
         from server.features.doors.ros2_door import check_ros2
 
         check_ros2(settings)
@@ -163,14 +165,15 @@ def _load(settings: Settings, certificate: "Certificate | None") -> tuple["FastA
     from robot_runtime.service_manager import ServiceManager
     from server.app import create_app
     from server.http.serving import make_server
+    from server.http.sign_in.access import Access
     from server.processes.supervisor import plan
 
     def started(container: "Container") -> None:
-        container.comparison.prepare()
+        container.warm_up()
         app.state.note_serving()
         ServiceManager().ready()
         if not app.state.ended:
-            _greet(settings, container.access, certificate)
+            _greet(settings, container.services.get(Access), certificate)
 
     app = create_app(settings, plan(settings), started)
     server = make_server(app, certificate, settings.trusted_proxies)

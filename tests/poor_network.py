@@ -26,6 +26,7 @@ from websockets.exceptions import WebSocketException
 from bench.dive import Dive
 from robot_runtime.contract.topics import BY_NAME, TIME, Kind
 from robot_runtime.transport.blocks import Block, read_blocks, row
+from server.features.lease.arbiter import ControlArbiter
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.server.serving import Served, serve
 from tests.server.sign_in.browsers import new_code
@@ -228,7 +229,7 @@ class Scenario:
 
     async def _steer(self) -> None:
         self._sequence += 1
-        command = {"op": "drive", "lease": self._served.container.arbiter.lease.epoch}
+        command = {"op": "drive", "lease": self._served.container.services.get(ControlArbiter).lease.epoch}
         command |= {"sequence": self._sequence, "taken": time.monotonic(), "axes": [0, 0, 1, 0, 0, 0]}
         await self._page.send(command)
 
@@ -248,7 +249,7 @@ class Scenario:
         passed = len(self._served.runtime.driven)
         with suppress(WebSocketException):
             await self._steer()
-        lease = self._served.container.arbiter.lease
+        lease = self._served.container.services.get(ControlArbiter).lease
         await until(lambda: lease.holder is None, "the lease to be given up", PATIENCE)
         self.report.outage_released_s = time.monotonic() - began
         await asyncio.sleep(max(0.0, began + OUTAGE_SECONDS - time.monotonic()))

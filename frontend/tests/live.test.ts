@@ -30,7 +30,7 @@ class ServerEnd {
   greet(hello: object = {}) {
     this.readyState = ServerEnd.OPEN;
     this.onopen?.();
-    this.tell({ op: 'hello', definitions: DEFINITIONS_HASH, robot: 't', steady: 100, utc: 1e9, page_version: 'a', you: YOU, client_key: 'key', ...hello });
+    this.tell({ op: 'hello', definitions: DEFINITIONS_HASH, robot: 't', steady: 100, utc: 1e9, page_version: 'a', features: [], you: YOU, client_key: 'key', ...hello });
   }
 
   tell(message: object) {

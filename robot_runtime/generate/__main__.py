@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 
 from robot_runtime.generate import cpp, hardware, json_schema, reference, typescript
-from robot_runtime.generate.configuration import configuration_page
 from robot_runtime.generate.craft import craft_page
 from robot_runtime.generate.missions import missions_page
 from robot_runtime.generate.wiring_picture import wiring_picture
@@ -31,9 +30,6 @@ def main() -> int:
         "frontend/src/generated/topics.ts": typescript.module(),
         "frontend/src/generated/commands.ts": typescript.commands_module(),
         "docs/reference/commands.md": reference.commands_page(),
-        "docs/reference/configuration.md": configuration_page(
-            (SOURCES / "robot.toml").read_text(encoding="utf-8")
-        ),
         "docs/reference/craft.md": craft_page(),
         "docs/reference/events.md": reference.events_page(),
         "docs/reference/faults.md": reference.faults_page(),

@@ -71,9 +71,9 @@ class HealthMonitor:
         clock: Clock,
         store: Store,
         processes: ProcessSupervisor,
-        events: Callable[[], Condition | None] = lambda: None,
     ) -> None:
-        self._events = events
+        self.outlets: Callable[[], Condition | None] = lambda: None
+        """The state of the outlets of events; None without one."""
         self._settings = settings
         self._clock = clock
         self._store = store
@@ -159,7 +159,7 @@ class HealthMonitor:
             "scene": self._scene(),
             "camera": self._camera(),
         }
-        if (events := self._events()) is not None:
+        if (events := self.outlets()) is not None:
             conditions["events"] = events
         parts = [PartHealth(name=name, state=state, text=text) for name, (state, text) in conditions.items()]
         simulator = self._processes.get("simulator")

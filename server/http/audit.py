@@ -95,7 +95,7 @@ class AuditLog:
     def __init__(self, folder: Path, clock: Clock, notice: Callable[[str, str], None]) -> None:
         self.folder = folder
         self._clock = clock
-        self._notice = notice
+        self.notice = notice
         self._noticed = -NOTICE_SECONDS, ""
         self._windows: dict[tuple[int | None, str, str], _Window] = {}
         self._pending: list[_Written] = []
@@ -143,7 +143,7 @@ class AuditLog:
         now, (before, said) = self._clock.now(), self._noticed
         if text != said or now - before >= NOTICE_SECONDS:
             self._noticed = now, text
-            self._notice(operation, text)
+            self.notice(operation, text)
 
     def _admit(self, entry: AuditEntry, series: Series) -> bool:
         """Count an entry; False where there are too many of its kind, so that it is only counted."""

@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 def find_service(connection: HTTPConnection, kind: type[T]) -> T:
     """The service of this type, of the server that answers this request: the container registers them."""
-    service: T = connection.app.state.services[kind]
+    service: T = connection.app.state.services.get(kind)
     return service
 
 

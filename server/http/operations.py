@@ -59,7 +59,9 @@ class Operations:
     takes a tenth of a server's start.
     """
 
-    def __init__(self, prefix: str = "", tags: Sequence[str] = ()) -> None:
+    def __init__(self, prefix: str = "", tags: Sequence[str] = (), *, admits_itself: bool = False) -> None:
+        self.admits_itself = admits_itself
+        """True where its sockets check by themselves who opens them."""
         self._prefix = prefix
         self._tags = tags
         self._declared: list[Callable[[APIRouter], None]] = []

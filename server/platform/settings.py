@@ -8,32 +8,35 @@ import stat
 import struct
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from ipaddress import ip_address
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal, TypeVar
 
 from robot_runtime.config import (
     ADOPTED_CRAFT,
-    DoorsConfig,
-    EventsConfig,
+    Config,
     HilConfig,
     LinkConfig,
-    SessionsConfig,
     ZenohConfig,
     craft_in,
     craft_path,
     load_with_text,
+    read_table,
 )
 from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
+from robot_runtime.contract.parsing import read_value
+from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.control.controllers import check_control
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.places import BUILD, DEFAULT_CONFIG, IN_REPOSITORY
 from robot_runtime.profile import Profile, profile_here
+from server.feature import Feature, list_features
 from server.platform.pidfile import RUNTIME_PAUSED, hold_still, running_parts
 from server.platform.reverse_proxy import Network, read_proxies, read_public_url
+from server.platform.server_config import ServerConfig
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
@@ -49,6 +52,7 @@ SIOCGIFADDR = 0x8915
 
 ROBOT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,31}")
 
+T = TypeVar("T")
 Mode = Literal["emulated", "robot", "hil"]
 
 
@@ -148,11 +152,12 @@ class Settings:
     profile: Profile = "full"
     link: LinkConfig = field(default_factory=LinkConfig)
     hil: HilConfig = field(default_factory=HilConfig)
-    sessions: SessionsConfig = field(default_factory=SessionsConfig)
     missions: MissionLimits = NO_LIMITS
     zenoh: ZenohConfig = field(default_factory=ZenohConfig)
-    doors: DoorsConfig = field(default_factory=DoorsConfig)
-    events: EventsConfig = field(default_factory=EventsConfig)
+    features: Mapping[str, bool] = field(default_factory=dict)
+    """The optional features that robot.toml switches on or off, by name."""
+    sections: Mapping[type, object] = field(default_factory=dict)
+    """The sections of features, by their classes, where they differ from the defaults."""
     host: str = "127.0.0.1"
     port: int = 8000
     tls: bool = False
@@ -171,9 +176,28 @@ class Settings:
     """The runtime is a service of its own, which this server does not start and does not end."""
     configuration_problem: str = ""
     """Reason why these are the settings of the last configuration instead; empty if they are not."""
+    every_feature: bool = False
+    """All features are on, whatever their sections say: for the description of the interface."""
     build: Path = BUILD
     page: Path = Path(__file__).parents[1] / "page"
     help_pages: Path = Path(__file__).parents[1] / "help"
+
+    def section(self, kind: type[T]) -> T:
+        """The section of robot.toml that a feature declares with this class."""
+        found = self.sections.get(kind)
+        return found if isinstance(found, kind) else kind()
+
+    def with_section(self, section: object) -> "Settings":
+        """These settings with another section of a feature."""
+        return replace(self, sections={**self.sections, type(section): section})
+
+    def has(self, feature: Feature) -> bool:
+        """True where this feature is on."""
+        if self.every_feature:
+            return True
+        if feature.optional and not self.features.get(feature.name, True):
+            return False
+        return feature.section is None or feature.is_on(self.section(feature.section))
 
     @property
     def scheme(self) -> str:
@@ -243,6 +267,8 @@ def read_settings(
     config = config or find_config(folder)
     try:
         loaded, text = load_with_text(config)
+        table = read_table(text, config)
+        server, features, sections = _read_sections(table, DocumentEntry(config.name))
         check_control(loaded.control)
     except ConfigError as problem:
         raise SetupError(f"{problem}. Correct the file, or name another with --config.") from problem
@@ -254,13 +280,13 @@ def read_settings(
         raise SetupError(f"{problem}. Correct or remove the craft file.") from problem
     if not ROBOT_NAME.fullmatch(loaded.robot.name):
         raise SetupError(f"{config}: robot.name is {loaded.robot.name!r}; use up to 32 of a-z, 0-9, - and _.")
-    chosen_port = loaded.server.port if port is None else port
+    chosen_port = server.port if port is None else port
     if not 0 < chosen_port < 65536:
         raise SetupError(f"The port is {chosen_port}; it must be a whole number from 1 to 65535.")
-    chosen_host = host or loaded.server.host
+    chosen_host = host or server.host
     try:
-        public_url = read_public_url(loaded.server.public_url)
-        trusted_proxies = read_proxies(loaded.server.trusted_proxies)
+        public_url = read_public_url(server.public_url)
+        trusted_proxies = read_proxies(server.trusted_proxies)
     except ValueError as problem:
         raise SetupError(f"{config}: {problem}") from problem
     return Settings(
@@ -272,19 +298,49 @@ def read_settings(
         profile=profile_here(loaded),
         link=loaded.link,
         hil=loaded.hil,
-        sessions=loaded.sessions,
         missions=loaded.missions,
         zenoh=loaded.zenoh,
-        doors=loaded.doors,
-        events=loaded.events,
+        features=features,
+        sections=sections,
         craft=None if craft == folder.craft else craft,
         host=chosen_host,
         port=chosen_port,
-        tls=loaded.server.tls,
-        allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),
+        tls=server.tls,
+        allowed_hosts=_allowed_hosts(server.allowed_hosts, chosen_host),
         public_url=public_url,
         trusted_proxies=trusted_proxies,
     )
+
+
+def _read_sections(
+    table: Mapping[str, Any], where: DocumentEntry
+) -> tuple[ServerConfig, Mapping[str, bool], Mapping[type, object]]:
+    """The sections of robot.toml beside the robot's own. Raises ConfigError."""
+    named = {one.name: one.section for one in list_features().values() if one.section is not None}
+    optional = [one.name for one in list_features().values() if one.optional]
+    known = [*(one.name for one in fields(Config)), "server", "features", *named]
+    problems = [
+        where.field(name, repr(name)).problem(f"is not known here; known are {', '.join(known)}")
+        for name in table
+        if name not in known
+    ]
+    features = read_value(dict[str, bool], table.get("features", {}), where.field("features"))
+    problems += [
+        where.field("features")
+        .field(name)
+        .problem(f"is no optional feature; there are {', '.join(optional)}")
+        for name in features
+        if name not in optional
+    ]
+    if problems:
+        raise ConfigError(*problems)
+    sections = {
+        kind: read_value(kind, table[name], where.field(name))
+        for name, kind in named.items()
+        if name in table
+    }
+    server = read_value(ServerConfig, table.get("server", {}), where.field("server"))
+    return server, features, sections
 
 
 def data_folder(data: Path | None, environment: Mapping[str, str]) -> DataFolder:

@@ -84,7 +84,7 @@ class Bridge:
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
         """Invalid messages so far."""
-        self.on_stop: Callable[[], None] | None = None
+        self.on_stop: list[Callable[[], None]] = []
         """Called at each STOP."""
         self.answered = float("-inf")
         """Time of the runtime's last answer to a command, s, steady clock: older documents may lack it."""
@@ -188,8 +188,8 @@ class Bridge:
         Commands that change parameters go through `Changes`, which records them.
         """
         if name == "stop":
-            if self.on_stop is not None:
-                self.on_stop()
+            for see_stop in self.on_stop:
+                see_stop()
             answer = await self._shared_stop.ask()
         else:
             answer = await self._ask(f"command/{name}", payload, self._commands)

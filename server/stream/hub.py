@@ -10,7 +10,7 @@ filled (measured).
 import asyncio
 import json
 from collections import deque
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Any
 
 from robot_runtime.clock import Clock
@@ -181,6 +181,8 @@ class Hub:
         self._required: frozenset[str] = frozenset()
         self._clock = clock
         self._audience = audience
+        self.listeners: list[Callable[[dict[str, Any]], None]] = []
+        """Get every message that the pages are sent."""
         self._clients: dict[Client, asyncio.Task[None]] = {}
         self._newest: dict[str, str] = {}
 
@@ -194,7 +196,7 @@ class Hub:
         """The number of open sockets of operators."""
         return sum(client.is_operator for client in self._clients)
 
-    def add(self, blocks: list[Block]) -> None:
+    def add(self, blocks: Sequence[Block]) -> None:
         """Pass these blocks to all clients, as one message each for rows and for documents."""
         self.tick += 1
         now = self._clock.now()
@@ -221,6 +223,8 @@ class Hub:
 
     def notify(self, message: dict[str, Any]) -> None:
         """Send a message to all clients, now and on connecting; of each `op` only the newest."""
+        for listener in self.listeners:
+            listener(message)
         kind, text = message["op"], json.dumps(message, ensure_ascii=False)
         if self._newest.get(kind) == text:
             return

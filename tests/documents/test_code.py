@@ -3,19 +3,17 @@
 import asyncio
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from robot_runtime.config import Config
 from robot_runtime.contract.craft import read_craft
 from robot_runtime.contract.packets import Depth
-from robot_runtime.contract.parsing import parse
-from robot_runtime.contract.problems import DocumentEntry
-from robot_runtime.contract.toml_text import read_toml
 from robot_runtime.missions.document import read_mission
-from server.platform.settings import Settings
+from server.health.monitor import HealthMonitor
+from server.platform.settings import Settings, read_settings
 from tests.documents import test_commands, test_recipes
 from tests.documents.blocks import DOCS, Block, read_blocks
 from tests.notebooks.runner import NAMES, read_cells
@@ -65,7 +63,10 @@ def named(page: str, block: Block) -> tuple[str, str]:
 
 def read_robot_file(text: str) -> None:
     """Read a part of robot.toml as a server does."""
-    parse(Config, read_toml(text), DocumentEntry("robot.toml"))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "robot.toml"
+        path.write_text(text, encoding="utf-8")
+        read_settings(path, Path(folder), None, None, {})
 
 
 READERS: dict[str, Callable[[str], object]] = {
@@ -157,7 +158,7 @@ def test_a_program_runs(settings: Settings, program: str) -> None:
         session = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
         await served.api.post("/control/release")
         diving = asyncio.create_task(dive(served))
-        await until(lambda: "depth" in served.container.monitor._newest, "the depth")
+        await until(lambda: "depth" in served.get(HealthMonitor)._newest, "the depth")
         await served.api.post(f"/sessions/{session}/stop")
         place = f"127.0.0.1:{served.settings.port}"
         code = program.replace("turtle.local:8000", place).replace("mucat_...", await make_token(served))

@@ -1,6 +1,10 @@
 """The pages "add a ...": each step is applied to a copy of the tree, each command is run in it."""
 
+import os
 import subprocess
+import sys
+import sysconfig
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -26,15 +30,23 @@ def tree(tmp_path: Path) -> Path:
     return copy
 
 
-def follow(page: str, tree: Path) -> None:
+def follow(page: str, tree: Path, environment: Mapping[str, str] | None = None) -> None:
     """Apply the page's blocks from first to last."""
     for block in read_blocks(page):
         if block.title:
             apply(block, tree)
         elif block.language == "sh":
             for line in block.text.splitlines():
-                done = subprocess.run(line, shell=True, cwd=tree, capture_output=True, text=True, check=False)
-                assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
+                run(line, tree, environment)
+
+
+def run(line: str, tree: Path, environment: Mapping[str, str] | None = None) -> str:
+    """Run a line of the shell, which succeeds; returns its output."""
+    done = subprocess.run(
+        line, shell=True, cwd=tree, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
+    return done.stdout
 
 
 def changed_modules(page: str) -> list[str]:
@@ -105,3 +117,32 @@ def test_a_panel_is_added(tree: Path) -> None:
     built = [file.read_text() for file in (tree / "server/page/assets").glob("*.js")]
     assert any("Water temperature" in script for script in built)
     assert len(changed_modules("develop/add-a-panel.md")) == 3
+
+
+@pytest.fixture
+def environment(tree: Path, tmp_path: Path) -> Mapping[str, str]:
+    """The environment of a shell with `pip` and `mucat` of a virtual environment beside that of the tests."""
+    venv = tmp_path / "venv"
+    run(f"{sys.executable} -m venv --without-pip {venv}", tmp_path)
+    (packages,) = venv.glob("lib/python*/site-packages")
+    (packages / "tests.pth").write_text(f"{sysconfig.get_path('purelib')}\n", encoding="utf-8")
+    python = venv / "bin/python"
+    scripts = {
+        "pip": f'exec {ROOT}/.venv/bin/uv pip "$@" --quiet --python {python} --offline',
+        "mucat": f'exec {python} -m server.cli "$@"',
+    }
+    for name, line in scripts.items():
+        script = venv / "bin" / name
+        script.write_text(f"#!/bin/sh\n{line}\n", encoding="utf-8")
+        script.chmod(0o755)
+    return os.environ | {"PATH": f"{venv}/bin:{os.environ['PATH']}", "PYTHONPATH": str(tree)}
+
+
+def test_a_feature_is_installed_used_and_removed(
+    tree: Path, tmp_path: Path, environment: Mapping[str, str]
+) -> None:
+    follow("develop/add-a-feature.md", tree, environment)
+    run(f"python -m tests.documents.outside_feature {tmp_path / 'data'}", tree, environment)
+    assert changed_modules("develop/add-a-feature.md") == []
+    run("pip uninstall mucat-lines", tree, environment)
+    assert "lines" not in run("mucat --help", tree, environment)

@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from bench.dive import Dive
 from robot_runtime.clock import Clock, SteadyClock
-from robot_runtime.config import DoorsConfig
+from server.features.doors.config import DoorsConfig
 from server.http.sign_in.access import Access
 from server.http.sign_in.confirmation import Confirmations
 from server.platform.settings import DataFolder, Settings, make_folders
@@ -91,10 +91,10 @@ class DiveSite:
     async def _serve(self) -> None:
         folder, clock = DataFolder(self.data), SteadyClock()
         make_folders(folder)
-        settings = Settings(data=folder, config=ROOT / "robot.toml", doors=self._doors)
+        settings = Settings(data=folder, config=ROOT / "robot.toml", sections={DoorsConfig: self._doors})
         async with serve(settings) as served:
             self._runtime = served.runtime
-            self._access = served.container.access
+            self._access = served.get(Access)
             (await served.api.post("/control/release")).raise_for_status()
             self.port = served.settings.port
             dive = Dive(clock.now(), FLOAT_SECONDS, 1, armed_at=inf)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from robot_runtime.config import DoorsConfig
+from server.features.doors.config import DoorsConfig
 from tests.browser.opening import DESKTOP
 from tests.browser.studio import serve_studio, studio_address
 from tests.pages.dive_site import DiveSite

@@ -56,7 +56,7 @@ def _list_cookie_flags() -> Iterator[str]:
 
 
 def _list_control() -> Iterator[str]:
-    app = create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml")))
+    app = create_app(Settings(data=DataFolder(Path("data", every_feature=True)), config=Path("robot.toml")))
     for route in iter_route_contexts(app.routes):
         if need_of(route) is Need.CONTROL:
             yield from (f"control {method} {route.path}" for method in route.methods or ())

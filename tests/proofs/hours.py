@@ -16,7 +16,7 @@ import zipfile
 import zlib
 from collections.abc import Iterable
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +25,6 @@ from sqlmodel import col, func, select
 from bench.dive import RATES, Dive
 from bench.hour import CONFIG, STARTED_STEADY
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.config import SessionsConfig
 from robot_runtime.contract.topics import BY_NAME, TIME, Kind
 from robot_runtime.transport.blocks import Block, read_blocks
 from server.features.comparison.comparer import Comparer
@@ -35,6 +34,7 @@ from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.exports.tables import write_tables
+from server.features.sessions.config import SessionsConfig
 from server.features.sessions.recorder import PERIOD, STANDING_SECONDS, Recorder
 from server.features.sessions.recording import Recording
 from server.features.sessions.replay import read_blocks_between
@@ -128,7 +128,7 @@ class Hours:
         self._seconds = seconds
         data = DataFolder(folder / "data")
         rules = SessionsConfig(keep_days=1.0, undo_days=seconds / 4 / DAY)
-        self._settings = replace(Settings(data=data, config=CONFIG), sessions=rules)
+        self._settings = Settings(data=data, config=CONFIG).with_section(rules)
         make_folders(data)
         prepare(data)
         self._clock = SimulatedClock(STARTED_STEADY)

@@ -31,6 +31,7 @@ from schemathesis.specs.openapi.checks import (
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
+from server.health.monitor import HealthMonitor
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.server.blocks import depth_block, state_block
 from tests.server.serving import Served, serve
@@ -153,7 +154,7 @@ def run_surface() -> Iterator[Surface]:
 
 async def _record(served: Served) -> None:
     served.runtime.publish(state_block(0))
-    await until(lambda: served.container.monitor.state(), "the state")
+    await until(lambda: served.get(HealthMonitor).state(), "the state")
     answer = await served.api.post("/sessions", json={"name": "kept"})
     number = answer.json()["id"]
     assert number == 1

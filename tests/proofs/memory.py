@@ -30,7 +30,9 @@ from server.features.comparison import comparer, samples
 from server.features.comparison.comparer import Comparer
 from server.features.comparison.schemas import ComparisonQuery
 from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Store
 from server.stream import hub
+from server.stream.hub import Hub
 from tests.exports import export_session
 from tests.proofs.scales import ANONYMOUS, IN_USE, Limit, Scales, judge
 from tests.server.serving import Served, serve
@@ -132,7 +134,7 @@ async def _serve_minutes(settings: Settings, minutes: int, scales: Scales) -> No
     async with serve(settings) as served:
         day = _Day(served, minutes)
         page = asyncio.create_task(day.watch())
-        await until(lambda: served.container.hub.clients == 1, "the page")
+        await until(lambda: served.get(Hub).clients == 1, "the page")
         for minute in range(minutes):
             await day.live_through(minute)
             scales.weigh()
@@ -150,7 +152,7 @@ class _Day:
         self._sent = 0
         self._before: int | None = None
         # As the process has that compares for a server; here it is weighed too.
-        self._comparer = Comparer(served.container.store)
+        self._comparer = Comparer(served.get(Store))
 
     async def live_through(self, minute: int) -> None:
         """A minute: the robot sends, and people record, watch, command, look back and tidy up."""
@@ -191,7 +193,7 @@ class _Day:
                     return
 
     async def _send(self, begin: float, end: float) -> None:
-        totals, depth = self._served.container.hub.rows, BY_NAME["depth"].id
+        totals, depth = self._served.container.services.get(Hub).rows, BY_NAME["depth"].id
         for step in range(round((end - begin) / STEP)):
             blocks = list(self._dive.until(begin + (step + 1) * STEP))
             self._sent += sum(block.count for block in blocks if block.topic.id == depth)

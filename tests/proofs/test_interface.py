@@ -15,7 +15,7 @@ EXAMPLES = 12
 
 
 def operations() -> list[str]:
-    app = create_app(Settings(data=DataFolder(ROOT), config=ROOT / "robot.toml"))
+    app = create_app(Settings(data=DataFolder(ROOT), config=ROOT / "robot.toml", every_feature=True))
     paths = app.openapi()["paths"].values()
     return [operation["operationId"] for path in paths for operation in path.values()]
 

@@ -16,12 +16,7 @@ SHIPPED = Path(__file__).resolve().parents[2] / "robot.toml"
 
 def test_the_shipped_file_holds_the_defaults() -> None:
     shipped, plain = load(SHIPPED), Config()
-    assert (shipped.robot, shipped.link, shipped.zenoh, shipped.server) == (
-        plain.robot,
-        plain.link,
-        plain.zenoh,
-        plain.server,
-    )
+    assert (shipped.robot, shipped.link, shipped.zenoh) == (plain.robot, plain.link, plain.zenoh)
     assert (shipped.control.rate, shipped.control.controller) == (
         plain.control.rate,
         plain.control.controller,

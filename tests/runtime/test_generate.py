@@ -13,7 +13,6 @@ from robot_runtime.control.faults import FAULTS
 from robot_runtime.control.transitions import TRANSITIONS
 from robot_runtime.generate import __main__ as generate
 from robot_runtime.generate import cpp, json_schema, typescript
-from robot_runtime.generate.configuration import configuration_page, read_comments
 from robot_runtime.generate.reference import faults_page, packets_page
 
 
@@ -91,16 +90,3 @@ def test_the_check_names_a_reference_page_that_is_not_current(
     page.write_text(page.read_text().replace("## Navigation\n", ""))
     assert generate.main() == 1
     assert capsys.readouterr().out.startswith("docs/reference/packets.md is not current")
-
-
-def test_the_reference_has_every_entry_of_the_configuration_with_the_comment_beside_it() -> None:
-    text = (generate.SOURCES / "robot.toml").read_text()
-    page = configuration_page(text)
-    assert "| `undo_days` | 0 to 3650 | `7.0` | days in the bin before" in page
-    with pytest.raises(ValueError, match=r"no comment beside sessions\.undo_days"):
-        configuration_page(re.sub(r"(undo_days = 7\.0).*", r"\1", text))
-
-
-def test_a_comment_of_several_lines_is_read_whole() -> None:
-    text = "[a]\nx = 1  # one,\n        # two\n\n# of its own\ny = 2\n"
-    assert read_comments(text) == {"a.x": "one, two", "a.y": ""}

@@ -8,7 +8,7 @@ import json
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import httpx
 from websockets.asyncio.client import ClientConnection, connect
@@ -23,11 +23,13 @@ from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
-from server.stream.bridge import RuntimeSilentError
+from server.stream.bridge import Bridge, RuntimeSilentError
 from tests.server.new_database import place_with_samples
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import SECONDS, until
 from tests.shell import ShellToken, shell_headers
+
+T = TypeVar("T")
 
 
 @dataclass
@@ -38,6 +40,10 @@ class Served:
     container: Container
     api: httpx.AsyncClient
     runtime: RuntimeEnd
+
+    def get(self, kind: type[T]) -> T:
+        """The server's service of this type."""
+        return self.container.services.get(kind)
 
     def connect(self, **options: Any) -> connect:
         """A WebSocket to /api/live, with the shell's token and as from the server's own page."""
@@ -61,7 +67,7 @@ class Served:
         async with asyncio.timeout(SECONDS):
             while True:
                 try:
-                    await self.container.bridge.command("there", {})
+                    await self.get(Bridge).command("there", {})
                     return
                 except (RuntimeSilentError, RefusedError):
                     await asyncio.sleep(0.005)

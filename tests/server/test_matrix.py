@@ -20,6 +20,8 @@ from starlette.types import Message
 from robot_runtime.clock import SimulatedClock
 from server.app import create_app
 from server.container import Container
+from server.features.lease.arbiter import ControlArbiter
+from server.health.monitor import HealthMonitor
 from server.http.sign_in.policy import MESSAGES
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
@@ -414,7 +416,7 @@ class LiveSocket:
 async def open_house(settings: Settings) -> AsyncIterator[House]:
     """A running application with signed-in requesters; operators' browsers have a live page."""
     await place_with_samples(settings.data)
-    settings = replace(settings, help_pages=settings.data.path / "help")
+    settings = replace(settings, help_pages=settings.data.path / "help", every_feature=True)
     place_things(settings)
     app = create_app(settings)
     with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime:
@@ -422,7 +424,7 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
             house = House(app, settings, runtime)
             await until(lambda: runtime.is_heard("stream"), "the server to listen")
             runtime.publish(state_block(0))
-            await until(house.container.monitor.state, "the state")
+            await until(house.container.services.get(HealthMonitor).state, "the state")
             for who in ROLES:
                 if who == "thief of a cookie":
                     house.people[who] = Somebody({"cookie": house.people["operator"].headers["cookie"]})
@@ -452,7 +454,7 @@ async def place_things_to_ask_for(house: House) -> None:
 
 def routes() -> Iterator[tuple[str, str]]:
     """Method and path of every route but the sockets'."""
-    app = create_app(Settings(data=cast("Any", None), config=cast("Any", None)))
+    app = create_app(Settings(data=cast("Any", None), config=cast("Any", None), every_feature=True))
     for route in iter_route_contexts(app.routes):
         for method in getattr(route, "methods", None) or ():
             yield method, str(route.path)
@@ -460,7 +462,7 @@ def routes() -> Iterator[tuple[str, str]]:
 
 def test_every_route_has_an_entry_and_every_entry_a_route() -> None:
     assert set(routes()) == set(ROUTES)
-    app = create_app(Settings(data=cast("Any", None), config=cast("Any", None)))
+    app = create_app(Settings(data=cast("Any", None), config=cast("Any", None), every_feature=True))
     assert {one.path for one in iter_route_contexts(app.routes) if not one.methods} == SOCKETS
 
 
@@ -503,7 +505,7 @@ async def ask_everything(house: House, who: Who) -> list[tuple[object, ...]]:
             await house.ask(control, "POST", "/api/control/take", right, query="over=true")
             places, body = house.places(host, origin), await house.fill(probe.body)
             # The runtime is alive as long as its state is fresh.
-            house.container.monitor.see(state_block(0))
+            house.container.services.get(HealthMonitor).see(state_block(0))
             status, _, told = await house.ask(
                 house.people[who], method, path, places, body, query=probe.query, address=address
             )
@@ -542,7 +544,7 @@ async def say_everything(house: House, who: Who, socket: LiveSocket) -> None:
     before = len(house.runtime.asked)
     assert await socket.say({"op": "stop"}) == []
     await until(lambda: ("stop", {}) in house.runtime.asked[before:], "the STOP")
-    arbiter = house.container.arbiter
+    arbiter = house.container.services.get(ControlArbiter)
     if who == "control":
         client = arbiter.clients.get(hello["you"]["client"])
         assert client is not None

@@ -52,7 +52,7 @@ def test_a_restarted_server_has_stored_its_restart_before_it_serves(settings: Se
         app = create_app(settings, [RUNTIME])
         app.state.ended = ENDED
         async with app.router.lifespan_context(app):
-            recorded = RecorderRig(app.state.container.store, settings)
+            recorded = RecorderRig(app.state.container.services.get(Store), settings)
             assert recorded.numbers() == list(range(10))
             notices = [decode_documents(chunk.data) for chunk in recorded.chunks("notice")]
         return [notice["text"] for chunk in notices for notice in chunk]

@@ -6,7 +6,6 @@ import shutil
 import sys
 import time
 import zipfile
-from dataclasses import replace
 from typing import Any
 
 import httpx
@@ -14,15 +13,21 @@ import pytest
 
 import server.stream.bridge as bridge_module
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.config import DoorsConfig
 from robot_runtime.transport.blocks import read_blocks
+from server.features.doors.config import DoorsConfig
 from server.features.doors.house import Doors
+from server.features.exports.jobs import Jobs
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.health import monitor
+from server.health.monitor import HealthMonitor
 from server.openapi import main as print_openapi
 from server.platform.settings import Settings
+from server.platform.store import Store
 from server.processes.managed_process import ProcessCommand
+from server.stream.bridge import Bridge
+from server.stream.budget import Budgets
+from server.stream.hub import Hub
 from tests.runtime.missions.water import DIVE, mission
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
 from tests.server.serving import Served, play, serve
@@ -32,7 +37,7 @@ from tests.server.waiting import SECONDS, until
 async def exported(served: Served, session: int) -> httpx.Response:
     """A session as CSV, through an export."""
     job = (await served.api.post("/exports", json={"session": session, "format": "csv"})).json()
-    find = served.container.jobs.find
+    find = served.get(Jobs).find
     await until(lambda: (one := find(job["id"])) and one.state in ("done", "failed"), "the file", 60)
     return (await served.api.get(f"/exports/{job['id']}/file")).raise_for_status()
 
@@ -50,7 +55,7 @@ def test_health_lists_every_part_with_its_text(settings: Settings) -> None:
         assert list(await states()) == [*heard, "scene", "camera"]
         assert (await served.api.get("/health")).json()["status"] == "starting"
         # Nothing grows old while it is looked at.
-        monitor, clock = served.container.monitor, served.container.clock
+        monitor, clock = served.get(HealthMonitor), served.container.clock
         monitor._clock = SimulatedClock(clock.now())
         served.runtime.publish(state_block(0), link_block(0, 10), link_block(1, 20), truth_block(0))
         await until(lambda: monitor.health().status == "ok", "all to be well")
@@ -70,7 +75,7 @@ def test_the_newest_state_is_shown(settings: Settings) -> None:
         assert "/api/health" in answer.json()["detail"]
         served.runtime.publish(state_block(0, set_point_default=0.5), state_block(1, set_point_default=0.75))
         await until(
-            lambda: (served.container.monitor.state() or {}).get("set_point_default") == 0.75, "the state"
+            lambda: (served.get(HealthMonitor).state() or {}).get("set_point_default") == 0.75, "the state"
         )
         answer = await served.api.get("/robot")
         assert (answer.status_code, answer.json()["set_point_default"]) == (200, 0.75)
@@ -83,7 +88,7 @@ def test_the_state_of_a_silent_runtime_is_unknown(
 ) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.publish(state_block(0, armed=True))
-        await until(served.container.monitor.state, "the state")
+        await until(served.get(HealthMonitor).state, "the state")
         monkeypatch.setattr(monitor, "STATE_SECONDS", 0.0)
         answer = await served.api.get("/robot")
         assert answer.status_code == 503
@@ -97,10 +102,10 @@ def test_nobody_is_sent_the_last_words_of_a_silent_runtime_for_present_ones(
 ) -> None:
     async def scenario(served: Served) -> None:
         doors = Doors(
-            replace(settings, doors=DoorsConfig(foxglove=True)),
+            settings.with_section(DoorsConfig(foxglove=True)),
             served.container.clock,
-            served.container.hub,
-            served.container.budgets,
+            served.get(Hub),
+            served.get(Budgets),
         )
         doors.see(state_block(0, armed=True))
         doors.see_health([{"name": "runtime", "state": "ok", "text": "Sends data."}])
@@ -108,9 +113,9 @@ def test_nobody_is_sent_the_last_words_of_a_silent_runtime_for_present_ones(
         doors.see_health([{"name": "runtime", "state": "failed", "text": "Sends nothing."}])
         assert [one.source for one in doors.newest()] == ["health"]
 
-        monkeypatch.setattr(served.container.monitor, "mission", lambda: {"phase": "running"})
+        monkeypatch.setattr(served.get(HealthMonitor), "mission", lambda: {"phase": "running"})
         served.runtime.publish(state_block(0, armed=True))
-        await until(served.container.monitor.state, "the state")
+        await until(served.get(HealthMonitor).state, "the state")
         monkeypatch.setattr(monitor, "STATE_SECONDS", 0.0)
         assert (await served.api.get("/missions/state")).status_code == 503
 
@@ -122,7 +127,7 @@ def test_the_state_is_of_after_the_last_command(settings: Settings, monkeypatch:
 
     async def scenario(served: Served) -> None:
         served.runtime.publish(state_block(0, time=time.monotonic()))
-        await until(served.container.monitor.state, "the state")
+        await until(served.get(HealthMonitor).state, "the state")
         await served.api.post("/robot/commands/arm")
         asked = asyncio.create_task(served.api.get("/robot"))
         done, _ = await asyncio.wait({asked}, timeout=0.1)
@@ -333,7 +338,7 @@ def test_a_silent_runtime_is_reported_after_the_timeout_and_stop_does_not_wait(
         gate = served.runtime.gates["vision"]
         gate.clear()
         slow = [
-            asyncio.create_task(served.container.bridge.command("vision", {}))
+            asyncio.create_task(served.get(Bridge).command("vision", {}))
             for _ in range(bridge_module.COMMANDS_AT_ONCE)
         ]
         await asyncio.sleep(0)
@@ -348,7 +353,7 @@ def test_a_silent_runtime_is_reported_after_the_timeout_and_stop_does_not_wait(
         gate.clear()
         monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", 1.0)
         with pytest.raises(bridge_module.RuntimeSilentError, match="did not answer within 1 s") as silent:
-            await served.container.bridge.command("vision", {})
+            await served.get(Bridge).command("vision", {})
         gate.set()
         assert silent.value.waited
 
@@ -361,7 +366,7 @@ def test_commands_wait_their_turn_and_too_many_are_refused(
     async def scenario(served: Served) -> None:
         for name in ("ANSWER_SECONDS", "TURN_SECONDS"):
             monkeypatch.setattr(bridge_module, name, SECONDS)
-        gate, bridge = served.runtime.gates["vision"], served.container.bridge
+        gate, bridge = served.runtime.gates["vision"], served.get(Bridge)
         gate.clear()
         most = bridge_module.COMMANDS_AT_ONCE + bridge_module.WAITING_MAX
         waiting = [asyncio.create_task(bridge.command("vision", {})) for _ in range(most)]
@@ -387,7 +392,7 @@ def test_a_session_from_start_to_download(settings: Settings) -> None:
         assert again.status_code == 409
         assert "“Dive” is being recorded" in again.json()["detail"]
         served.runtime.publish(depth_block(0, 10, start=served.container.clock.now()))
-        store = served.container.store
+        store = served.get(Store)
 
         def counts() -> dict[str, int]:
             return Recording(store, find_row(store, session["id"])).counts()
@@ -455,7 +460,7 @@ def test_a_session_is_completed_when_the_server_ends_in_order(settings: Settings
         async with serve(settings) as served:
             await served.api.post("/sessions", json={"name": "cut"})
             served.runtime.publish(depth_block(0, 4))
-            seen = served.container.monitor._newest
+            seen = served.get(HealthMonitor)._newest
             await until(lambda: "depth" in seen, "the samples")
         async with serve(settings) as served:
             (session,) = (await served.api.get("/sessions")).json()
@@ -509,7 +514,7 @@ def test_a_dead_process_is_shown_in_health_and_by_a_notice(settings: Settings) -
                 answer = await served.api.get("/health")
                 (board,) = (part for part in answer.json()["parts"] if part["name"] == "board")
         assert board["text"] == "It has ended with exit status 1. Its last words: no firmware."
-        history = b"".join(b"".join(group) for group in served.container.hub.history.since(-1, 10**6))
+        history = b"".join(b"".join(group) for group in served.get(Hub).history.since(-1, 10**6))
         assert "The emulated board has ended with exit status 1" in history.decode(errors="replace")
 
     play(settings, scenario, broken)
@@ -521,9 +526,9 @@ def test_damaged_blocks_are_dropped(settings: Settings) -> None:
         for bad in (good[:11], good[:-1], good + b"x", b"\xff" + good[1:], good[:1] + b"\x01" + good[2:]):
             served.runtime.publish_bytes(bad)
         served.runtime.publish(depth_block(0, 2))
-        await until(lambda: served.container.bridge.damaged == 5, "the damaged blocks")
-        await until(lambda: "depth" in served.container.monitor._newest, "the good one")
-        kept = b"".join(b"".join(one) for one in served.container.hub.history.since(-1, 10**6))
+        await until(lambda: served.get(Bridge).damaged == 5, "the damaged blocks")
+        await until(lambda: "depth" in served.get(HealthMonitor)._newest, "the good one")
+        kept = b"".join(b"".join(one) for one in served.get(Hub).history.since(-1, 10**6))
         assert [block.data for block in read_blocks(kept) if block.topic.name == "depth"] == [good]
 
     play(settings, scenario)

@@ -54,6 +54,8 @@ export class Live {
   /** ms to the server and back; null while unknown */
   roundTrip = $state<number | null>(null);
   hello = $state.raw<Hello | null>(null);
+  /** true where the server has this feature on; before it has said so, also */
+  has = (feature: string): boolean => this.hello?.features.includes(feature) ?? true;
   /** a moment that is known on both the steady clock and the calendar */
   instant = $state.raw<Instant | null>(null);
   outdated = $state(false);

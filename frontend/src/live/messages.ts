@@ -23,6 +23,8 @@ export interface Hello {
   /** the same instant, s since 1970 */
   utc: number;
   page_version: string;
+  /** the features of the server that are on */
+  features: readonly string[];
   you: You;
   /** shows that a command comes from this page */
   client_key: string;

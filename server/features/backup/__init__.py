@@ -1,1 +1,13 @@
 """Backup and restore of the database."""
+
+from server.feature import Feature
+
+FEATURE = Feature(
+    name="backup",
+    routes=("server.features.backup.routes:router",),
+    commands={
+        "backup": "server.features.backup.command:backup",
+        "restore": "server.features.backup.command:restore",
+    },
+    plug="server.features.backup.plug:BackupPlug",
+)

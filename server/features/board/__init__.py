@@ -1,1 +1,10 @@
 """The robot's board, reserved for what its own firmware does not do."""
+
+from server.feature import Feature
+
+FEATURE = Feature(
+    name="board",
+    routes=("server.features.board.routes:router",),
+    commands={"upload": "server.features.board.command:upload"},
+    plug="server.features.board.plug:BoardPlug",
+)

@@ -1,1 +1,10 @@
 """Comparison of sessions: signals on one time axis, figures, differences."""
+
+from server.feature import Feature
+
+FEATURE = Feature(
+    name="comparison",
+    routes=("server.features.comparison.routes:router",),
+    commands={"report": "server.features.comparison.command:report"},
+    plug="server.features.comparison.plug:ComparisonPlug",
+)

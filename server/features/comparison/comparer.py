@@ -37,12 +37,12 @@ from server.features.comparison.schemas import (
     TimeRange,
 )
 from server.features.comparison.signals import Signal, list_signals, split
-from server.features.metrics.figure import Figure
-from server.features.metrics.series import Floats
 from server.features.sessions.missions import MissionStepStart, RecordedMission, read_missions
 from server.features.sessions.recording import Recording, reading_content
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Moment, read_events
+from server.metrics.figure import Figure
+from server.metrics.series import Floats
 from server.platform.models import SessionRow
 from server.platform.store import Reader
 

@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from server.features.metrics.series import Floats, Series
+from server.metrics.series import Floats, Series
 
 GAP_PERIODS = 5.0
 GAP_LEAST = 1.0

@@ -1,6 +1,6 @@
 """The figures by which sessions are compared. docs/use/compare.md has the formulas."""
 
-from server.features.metrics.figure import FigureMeaning, describe
+from server.metrics.figure import FigureMeaning, describe
 
 FIGURES: tuple[FigureMeaning, ...] = (
     describe("rise_time", "Rise time", "s", 2, "Time from 10 % to 90 % of the step in depth."),

@@ -9,12 +9,12 @@ from server.features.comparison.definitions import FIGURES
 from server.features.comparison.history import read_gaps, set_point_steps
 from server.features.comparison.moments import ControlHistory, Span
 from server.features.comparison.samples import Samples, read_topic
-from server.features.metrics.figure import Figure, FigureMark
-from server.features.metrics.limit_cycle import LimitCycle, find_limit_cycle
-from server.features.metrics.series import Series, effort, rms
-from server.features.metrics.step_response import StepResponse, measure_step
-from server.features.metrics.strokes import count_strokes
 from server.features.sessions.recording import Recording
+from server.metrics.figure import Figure, FigureMark
+from server.metrics.limit_cycle import LimitCycle, find_limit_cycle
+from server.metrics.series import Series, effort, rms
+from server.metrics.step_response import StepResponse, measure_step
+from server.metrics.strokes import count_strokes
 from server.platform.store import Reader
 
 MEASURED, SET_POINT, OUTPUT = "depth.depth", "control.set_point", "control.output"

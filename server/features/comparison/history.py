@@ -8,10 +8,10 @@ from sqlmodel import col, select
 
 from server.features.comparison.moments import ControlHistory, ControlPeriod, ParameterValues, Span
 from server.features.comparison.samples import Samples
-from server.features.metrics.series import Series
 from server.features.sessions.crafts import read_crafts, which_water
 from server.features.sessions.recording import Recording, depth_loop
 from server.features.sessions.timeline import Moment
+from server.metrics.series import Series
 from server.platform.models import BookmarkRow, Gap
 from server.platform.store import Reader
 

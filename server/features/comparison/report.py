@@ -15,7 +15,7 @@ from plotly.io import to_html
 from server import VERSION
 from server.features.comparison.schemas import Compared, Comparison, SignalLine, TimeRange
 from server.features.comparison.signals import Signal
-from server.features.metrics.figure import FigureMeaning
+from server.metrics.figure import FigureMeaning
 
 COLOURS = ("#0072b2", "#c25200", "#a3427d", "#00795a", "#7d6a00", "#5b3fa0", "#4a5a66")
 """After Okabe and Ito, darkened for white paper."""

@@ -6,9 +6,9 @@ import numpy as np
 
 from server.features.comparison.result_cache import ResultCache
 from server.features.comparison.signals import DOCUMENT_COLUMNS, split
-from server.features.metrics.series import Floats, Series
 from server.features.sessions.chunks import row_layout
 from server.features.sessions.recording import Recording
+from server.metrics.series import Floats, Series
 
 CACHE_BYTES = 32_000_000
 

@@ -7,10 +7,10 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from server.features.comparison.alignment import Align
 from server.features.comparison.differences import Difference
 from server.features.comparison.signals import Signal
-from server.features.metrics.figure import Figure, FigureMeaning
 from server.features.sessions.missions import MissionStepStart
 from server.features.sessions.timeline import Moment
 from server.http.request_body import RequestBody
+from server.metrics.figure import Figure, FigureMeaning
 from server.platform.models import IDENTIFIER_MAX
 
 SESSIONS_MAX = 12

@@ -15,6 +15,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from server.feature import list_features
 from server.platform.disk_space import free_bytes
 from server.platform.settings import Settings
 from server.platform.supply_voltage import read_throttled
@@ -154,7 +155,7 @@ def read_machine(
         port_takers=_find_port_takers(root),
         link_state=link[0],
         link_text=link[1],
-        events_named=bool(settings.events.mqtt or settings.events.webhook),
+        events_named=settings.has(list_features()["events"]),
         events_state=events[0],
         events_text=events[1],
         boot_settings=_read(root / boot / "config.txt") if boot else "",

@@ -1,1 +1,16 @@
 """Doors for other programs: rosbridge and the Foxglove WebSocket, behind the sign-in of the page."""
+
+from server.feature import Feature
+from server.features.doors.config import DoorsConfig
+
+FEATURE = Feature(
+    name="doors",
+    section=DoorsConfig,
+    is_on=lambda doors: doors.rosbridge or doors.foxglove or doors.ros2,
+    routes=(
+        "server.features.doors.routes:router",
+        "server.features.doors.routes:open_routes",
+    ),
+    commands={"certificate": "server.features.doors.certificates:certificate"},
+    plug="server.features.doors.plug:DoorsPlug",
+)

@@ -11,6 +11,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
 from server.features.doors.channels import HEALTH, DoorChannel, Sample, read_samples
+from server.features.doors.config import DoorsConfig
 from server.features.doors.foxglove_channels import foxglove_channels
 from server.features.doors.publisher import Publisher
 from server.features.doors.ros_channels import BILLION, ros_channels, standard_channels
@@ -56,10 +57,11 @@ class Doors:
 
     def __init__(self, settings: Settings, clock: Clock, hub: Hub, budgets: Budgets) -> None:
         simulated = settings.mode != "robot"
+        config = settings.section(DoorsConfig)
         self.doors: dict[str, Door] = {
-            "rosbridge": Door("rosbridge", settings.doors.rosbridge, ros_channels()),
-            "foxglove": Door("foxglove", settings.doors.foxglove, foxglove_channels(simulated)),
-            ROS2: Door(ROS2, settings.doors.ros2, standard_channels(), settings.doors.ros2_listen),
+            "rosbridge": Door("rosbridge", config.rosbridge, ros_channels()),
+            "foxglove": Door("foxglove", config.foxglove, foxglove_channels(simulated)),
+            ROS2: Door(ROS2, config.ros2, standard_channels(), config.ros2_listen),
         }
         self.robot = settings.robot
         self.session = secrets.token_hex(8)

@@ -16,6 +16,7 @@ from typing import Any
 
 from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY
 from server.features.doors.commands import DoorCommands, DoorPilot
+from server.features.doors.config import DoorsConfig
 from server.features.doors.house import Doors
 from server.features.doors.ros2_connection import CHUNK_BYTES, Ros2Connection
 from server.features.doors.ros2_messages import NO_ROSBAGS, has_rosbags
@@ -86,7 +87,8 @@ class Ros2Door:
         self._doors = doors
         self._door = doors.doors["ros2"]
         self._commands = commands
-        self._names = Ros2Names(settings.doors.ros2_domain, settings.doors.ros2_namespace)
+        self._config = settings.section(DoorsConfig)
+        self._names = Ros2Names(self._config.ros2_domain, self._config.ros2_namespace)
         self._endpoints: list[Endpoint] = []
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -97,7 +99,7 @@ class Ros2Door:
         context = check_ros2(self._settings)
         channels = self._door.publisher.channels.values()
         self._endpoints = await asyncio.to_thread(ros2_endpoints, channels)
-        listener = open_socket(*self._settings.doors.ros2_address)
+        listener = open_socket(*self._config.ros2_address)
         listener.setblocking(False)
         self.address = listener.getsockname()[:2]
         self._begin(self._accept(listener, context))

@@ -7,6 +7,7 @@ from fastapi import WebSocket, WebSocketDisconnect
 
 from robot_runtime.clock import Clock
 from server.features.doors.commands import DoorCommands, DoorPilot
+from server.features.doors.config import DoorsConfig
 from server.features.doors.foxglove import SUBPROTOCOLS, FoxgloveSession, choose_subprotocol
 from server.features.doors.house import Door, Doors
 from server.features.doors.rosbridge import RosbridgeSession, read_operation
@@ -23,7 +24,6 @@ from server.http.sign_in.access import Access
 from server.http.sign_in.devices import SignInEndedError
 from server.http.sign_in.identity import IDENTITY, SIGN_IN_ENDED, Identity
 from server.http.sign_in.policy import Need
-from server.platform.settings import Settings
 from server.stream.bridge import Bridge
 from server.stream.hub import EvictedError
 from server.stream.socket_ends import close_with_reason, end_after
@@ -38,8 +38,8 @@ NO_TOKEN = (
 )
 
 router = Operations(prefix="/api")
-ROSBRIDGE = Operations()
-FOXGLOVE = Operations()
+ROSBRIDGE = Operations(admits_itself=True)
+FOXGLOVE = Operations(admits_itself=True)
 
 
 @router.operation("GET /doors", Need.VIEWER, tags=["doors"])
@@ -154,9 +154,9 @@ class _Visit:
         await self._socket.send(message)
 
 
-def open_routes(settings: Settings) -> list[Operations]:
+def open_routes(doors: DoorsConfig) -> list[Operations]:
     """The sockets of the doors that are open."""
-    given = {ROSBRIDGE: settings.doors.rosbridge, FOXGLOVE: settings.doors.foxglove}
+    given = {ROSBRIDGE: doors.rosbridge, FOXGLOVE: doors.foxglove}
     return [door for door, is_open in given.items() if is_open]
 
 

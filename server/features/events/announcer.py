@@ -11,6 +11,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Severity
 from robot_runtime.contract.published_events import PublishedEvent, PublishedKind
 from robot_runtime.transport.blocks import Block
+from server.features.events.config import EventsConfig
 from server.features.events.mqtt import MqttOutlet
 from server.features.events.outlet import EventOutlet, OutletCondition
 from server.features.events.webhook import WebhookOutlet
@@ -199,7 +200,7 @@ class EventAnnouncer:
             outlet.retain(name, text)
 
     def _outlets_of(self, settings: Settings) -> list[EventOutlet]:
-        events, folder = settings.events, settings.config.parent
+        events, folder = settings.section(EventsConfig), settings.config.parent
         outlets: list[EventOutlet] = []
         if events.mqtt:
             outlets.append(MqttOutlet(settings.robot, self.run, events, folder))

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from robot_runtime.config import EventsConfig
 from robot_runtime.contract.published_events import PublishedEvent
+from server.features.events.config import EventsConfig
 from server.features.events.outlet import (
     CLOSE_SECONDS,
     CONNECT_SECONDS,

@@ -8,9 +8,9 @@ from contextlib import suppress
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from robot_runtime.config import EventsConfig
 from robot_runtime.contract.published_events import PublishedEvent
 from server import VERSION
+from server.features.events.config import EventsConfig
 from server.features.events.outlet import (
     CLOSE_SECONDS,
     CONNECT_SECONDS,

@@ -25,7 +25,7 @@ from server.features.identification.schemas import (
     PredictedChannel,
     describe_improvement,
 )
-from server.features.metrics.series import Floats
+from server.metrics.series import Floats
 
 DIGITS = 5
 """Significant digits of a number in a craft file: more than any fit knows."""

@@ -3,9 +3,9 @@
 import numpy as np
 
 from robot_runtime.experiments.identification.streams import SessionStreams
-from server.features.metrics.series import Floats
 from server.features.sessions.recording import Recording, reading_content
 from server.features.sessions.session import find_row
+from server.metrics.series import Floats
 from server.platform.store import Reader
 
 

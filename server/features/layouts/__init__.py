@@ -1,1 +1,8 @@
 """Saved layouts of panels."""
+
+from server.feature import Feature
+
+FEATURE = Feature(
+    name="layouts",
+    routes=("server.features.layouts.routes:router",),
+)

@@ -1,1 +1,8 @@
 """The live socket of a page: samples and news to it, driving and STOP from it."""
+
+from server.feature import Feature
+
+FEATURE = Feature(
+    name="live",
+    routes=("server.features.live.routes:router",),
+)

@@ -16,6 +16,7 @@ from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.contract.text_input import TextError, read_json
 from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.errors import RefusedError
+from server.feature import list_features
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.features.lease.driving import DriveCommand
@@ -154,6 +155,7 @@ Greeting = Callable[[ControlClient], dict[str, Any]]
 
 async def greet(settings: Provided[Settings], clock: Provided[Clock], page: Provided[Page]) -> Greeting:
     """The greeting of this server."""
+    features = [one.name for one in list_features().values() if settings.has(one)]
     return lambda owner: {
         "op": "hello",
         "definitions": f"{DEFINITIONS_HASH:08x}",
@@ -161,6 +163,7 @@ async def greet(settings: Provided[Settings], clock: Provided[Clock], page: Prov
         "steady": clock.now(),
         "utc": time(),
         "page_version": page.version,
+        "features": features,
         "you": {"name": owner.identity.name, "role": owner.identity.role, "client": owner.number},
         "client_key": owner.key,
     }

@@ -1,1 +1,8 @@
 """Your own panels: small scripts in the data folder, which the page runs in a separate frame."""
+
+from server.feature import Feature
+
+FEATURE = Feature(
+    name="panels",
+    routes=("server.features.panels.routes:router",),
+)

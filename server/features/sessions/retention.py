@@ -17,6 +17,7 @@ from sqlalchemy import ColumnElement, Connection, UpdateBase, delete, update
 from sqlmodel import col, func, select
 
 from robot_runtime.clock import Clock
+from server.features.sessions.config import SessionsConfig
 from server.features.sessions.session import HIDDEN, REMOVING
 from server.features.sessions.storage import GIGABYTE, measure
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
@@ -52,7 +53,7 @@ class _Candidate(NamedTuple):
 
 
 class RetentionWorker:
-    """The only task that removes sessions; `wake` starts it at once, `purged` is called before each goes.
+    """The only task that removes sessions; `wake` starts it at once, `on_purge` is called before each goes.
 
     For a day after a jump of the wall clock no session is deleted for its age, since that is unknown.
     """
@@ -63,12 +64,12 @@ class RetentionWorker:
         settings: Settings,
         notices: Notices,
         clock: Clock,
-        purged: Callable[[int], None] = lambda _: None,
     ) -> None:
+        self.on_purge: list[Callable[[int], None]] = []
         self._store = store
         self._settings = settings
+        self._rules = settings.section(SessionsConfig)
         self._notices = notices
-        self._purged = purged
         self._clock = clock
         self._wall_clock = WallClock(clock, settings.data.wall_clock)
         self._binned: dict[int, float] = {}
@@ -95,7 +96,7 @@ class RetentionWorker:
 
     async def apply(self, now: float) -> None:
         """Apply the rules once, at this time (UTC, s since 1970). Raises StoreError."""
-        rules = self._settings.sessions
+        rules = self._rules
         ages_known = self._wall_clock.knows_ages(now)
         # A full disk must not hinder what makes room.
         with suppress(OSError):
@@ -107,7 +108,8 @@ class RetentionWorker:
         if rules.keep_free > 0:
             await self._make_room(now, now - BIN_SECONDS if ages_known else -inf)
         for session in await self._find_removed():
-            self._purged(session)
+            for see_purged in self.on_purge:
+                see_purged(session)
             await self._remove(session)
         await self._free_pages()
         await self._store.make_reserve()
@@ -120,13 +122,13 @@ class RetentionWorker:
         # A session of an impossible date has no known age.
         rows = [row for row in await self._unprotected() if is_set(row.started) and row.started < before]
         if rows:
-            days = self._settings.sessions.keep_days
+            days = self._rules.keep_days
             await self._change(rows, deleted=now)
             self._notify(rows, f"Older than {days:g} days")
 
     async def _make_room(self, now: float, settled_before: float) -> None:
         storage = await asyncio.to_thread(measure, self._store, self._settings)
-        needed = int(self._settings.sessions.keep_free * GIGABYTE) - storage.free - storage.reusable
+        needed = int(self._rules.keep_free * GIGABYTE) - storage.free - storage.reusable
         if needed <= 0:
             self._out_of_candidates = False
             return
@@ -147,7 +149,10 @@ class RetentionWorker:
         rows = _first(await self._unprotected(), needed)
         if rows:
             await self._change(rows, deleted=now)
-            self._notify(rows, f"Less than {self._settings.sessions.keep_free:g} GB of the disk are free")
+            self._notify(
+                rows,
+                f"Less than {self._rules.keep_free:g} GB of the disk are free",
+            )
         elif not self._out_of_candidates:
             self._out_of_candidates = True
             self._notices.notify(

@@ -6,6 +6,7 @@ from pathlib import Path
 from pydantic import BaseModel, Field
 from sqlmodel import col, func, select
 
+from server.features.sessions.config import SessionsConfig
 from server.features.sessions.session import HIDDEN, REMOVING
 from server.platform.models import SessionRow
 from server.platform.settings import Settings
@@ -36,7 +37,7 @@ class Storage(BaseModel):
 
 def measure(store: Store, settings: Settings) -> Storage:
     """Measure the disk and the database. Raises StoreError."""
-    folder, rules = settings.data, settings.sessions
+    folder, rules = settings.data, settings.section(SessionsConfig)
     binned = col(SessionRow.deleted).is_not(None)
     query = select(binned, func.count(), func.coalesce(func.sum(SessionRow.bytes), 0))
     with store.read() as database:

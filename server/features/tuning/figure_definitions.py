@@ -1,6 +1,6 @@
 """Definitions of a step response's figures; they load no NumPy."""
 
-from server.features.metrics.figure import FigureMeaning, describe
+from server.metrics.figure import FigureMeaning, describe
 
 NEAR = 0.02
 """m; the band of one settling time, whatever the step."""

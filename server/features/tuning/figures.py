@@ -4,12 +4,12 @@ from math import degrees
 
 import numpy as np
 
-from server.features.metrics.figure import Figure
-from server.features.metrics.series import Floats, Series, effort, integral_absolute, rms, travel
-from server.features.metrics.step_response import StepResponse, measure_step
-from server.features.metrics.strokes import count_strokes
 from server.features.tuning.curve import SampleBuffer, TuningCurve
 from server.features.tuning.figure_definitions import is_angle, near
+from server.metrics.figure import Figure
+from server.metrics.series import Floats, Series, effort, integral_absolute, rms, travel
+from server.metrics.step_response import StepResponse, measure_step
+from server.metrics.strokes import count_strokes
 
 STEADY = 0.5
 """Share of the time after the step, at its end, in which the value should be steady."""

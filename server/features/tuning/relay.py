@@ -4,10 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from server.features.metrics.series import Floats
 from server.features.tuning.curve import TuningCurve
 from server.features.tuning.rules import ultimate_gain
 from server.features.tuning.schemas import MeasuredLimitCycle
+from server.metrics.series import Floats
 
 TIME_TOLERANCE = 0.05
 """s between the times of a tick and its effect; less than the time between two ticks."""

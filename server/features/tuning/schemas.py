@@ -20,9 +20,9 @@ from robot_runtime.contract.limits import (
     SettleSeconds,
 )
 from robot_runtime.errors import RefusedError
-from server.features.metrics.figure import Figure, FigureMeaning
 from server.features.tuning.curve import TuningCurve
 from server.http.request_body import RequestBody
+from server.metrics.figure import Figure, FigureMeaning
 
 RunState = Literal["running", "complete", "stopped", "failed", "interrupted"]
 RunName = Annotated[str, Field(min_length=1, max_length=100)]

@@ -43,6 +43,22 @@ def cookie_name(port: int) -> str:
     return f"mucat_{port}"
 
 
+class SocketClosers:
+    """Ends the sockets of a device everywhere."""
+
+    def __init__(self) -> None:
+        self._closers: list[CloseSockets] = []
+
+    def add(self, close: CloseSockets) -> None:
+        """Add what ends sockets of one kind."""
+        self._closers.append(close)
+
+    def close(self, device: int, reason: str) -> None:
+        """End all sockets of this device, with a reason."""
+        for close in self._closers:
+            close(device, reason)
+
+
 class Access:
     """One for the server; `notify` writes notices, which also get into what is being recorded, and `token` is
     what the shell of this computer is given to prove itself with.

@@ -280,7 +280,7 @@ def test_a_background_task_that_fails_is_an_alarm_and_in_the_log(
         await place_with_samples(settings.data)
         app = create_app(settings)
         async with app.router.lifespan_context(app):
-            alarms: Alarms = app.state.container.alarms
+            alarms: Alarms = app.state.container.services.get(Alarms)
             await until(lambda: any(one.fault == "server_task_failed" for one in alarms.listed()), "an alarm")
             return next(one for one in alarms.listed() if one.fault == "server_task_failed")
 
@@ -298,7 +298,7 @@ def test_a_restarted_server_raises_an_alarm(settings: Settings) -> None:
         app = create_app(settings)
         app.state.ended = ended
         async with app.router.lifespan_context(app):
-            alarms = app.state.container.alarms.listed()
+            alarms = app.state.container.services.get(Alarms).listed()
         return [(one.fault, one.what, one.severity) for one in alarms if one.fault == "server_restarted"]
 
     assert asyncio.run(started("")) == []

@@ -19,7 +19,7 @@ Place = tuple[str | int, ...]
 
 def bodies() -> Iterator[tuple[str, TypeAdapter[Any]]]:
     """The name and the schema of each operation's body."""
-    app = create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml")))
+    app = create_app(Settings(data=DataFolder(Path("data", every_feature=True)), config=Path("robot.toml")))
     for route in iter_route_contexts([*app.routes]):
         field = getattr(route, "body_field", None)
         if field is not None:

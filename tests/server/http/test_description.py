@@ -1,5 +1,6 @@
 """The OpenAPI document: a program made from it can sign in, and its examples are valid."""
 
+from dataclasses import replace
 from typing import Any
 
 import jsonschema_rs
@@ -21,7 +22,7 @@ def operations(document: dict[str, Any]) -> list[tuple[str, str, dict[str, Any]]
 
 
 def test_every_example_of_a_body_is_valid(settings: Settings) -> None:
-    document = create_app(settings).openapi()
+    document = create_app(replace(settings, every_feature=True)).openapi()
     found = {one["operationId"]: one for _, _, one in operations(document)}
     assert found.keys() >= BODIES.keys()
     for name in BODIES:
@@ -65,7 +66,7 @@ def test_a_program_signs_in_as_the_document_says(settings: Settings) -> None:
 
 
 def test_a_browser_shows_cookie_and_secret_but_for_what_the_page_links_to(settings: Settings) -> None:
-    document = create_app(settings).openapi()
+    document = create_app(replace(settings, every_feature=True)).openapi()
     schemes = document["components"]["securitySchemes"]
     assert (schemes[COOKIE]["in"], schemes[SECRET]["in"]) == ("cookie", "header")
     found = {one["operationId"]: one["security"] for _, _, one in operations(document)}

@@ -18,6 +18,7 @@ from robot_runtime.clock import SimulatedClock
 from server.features.people.welcome import welcome
 from server.http.connections import ADDRESS_MAX, Connections
 from server.http.proxies import RequestsOfAddress
+from server.http.sign_in.access import Access
 from server.platform.audit_file import AuditEntry, read_entries
 from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.reverse_proxy import read_proxies, read_public_url
@@ -232,7 +233,7 @@ def test_behind_a_proxy_a_link_is_printed_only_while_there_is_no_operator(settin
     async def run() -> None:
         async with serve(settings) as served:
             proxied = replace(served.settings, public_url="https://robots.lab")
-            access = served.container.access
+            access = served.get(Access)
             told = "\n".join(welcome(proxied, access, None, picture=False))
             assert "others reach it by the proxy of https://robots.lab" in told
             assert "  https://robots.lab/#pair=" in told

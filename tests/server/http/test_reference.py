@@ -1,3 +1,4 @@
+import shutil
 import sys
 from pathlib import Path
 
@@ -54,8 +55,10 @@ def test_an_operation_and_its_types_are_described() -> None:
 def test_the_check_fails_where_an_operation_is_missing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    reference = tmp_path / "http.md"
-    monkeypatch.setattr(openapi, "REFERENCE", reference)
+    shutil.copy(openapi.SOURCES / "robot.toml", tmp_path)
+    (tmp_path / "docs/reference").mkdir(parents=True)
+    reference = tmp_path / "docs/reference/http.md"
+    monkeypatch.setattr(openapi, "SOURCES", tmp_path)
     monkeypatch.setattr(sys, "argv", ["openapi", "--reference"])
     assert openapi.main() == 0
     monkeypatch.setattr(sys, "argv", ["openapi", "--reference", "--check"])

@@ -12,10 +12,13 @@ from websockets.exceptions import InvalidStatus
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import read_blocks
+from server.health.monitor import HealthMonitor
+from server.http.sign_in.access import Access
 from server.http.sign_in.devices import Devices
 from server.http.sign_in.pairing_codes import PairingCodes
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.stream.hub import Hub
 from tests.server.blocks import state_block
 from tests.server.serving import Served, next_text, play, serve
 from tests.server.sign_in.browsers import browser, closing_of, new_code
@@ -50,7 +53,7 @@ def test_everybody_may_ask_whether_the_robot_works_and_learns_nothing_more(
 ) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, None) as stranger:
-            served.container.monitor.see(state_block(0))
+            served.get(HealthMonitor).see(state_block(0))
             answer = await stranger.api.get("/alive")
             assert (answer.status_code, answer.content) == (204, b"")
             # No write that succeeds meanwhile ends it.
@@ -223,7 +226,7 @@ def test_a_browser_that_signed_in_before_there_were_page_secrets_signs_in_again(
             database.execute("UPDATE device SET page_secret = NULL")
             database.commit()
         async with serve(settings) as served, browser(served, None) as one:
-            one.api.cookies.set(served.container.access.cookie, cookie)
+            one.api.cookies.set(served.get(Access).cookie, cookie)
             answer = await one.api.get("/robot")
             assert (answer.status_code, "Sign this browser in again" in answer.text) == (401, True)
             me = (await one.api.get("/access/me")).json()
@@ -243,7 +246,7 @@ def test_revocation_closes_live_sockets_and_ends_everything(settings: Settings) 
             guest.connect() as second,
             boss.connect() as own,
         ):
-            await until(lambda: served.container.hub.clients == 3, "the sockets")
+            await until(lambda: served.get(Hub).clients == 3, "the sockets")
             answer = await boss.api.delete(f"/access/devices/{await guest.device()}")
             assert answer.status_code == 204
             assert await closing_of(first) == (1008, "Access was revoked by an operator.")
@@ -331,7 +334,7 @@ def test_whoever_may_not_admit_others_any_more_leaves_no_valid_code(settings: Se
                 ended = await maker.api.post("/access/sign-out")
             ended.raise_for_status()
             assert (await stranger.pair(code)).status_code == 403
-            assert served.container.access.codes.use(other, "127.0.0.2") == "viewer"
+            assert served.get(Access).codes.use(other, "127.0.0.2") == "viewer"
 
     play(settings, scenario)
 
@@ -353,7 +356,7 @@ def test_a_paired_browser_is_not_paired_twice(settings: Settings) -> None:
 def test_a_wrong_code_makes_wait_and_many_are_reported_once(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         clock = SimulatedClock(1000.0)
-        served.container.access.codes = PairingCodes(clock)
+        served.get(Access).codes = PairingCodes(clock)
         code = await new_code(served, "operator")
         async with browser(served, None) as stranger, served.connect() as socket:
             for _ in range(5):
@@ -427,7 +430,7 @@ def test_names_are_short_and_printable(settings: Settings, name: str) -> None:
 def test_the_last_visit_is_stored_once_an_hour(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         now = [1e9]
-        devices = Devices(served.container.store, lambda: now[0])
+        devices = Devices(served.get(Store), lambda: now[0])
         device, _ = await devices.add_browser("tablet", "viewer")
 
         async def stored() -> float:

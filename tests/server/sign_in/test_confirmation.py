@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from robot_runtime.clock import SimulatedClock
+from server.http.sign_in.access import Access
 from server.http.sign_in.confirmation import CONFIRMED_SECONDS, Confirmations, UnconfirmedError
 from server.http.sign_in.identity import SHELL, Identity
 from server.http.sign_in.pairing_codes import PairingCodes, WrongCodeError
@@ -22,8 +23,8 @@ TABLET = Identity(1, "tablet", "operator", "browser")
 def confirmations(served: Served) -> SimulatedClock:
     """The clock of a server whose browsers have all yet to confirm."""
     clock = SimulatedClock(1000.0)
-    served.container.access.confirmations = Confirmations(clock)
-    served.container.access.codes = PairingCodes(clock)
+    served.get(Access).confirmations = Confirmations(clock)
+    served.get(Access).codes = PairingCodes(clock)
     return clock
 
 

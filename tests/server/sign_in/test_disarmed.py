@@ -5,6 +5,7 @@ import json
 from functools import partial
 from typing import Any
 
+from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
 from tests.server.serving import Served, serve
@@ -34,7 +35,7 @@ async def answers(served: Served) -> list[tuple[int, str]]:
 
 def says(served: Served, armed: bool) -> bool:
     """True where the newest state has this value of `armed`."""
-    state = served.container.monitor.state()
+    state = served.get(HealthMonitor).state()
     return state is not None and state["armed"] is armed
 
 

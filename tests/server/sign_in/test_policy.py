@@ -20,7 +20,7 @@ from server.platform.settings import DataFolder, Settings
 
 
 def make_app() -> FastAPI:
-    return create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml")))
+    return create_app(Settings(data=DataFolder(Path("data", every_feature=True)), config=Path("robot.toml")))
 
 
 def operations(app: FastAPI) -> dict[str, tuple[str, str]]:

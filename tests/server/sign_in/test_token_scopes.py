@@ -9,6 +9,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from robot_runtime.errors import RefusedError
+from server.http.sign_in.access import Access
 from server.http.sign_in.devices import DAY_SECONDS, Devices
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -76,7 +77,7 @@ def test_a_token_is_refused_in_words_after_its_end_and_its_live_socket_closes(
 ) -> None:
     async def scenario(served: Served) -> None:
         made = (await served.api.post("/access/tokens", json={"name": "logger"})).json()
-        device = served.container.access.devices.get(made["device"]["id"])
+        device = served.get(Access).devices.get(made["device"]["id"])
         assert device.ends == pytest.approx(device.paired + 90 * DAY_SECONDS)
         headers = {"authorization": f"Bearer {made['token']}"}
         with monkeypatch.context() as soon:
@@ -95,7 +96,7 @@ def test_a_token_is_refused_in_words_after_its_end_and_its_live_socket_closes(
         assert "make a new one under people" in answer.json()["detail"].lower()
         (listed,) = (await served.api.get("/access/devices")).json()
         assert listed["ended"] == answer.json()["detail"]
-        monkeypatch.setattr(served.container.access.devices, "_utc", lambda: 300.0)
+        monkeypatch.setattr(served.get(Access).devices, "_utc", lambda: 300.0)
         (listed,) = (await served.api.get("/access/devices")).json()
         assert listed["ended"].startswith("The clock of the robot's computer has not been set")
 

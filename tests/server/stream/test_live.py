@@ -18,8 +18,10 @@ from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.transport.blocks import Block, read_blocks
 from server.features.live.routes import INVALID_MAX
 from server.http.serving import MESSAGE_BYTES_MAX
+from server.http.sign_in.access import Access
 from server.http.sign_in.identity import SHELL, Identity
 from server.platform.settings import Settings
+from server.stream.hub import Hub
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.serving import Served, next_text, play
 from tests.server.waiting import SECONDS, until
@@ -53,7 +55,7 @@ def test_a_page_gets_greeting_history_and_live_messages_without_gap_or_duplicate
         await served.heard("stream")
         start = served.container.clock.now()
         served.runtime.publish(*(depth_block(5 * place, 5, start) for place in range(10)))
-        seen = served.container.hub.history
+        seen = served.get(Hub).history
 
         def kept() -> list[int]:
             return numbers(read_blocks(b"".join(chain.from_iterable(seen.since(-1, 1)))), "depth")
@@ -237,7 +239,7 @@ def test_foreign_pages_get_no_socket(settings: Settings, origin: str) -> None:
         with pytest.raises(InvalidStatus) as refused:
             await served.connect(origin=origin)
         assert refused.value.response.status_code == 403
-        assert served.container.hub.clients == 0
+        assert served.get(Hub).clients == 0
         async with served.connect(origin=None) as program:
             assert await program.recv()
 
@@ -267,7 +269,7 @@ def test_a_page_that_stops_reading_is_disconnected_and_the_others_miss_nothing(
 
     async def scenario(served: Served) -> None:
         stalled = await stall(served)
-        hub = served.container.hub
+        hub = served.get(Hub)
         await until(lambda: hub.clients == 1, "the stalled page")
         others = {*hub._clients}
         async with served.connect() as page:
@@ -321,7 +323,7 @@ def test_a_socket_that_opens_while_its_access_changes_is_closed(
     settings: Settings, monkeypatch: pytest.MonkeyPatch, present: Identity | None, reason: str
 ) -> None:
     async def scenario(served: Served) -> None:
-        access = served.container.access
+        access = served.get(Access)
         # The first answer is at the admission, the second once the socket is open.
         answers = iter([SHELL, present])
         monkeypatch.setattr(access, "refresh", lambda _: next(answers))

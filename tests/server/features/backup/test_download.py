@@ -10,6 +10,7 @@ import pytest
 
 from server.cli import main
 from server.features.backup import download
+from server.features.backup.download import DatabaseDownloads
 from server.http import listener
 from server.platform.settings import Settings
 from tests.server.serving import Served, play
@@ -52,7 +53,7 @@ def test_one_download_at_a_time_and_an_aborted_one_frees_its_place(
     monkeypatch.setattr(download, "PIECE_BYTES", 16)
 
     async def scenario(served: Served) -> None:
-        downloads = served.container.downloads
+        downloads = served.get(DatabaseDownloads)
         async with served.api.stream("GET", "/backup") as first:
             assert first.status_code == 200
             second = await served.api.get("/backup")
@@ -73,7 +74,7 @@ def test_a_client_that_does_not_read_is_disconnected(
         with closing(sqlite3.connect(served.settings.data.database)) as database:
             database.execute("CREATE TABLE filler AS SELECT zeroblob(16000000)")
             database.commit()
-        downloads = served.container.downloads
+        downloads = served.get(DatabaseDownloads)
         async with served.api.stream("GET", "/backup") as answer:
             assert (answer.status_code, downloads._busy) == (200, True)
             await until(lambda: not downloads._busy, "the end of the download")

@@ -11,7 +11,10 @@ import pytest
 import server.features.board.reservation as handover_module
 import server.stream.bridge as bridge_module
 from robot_runtime.errors import RefusedError
+from server.features.board.reservation import BoardReservation
+from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
+from server.processes.supervisor import ProcessSupervisor
 from tests.server.blocks import state_block
 from tests.server.features.board.real_board import Robot, disarming
 from tests.server.serving import Served
@@ -24,7 +27,7 @@ def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 
 
 def runtime_state(served: Served) -> str:
-    part = served.container.processes.get("runtime")
+    part = served.get(ProcessSupervisor).get("runtime")
     assert part is not None
     return part.state
 
@@ -39,7 +42,7 @@ async def reserved_reason(served: Served, name: str = "tested") -> AsyncIterator
     """Reserve the board, with a runtime that reports after STOP that the robot is disarmed."""
     async with (
         disarming(served),
-        served.container.board_reservation.reserve(f"The communication test “{name}”") as arguments,
+        served.get(BoardReservation).reserve(f"The communication test “{name}”") as arguments,
     ):
         yield arguments
 
@@ -64,7 +67,7 @@ def test_the_board_is_reserved_and_released(robot: Robot) -> None:
                 assert (answer.status_code, "“grid”" in answer.json()["detail"]) == (409, True)
             assert (await served.api.post("/robot/stop")).status_code == 204
             with pytest.raises(RefusedError, match="grid"):
-                async with served.container.board_reservation.reserve("The communication test “another”"):
+                async with served.get(BoardReservation).reserve("The communication test “another”"):
                     pass
             assert runtime_state(served) == "paused"
         assert "--restore" in robot.uploads.read_text()
@@ -80,7 +83,7 @@ def test_no_reservation_while_a_session_records(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
         with pytest.raises(RefusedError, match="“dive” is being recorded"):
-            async with served.container.board_reservation.reserve("tested"):
+            async with served.get(BoardReservation).reserve("tested"):
                 pass
         assert served.runtime.asked == []
 
@@ -97,9 +100,9 @@ def test_no_reservation_before_the_robot_reports_that_it_is_disarmed(
         await until(robot.started.exists, "the runtime")
         if state is not None:
             served.runtime.publish(state_block(0, **{"time": served.container.clock.now() + 60} | state))
-            await until(served.container.monitor.state, "the state")
+            await until(served.get(HealthMonitor).state, "the state")
         with pytest.raises(RefusedError, match="was not disarmed within"):
-            async with served.container.board_reservation.reserve("tested"):
+            async with served.get(BoardReservation).reserve("tested"):
                 pass
         assert (runtime_state(served), robot.marker.exists()) == ("running", False)
         assert (await served.api.post("/robot/commands/arm")).status_code == 204
@@ -113,7 +116,7 @@ def test_no_reservation_without_an_answer_to_stop(robot: Robot, monkeypatch: pyt
     async def scenario(served: Served) -> None:
         served.runtime.gates["stop"].clear()
         with pytest.raises(RefusedError, match="could not be disarmed before"):
-            async with served.container.board_reservation.reserve("tested"):
+            async with served.get(BoardReservation).reserve("tested"):
                 pass
         served.runtime.gates["stop"].set()
         assert not robot.marker.exists()
@@ -137,7 +140,7 @@ def test_no_reservation_where_an_external_runtime_cannot_be_paused(robot: Robot)
     robot.runtime = replace(robot.runtime, external=True)
 
     async def scenario(served: Served) -> None:
-        runtime = served.container.processes.get("runtime")
+        runtime = served.get(ProcessSupervisor).get("runtime")
         assert runtime is not None
         served.settings.data.runtime_paused.mkdir()
         with pytest.raises(RefusedError, match="cannot be written"):
@@ -155,7 +158,7 @@ def test_firmware_stays_away_where_an_external_runtime_cannot_be_paused(robot: R
     robot.settings.data.runtime_paused.mkdir()
 
     async def scenario(served: Served) -> None:
-        monitor, runtime = served.container.monitor, served.container.processes.get("runtime")
+        monitor, runtime = served.get(HealthMonitor), served.get(ProcessSupervisor).get("runtime")
         await until(lambda: monitor.firmware_away is not None, "the reason")
         assert "cannot be written" in (monitor.firmware_away or "")
         assert (robot.marker.exists(), robot.uploads.exists()) == (True, False)
@@ -172,7 +175,7 @@ def test_a_failed_firmware_restore_is_reported_and_the_next_test_retries_it(robo
             pass
         assert robot.marker.exists()
         served.runtime.publish(state_block(1500, connected=False, connection="no answer"))
-        await until(lambda: (served.container.monitor.state() or {}).get("connected") is False, "the state")
+        await until(lambda: (served.get(HealthMonitor).state() or {}).get("connected") is False, "the state")
         state, words = (await health(served))["link"]
         assert state == "failed"
         assert "not in sync" in words
@@ -195,7 +198,7 @@ def test_of_a_restore_without_output_the_end_of_its_process_is_reported(robot: R
         robot.upload_does("kill -KILL $$")
         async with reserved_reason(served):
             pass
-        problem = served.container.monitor.firmware_away
+        problem = served.get(HealthMonitor).firmware_away
         assert problem is not None
         assert "on its board: the upload was ended by signal SIGKILL. Check" in problem
 
@@ -225,7 +228,6 @@ def test_without_a_port_the_runtime_starts_and_the_note_stays(
     async def scenario(served: Served) -> None:
         await until(robot.started.exists, "the runtime")
         assert (robot.marker.exists(), robot.uploads.exists()) == (True, False)
-        assert served.container.monitor.firmware_away is not None
-        assert f"there is no {robot.settings.link.port}" in served.container.monitor.firmware_away
+        assert f"there is no {robot.settings.link.port}" in (served.get(HealthMonitor).firmware_away or "")
 
     robot.play(scenario)

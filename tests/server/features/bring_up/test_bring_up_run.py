@@ -9,8 +9,9 @@ import pytest
 import server.features.bring_up.bring_up_run as bring_up_run
 from robot_runtime.config import HilConfig
 from robot_runtime.errors import RefusedError
+from server.features.bring_up.bring_up_run import BringUpRun
 from server.platform.settings import Settings
-from server.processes.supervisor import SIMULATION_ELSEWHERE
+from server.processes.supervisor import SIMULATION_ELSEWHERE, ProcessSupervisor
 from tests.server.features.board.real_board import Robot, disarming
 from tests.server.serving import Served
 from tests.server.waiting import until
@@ -24,7 +25,7 @@ def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 def test_it_says_at_its_end_that_the_firmware_is_not_on_the_board(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         robot.upload_does("echo avrdude: not in sync; exit 1")
-        bring_up = served.container.bring_up
+        bring_up = served.get(BringUpRun)
         async with disarming(served):
             await bring_up.begin()
         earlier = await served.api.delete(f"/bring-up?run={'0' * 16}")
@@ -45,8 +46,8 @@ def test_one_that_is_refused_says_nothing_about_the_board(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
         with pytest.raises(RefusedError, match="“dive” is being recorded"):
-            await served.container.bring_up.begin()
-        state = served.container.bring_up.state()
+            await served.get(BringUpRun).begin()
+        state = served.get(BringUpRun).state()
         assert (state.phase, state.words, state.problem) == ("idle", "", "")
 
     robot.play(scenario)
@@ -59,7 +60,7 @@ def test_an_error_of_the_software_is_said(robot: Robot, monkeypatch: pytest.Monk
     monkeypatch.setattr(bring_up_run, "SerialBench", fail)
 
     async def scenario(served: Served) -> None:
-        bring_up = served.container.bring_up
+        bring_up = served.get(BringUpRun)
         async with disarming(served):
             await bring_up.begin()
         await until(lambda: bring_up.state().phase == "idle", "its end")
@@ -78,7 +79,7 @@ def test_in_the_loop_the_simulator_is_where_it_was_before(
     robot.settings.data.board_tty.touch()
 
     async def scenario(served: Served) -> None:
-        bring_up, simulator = served.container.bring_up, served.container.processes.get("simulator")
+        bring_up, simulator = served.get(BringUpRun), served.get(ProcessSupervisor).get("simulator")
         assert simulator is not None
         at_first = "running" if place == "here" else "paused"
         await until(lambda: simulator.state == at_first, "the simulator")

@@ -8,7 +8,6 @@ import signal
 import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +15,9 @@ import psutil
 import pytest
 from websockets.asyncio.client import ClientConnection
 
-from robot_runtime.config import EventsConfig
 from robot_runtime.experiments.comm_test.document import read_document
-from server.features.comm_tests.runner import Progress
+from server.features.comm_tests.runner import CommTestRunner, Progress
+from server.features.events.config import EventsConfig
 from server.platform.settings import Settings
 from tests.board.rig import ROOT, build
 from tests.server.features.events.rig import Receiver
@@ -110,7 +109,7 @@ def test_a_document_is_run_test_by_test_and_every_page_sees_it(settings: Setting
             assert (active["test"], active["tests"], active["cells"], active["done"]) == (0, 2, 2, 2)
             assert active["remaining"] > 0
             assert told[-1]["cell"]["run"] == first
-            await until(lambda: not served.container.comm_tests.busy, "the end", 200)
+            await until(lambda: not served.get(CommTestRunner).busy, "the end", 200)
 
             second, one = [run for run in await get(served, "runs") if not run["sample"]]
             assert (one["id"], one["state"], one["cells"], one["cells_done"]) == (first, "complete", 2, 2)
@@ -153,7 +152,7 @@ def test_a_run_cancelled_within_a_cell_keeps_the_finished_cells(settings: Settin
             stale = await served.api.post(f"/comm-tests/cancel?run={number - 1}")
             assert (stale.status_code, "This communication test is over" in stale.text) == (409, True)
             assert (await served.api.post(f"/comm-tests/cancel?run={number}")).status_code == 204
-            await until(lambda: not served.container.comm_tests.busy, "the end")
+            await until(lambda: not served.get(CommTestRunner).busy, "the end")
             async with watching(served) as late:
                 assert (await next_text(late, "comm_test"))["active"] is None
             run, *others = [run for run in await get(served, "runs") if not run["sample"]]
@@ -181,14 +180,14 @@ def test_a_killed_lab_process_fails_its_run_only(settings: Settings) -> None:
             ]
             boards = comm_tests.children(recursive=True)
             comm_tests.send_signal(signal.SIGKILL)
-            await until(lambda: not served.container.comm_tests.busy, "the end")
+            await until(lambda: not served.get(CommTestRunner).busy, "the end")
             run = await get(served, f"runs/{number}")
             assert (run["state"], run["cells_done"]) == ("failed", 1)
             assert "was ended by signal SIGKILL" in run["problem"]
             assert boards
             await until(lambda: not any(board.is_running() for board in boards), "the boards' end")
             await start(served, QUICK)
-            await until(lambda: not served.container.comm_tests.busy, "the next run's end", 60)
+            await until(lambda: not served.get(CommTestRunner).busy, "the next run's end", 60)
             assert (await get(served, "runs"))[0]["state"] == "complete"
 
     asyncio.run(scenario())
@@ -197,7 +196,7 @@ def test_a_killed_lab_process_fails_its_run_only(settings: Settings) -> None:
 def test_the_end_of_the_server_cancels_the_run(settings: Settings) -> None:
     async def scenario() -> None:
         receiver = Receiver()
-        telling = replace(settings, events=EventsConfig(webhook=receiver.url))
+        telling = settings.with_section(EventsConfig(webhook=receiver.url))
         async with serve(telling) as served, watching(served) as socket:
             number = await start(served, ENDLESS)
             await news_until(socket, cell=0)
@@ -233,7 +232,7 @@ def test_the_output_of_a_broken_lab_is_reported_up_to_a_limit(
     async def scenario() -> None:
         async with serve(settings) as served:
             number = await start(served, QUICK)
-            await until(lambda: not served.container.comm_tests.busy, "the end")
+            await until(lambda: not served.get(CommTestRunner).busy, "the end")
             run = await get(served, f"runs/{number}")
             assert run["state"] == "failed"
             assert words in run["problem"]

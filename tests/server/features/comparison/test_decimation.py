@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from server.features.comparison.decimation import Envelope, decimate
-from server.features.metrics.series import Series
+from server.metrics.series import Series
 
 
 def test_few_samples_pass_unchanged() -> None:

@@ -72,7 +72,7 @@ async def compare(served: Served, session: int, path: str = "/compare") -> httpx
 
 def process_of(served: Served) -> int:
     """The process that compares for this server."""
-    process = served.container.comparison._process
+    process = served.get(ComparisonWorker)._process
     assert process is not None
     return process.pid
 
@@ -142,7 +142,7 @@ def test_what_fails_or_exceeds_its_limits_is_an_error_in_words_and_the_next_is_a
 def test_a_killed_process_is_started_again(settings: Settings, session: int) -> None:
     async def scenario(served: Served) -> None:
         before = await compare(served, session)
-        process = served.container.comparison._process
+        process = served.get(ComparisonWorker)._process
         assert process is not None
         os.kill(process.pid, signal.SIGKILL)
         await process.wait()
@@ -158,7 +158,7 @@ def test_a_process_that_is_killed_while_it_compares_is_told_in_words(
     async def scenario(served: Served) -> None:
         monkeypatch.setattr(worker, "sys", python("time.sleep(3600)"))
         asking = asyncio.create_task(compare(served, session))
-        await until(lambda: served.container.comparison._process is not None, "the process")
+        await until(lambda: served.get(ComparisonWorker)._process is not None, "the process")
         os.kill(process_of(served), signal.SIGKILL)
         answer = await asking
         assert (answer.status_code, "was ended by signal SIGKILL" in answer.json()["detail"]) == (503, True)
@@ -174,7 +174,7 @@ def test_the_process_ends_when_nobody_asks_any_more(
     monkeypatch.setattr(worker, "IDLE_SECONDS", 0.01)
 
     async def scenario(served: Served) -> None:
-        comparison = served.container.comparison
+        comparison = served.get(ComparisonWorker)
         assert (await compare(served, session)).status_code == 200
         await until(lambda: comparison._process is None, "the process to be left")
         assert (await compare(served, session)).status_code == 200

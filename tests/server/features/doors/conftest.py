@@ -3,7 +3,9 @@ from collections.abc import Iterator
 import pytest
 
 from server.container import Container
+from server.http.audit import AuditLog
 from server.platform.settings import Settings
+from server.platform.store import Store
 from tests.server.new_database import place_empty
 
 
@@ -13,5 +15,5 @@ def container(settings: Settings) -> Iterator[Container]:
     place_empty(settings.data)
     container = Container(settings, (), "mucat_token")
     yield container
-    container.store.close()
-    container.audit.close()
+    container.services.get(Store).close()
+    container.services.get(AuditLog).close()

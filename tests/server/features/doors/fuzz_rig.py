@@ -8,7 +8,13 @@ from hypothesis import HealthCheck
 from server.container import Container
 from server.features.doors.commands import DoorCommands, DoorPilot
 from server.features.doors.subscriptions import DoorClient
+from server.features.lease.arbiter import ControlArbiter
+from server.features.operate.performing import CheckedCommands
+from server.http.audit import AuditLog
+from server.http.sign_in.access import Access
 from server.http.sign_in.identity import SHELL
+from server.stream.bridge import Bridge
+from server.stream.budget import Budgets
 
 CHECKS = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 
@@ -23,13 +29,13 @@ def join_door(container: Container, door: str) -> Iterator[tuple[DoorClient, Doo
     commands = DoorCommands(
         f"/{door}",
         container.clock,
-        container.access,
-        container.commands,
-        container.bridge,
-        container.arbiter,
-        container.audit,
+        container.services.get(Access),
+        container.services.get(CheckedCommands),
+        container.services.get(Bridge),
+        container.services.get(ControlArbiter),
+        container.services.get(AuditLog),
     )
-    with container.arbiter.page(SHELL) as owner:
-        budget = container.budgets.of(SHELL)
+    with container.services.get(ControlArbiter).page(SHELL) as owner:
+        budget = container.services.get(Budgets).of(SHELL)
         client = DoorClient(1, SHELL, "", send, container.clock, budget)
         yield client, DoorPilot(owner, ""), commands

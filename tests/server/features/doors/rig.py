@@ -5,21 +5,21 @@ import json
 import time
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
 
-from robot_runtime.config import DoorsConfig
 from robot_runtime.contract import packets
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, row
 from server.features.doors import subscriptions
+from server.features.doors.config import DoorsConfig
 from server.features.doors.subscriptions import DoorClient
+from server.http.sign_in.access import Access
 from server.platform.settings import Settings
 from server.stream import socket_ends
 from tests.server.serving import Served, play
@@ -32,7 +32,7 @@ LIFE = 3600.0
 
 def play_open(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
     """Run `scenario` with both doors open."""
-    play(replace(settings, doors=OPEN), scenario)
+    play(settings.with_section(OPEN), scenario)
 
 
 async def make_token(served: Served, scope: str = "operate", name: str = "Program") -> str:
@@ -49,7 +49,7 @@ class TokenTime:
     def __init__(self, served: Served, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
         self._date = time.time()
         self._waiting: list[asyncio.Timeout] = []
-        devices = served.container.access.devices
+        devices = served.get(Access).devices
         (self._device,) = (one for one in devices.all() if one.name == name)
         self._ends = self._device.ends = self._date + LIFE
         monkeypatch.setattr(devices, "_utc", lambda: self._date)

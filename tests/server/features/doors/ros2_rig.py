@@ -7,7 +7,6 @@ import queue
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Sequence
 from contextlib import asynccontextmanager, contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,9 @@ import zenoh
 from zenoh_ros2_sdk import ROS2Publisher, ROS2ServiceClient, ROS2Subscriber, ZenohSession, message_registry
 from zenoh_ros2_sdk.utils import compute_service_type_hash
 
-from robot_runtime.config import DoorsConfig
+from server.features.doors.config import DoorsConfig
+from server.features.doors.house import Doors
+from server.features.doors.ros2_door import Ros2Door
 from server.features.doors.ros2_messages import TRIGGER, ros2_types
 from server.http.sign_in.tokens import digest
 from server.platform.authority import Authority
@@ -33,7 +34,7 @@ def play_ros2(
     settings: Settings, scenario: Callable[[Served], Awaitable[None]], doors: DoorsConfig = OPEN
 ) -> None:
     """Run `scenario` with the doors for ROS 2 and rosbridge open."""
-    settings = replace(settings, doors=doors)
+    settings = settings.with_section(doors)
     Authority(settings).prepare()
     play(settings, scenario)
 
@@ -48,7 +49,7 @@ async def issue(served: Served, scope: str = "operate", name: str = "Lab") -> Pa
 
 def tls_settings(served: Served, folder: Path) -> dict[str, Any]:
     """Zenoh's settings for a connection to the door with the certificate in this folder."""
-    host, port = served.container.ros2.address
+    host, port = served.get(Ros2Door).address
     tls = {
         "root_ca_certificate": str(folder / "authority.pem"),
         "connect_certificate": str(folder / "certificate.pem"),
@@ -202,11 +203,11 @@ def subscribed(served: Served) -> set[str]:
     """The topics that programs at the door subscribe to."""
     return {
         one.channel.name
-        for client in served.container.doors.doors["ros2"].clients
+        for client in served.get(Doors).doors["ros2"].clients
         for one in client.subscriptions.values()
     }
 
 
 def refused(served: Served) -> int:
     """Messages and calls at the door that were refused."""
-    return sum(client.refused for client in served.container.doors.doors["ros2"].clients)
+    return sum(client.refused for client in served.get(Doors).doors["ros2"].clients)

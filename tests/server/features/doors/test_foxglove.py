@@ -15,7 +15,9 @@ from server.container import Container
 from server.features.doors.channels import read_samples
 from server.features.doors.foxglove import FoxgloveSession
 from server.features.doors.foxglove_services import advertise_services
+from server.features.doors.house import Doors
 from server.features.doors.session import INVALID_MAX
+from server.features.lease.arbiter import ControlArbiter
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block
 from tests.server.features.doors.fuzz_rig import join_door
@@ -78,7 +80,7 @@ def test_samples_come_with_our_axes_and_utc(settings: Settings, protocol: str) -
             numbers = await subscribe(socket, "/depth", "/pose", "/log")
             now = served.container.clock.now()
             turned = (0.8, 0.0, 0.0, 0.6)
-            doors = served.container.doors
+            doors = served.get(Doors)
             doors.see(rows_block("truth", 0, (now, truth((1.0, 2.0, 0.7), turned))))
             depth = Depth(time=2_000_000, depth=0.7, pressure=108_000, temperature=18.5)
             doors.see(rows_block("depth", 0, (now, depth)))
@@ -199,7 +201,7 @@ def parameters_block(number: int, **values: float) -> Block:
 
 def test_a_change_is_sent_also_where_another_parameter_is_watched_before(container: Container) -> None:
     async def scenario() -> list[bytes | str]:
-        doors = container.doors
+        doors = container.services.get(Doors)
         doors._open = True
         with join_door(container, "foxglove") as (client, pilot, commands):
             session = FoxgloveSession(client, pilot, doors, doors.doors["foxglove"], commands)
@@ -215,7 +217,7 @@ def test_a_change_is_sent_also_where_another_parameter_is_watched_before(contain
 def test_a_parameter_that_was_set_has_its_new_value_before_the_next_document(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.publish(parameters_block(0, a=1.5, b=0))
-        await until(lambda: served.container.doors.parameters(), "the parameters")
+        await until(lambda: served.get(Doors).parameters(), "the parameters")
         await served.api.post("/control/release")
         async with open_foxglove(served, await make_token(served)) as socket:
             (take,) = (one["id"] for one in advertise_services() if one["name"] == "/mucat/take_control")
@@ -248,15 +250,15 @@ def test_time_never_goes_back(settings: Settings) -> None:
             times: list[int] = []
             for number in range(3):
                 taken = served.container.clock.now() - 0.2
-                served.container.doors.see_health([])
+                served.get(Doors).see_health([])
                 values: dict[str, Any] = dict.fromkeys(Control.wires, 0.0)
-                served.container.doors.see(rows_block("control", number, (taken, Control(**values))))
+                served.get(Doors).see(rows_block("control", number, (taken, Control(**values))))
                 while len(times) < 2 * (number + 1):
                     message = await socket.recv()
                     if isinstance(message, bytes) and message[0] == 2:
                         times.append(unpack_from("<Q", message, 1)[0])
             assert times == sorted(times)
-            assert abs(times[-1] - served.container.doors.utc_ns()) < 60e9
+            assert abs(times[-1] - served.get(Doors).utc_ns()) < 60e9
 
     play_open(settings, scenario)
 
@@ -298,7 +300,7 @@ def test_a_twist_drives_with_control_alone(settings: Settings) -> None:
             assert "Take control" in (await next_op(socket, "status"))["message"]
             assert served.runtime.driven == []
             await socket.send(pack("<BIII", 2, services["/mucat/take_control"], 1, 4) + b"json{}")
-            await until(lambda: served.container.arbiter.lease.holder is not None, "control")
+            await until(lambda: served.get(ControlArbiter).lease.holder is not None, "control")
             await socket.send(pack("<BI", 1, 4) + twist.encode())
             await until(lambda: served.runtime.driven, "the command")
             assert served.runtime.driven[0]["axes"] == [0.5, -0.25, 0.0, 0.0, 0.0, -1.0]

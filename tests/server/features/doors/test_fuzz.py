@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from server.container import Container
 from server.features.doors.foxglove import FoxgloveSession
+from server.features.doors.house import Doors
 from server.features.doors.rosbridge import REFUSED_OPS, RosbridgeSession
 from server.features.doors.session import UnusableMessageError
 from tests.server.features.doors.fuzz_rig import CHECKS, join_door
@@ -63,9 +64,9 @@ def act(
     container: Container, door: str, kind: type[RosbridgeSession | FoxgloveSession], message: str | bytes
 ) -> None:
     async def run() -> None:
-        opened = container.doors.doors[door]
+        opened = container.services.get(Doors).doors[door]
         with join_door(container, door) as (client, pilot, commands):
-            session = kind(client, pilot, container.doors, opened, commands)
+            session = kind(client, pilot, container.services.get(Doors), opened, commands)
             with suppress(UnusableMessageError):
                 session.act(message)
             session.cancel_calls()

@@ -13,6 +13,7 @@ from websockets.exceptions import ConnectionClosed
 
 from robot_runtime.contract.commands import http_commands
 from server.features.doors.commands import RELEASE, STOP, TAKE
+from server.features.lease.arbiter import ControlArbiter
 from server.platform.settings import Settings
 from tests.server.features.doors.rig import (
     RosbridgeClient,
@@ -136,13 +137,13 @@ def test_a_token_that_ends_while_its_program_drives_ends_control(
         lasting = TokenTime(served, monkeypatch, "Program")
         async with open_door(served, token) as socket:
             await take_control(socket)
-            await until(lambda: served.container.arbiter.lease.holder is not None, "control")
+            await until(lambda: served.get(ControlArbiter).lease.holder is not None, "control")
             await send_twist(socket)
             await until(lambda: served.runtime.driven, "the command")
             assert await is_answered(socket)
             lasting.end()
             assert await closing_code(socket) == 1008
-        await until(lambda: served.container.arbiter.lease.holder is None, "control to be free")
+        await until(lambda: served.get(ControlArbiter).lease.holder is None, "control to be free")
         async with open_door(served, token) as socket:
             with pytest.raises(ConnectionClosed):
                 await is_answered(socket)
@@ -169,7 +170,7 @@ def test_a_viewers_token_stops_the_robot_and_does_nothing_else(settings: Setting
         await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
         assert {name for name, _ in served.runtime.asked if name != "there"} == {"stop"}
         assert served.runtime.driven == []
-        assert served.container.arbiter.lease.holder is None
+        assert served.get(ControlArbiter).lease.holder is None
         titles = {TAKE: "Take control", RELEASE: "Release control", STOP: "STOP"}
         expected = {(titles.get(name, name), "refused") for name in set(NAMES) - {STOP, RELEASE}}
         expected |= {("STOP", "done"), ("Release control", "done")}

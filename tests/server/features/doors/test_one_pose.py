@@ -23,10 +23,12 @@ from mcap.reader import make_reader
 
 from mucat import FolderSessions, Robot, Sessions
 from robot_runtime.contract.packets import Depth
+from server.features.doors.config import DoorsConfig
 from server.features.exports.formats import KINDS
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.sessions.session import find_row
+from server.health.monitor import HealthMonitor
 from server.platform.authority import Authority
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Reader
@@ -239,7 +241,7 @@ def from_exports(settings: Settings, session: int, folder: Path) -> dict[str, li
 
 def has_come(served: Served, topic: str, place: int) -> bool:
     """True where the sample of this place has come."""
-    newest = served.container.monitor._newest.get(topic)
+    newest = served.get(HealthMonitor)._newest.get(topic)
     return newest is not None and newest[1].first == place
 
 
@@ -305,7 +307,7 @@ def poses() -> dict[str, list[Pose]]:
         config.write_text('[robot]\nname = "tested"\n', encoding="utf-8")
 
         doors = replace(ros2_rig.OPEN, foxglove=True)
-        settings = Settings(data=folder, config=config, robot="tested", doors=doors)
+        settings = Settings(data=folder, config=config, robot="tested", sections={DoorsConfig: doors})
         Authority(settings).prepare()
 
         async def perform() -> dict[str, list[Pose]]:

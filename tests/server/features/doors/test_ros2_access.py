@@ -7,6 +7,9 @@ from typing import Any
 import pytest
 import zenoh
 
+from server.features.doors.house import Doors
+from server.features.doors.ros2_door import Ros2Door
+from server.features.lease.arbiter import ControlArbiter
 from server.platform.authority import Authority
 from server.platform.settings import Settings
 from tests.server.features.doors.rig import (
@@ -29,7 +32,7 @@ def test_the_door_is_closed_unless_the_configuration_opens_it(settings: Settings
     async def scenario(served: Served) -> None:
         (door,) = (one for one in (await served.api.get("/doors")).json() if one["name"] == "ros2")
         assert (door["open"], door["clients"]) == (False, [])
-        assert served.container.ros2.address == ("", 0)
+        assert served.get(Ros2Door).address == ("", 0)
 
     play(settings, scenario)
 
@@ -68,8 +71,8 @@ def test_a_revoked_certificate_ends_its_connection_and_control(settings: Setting
             devices = (await served.api.get("/access/devices")).json()
             (device,) = (one["id"] for one in devices if one["name"] == "Lab")
             (await served.api.delete(f"/access/devices/{device}")).raise_for_status()
-            await until(lambda: served.container.arbiter.lease.holder is None, "control to be free")
-            await until(lambda: not served.container.doors.doors["ros2"].clients, "the end")
+            await until(lambda: served.get(ControlArbiter).lease.holder is None, "control to be free")
+            await until(lambda: not served.get(Doors).doors["ros2"].clients, "the end")
             await until(lambda: not [*settings.data.run.glob("ros2-*")], "its socket to be removed")
 
     play_ros2(settings, scenario)
@@ -85,7 +88,7 @@ def test_a_certificate_that_ends_ends_its_connection(
             await asyncio.to_thread(peer.subscribe, "/depth", "std_msgs/msg/Float64")
             await until(lambda: subscribed(served) == {"/depth"}, "the subscription")
             lasting.end()
-            await until(lambda: not served.container.doors.doors["ros2"].clients, "the end")
+            await until(lambda: not served.get(Doors).doors["ros2"].clients, "the end")
 
     play_ros2(settings, scenario)
 

@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from server.cli import mucat
+from server.features.doors.ros2_door import Ros2Door
 from server.platform.running_server import announce
 from server.platform.settings import Settings
 from tests.server.features.doors.ros2_rig import play_ros2, ros2_peer
@@ -31,7 +32,7 @@ def test_a_certificate_lets_a_program_in_with_its_scope(settings: Settings, tmp_
         assert "lab" in await shell("lab", "--to", str(tmp_path / "again"))
         assert not (tmp_path / "again").exists()
         (printed,) = re.findall(r"ZENOH_CONFIG_OVERRIDE='(.*)' ros2 run", said)
-        host, port = served.container.ros2.address
+        host, port = served.get(Ros2Door).address
         printed = printed.replace("ADDRESS:7448", f"{host}:{port}").replace('"lab/', f'"{folder}/')
         async with ros2_peer(served, printed) as peer:
             success, reason = await asyncio.to_thread(peer.call, "/mucat/take_control")

@@ -3,6 +3,8 @@
 import asyncio
 from typing import Any
 
+from server.features.doors.house import Doors
+from server.features.lease.arbiter import ControlArbiter
 from server.platform.settings import Settings
 from tests.server.features.doors.rig import (
     acts_of,
@@ -49,7 +51,7 @@ def test_a_program_drives_with_control_and_not_without(settings: Settings) -> No
             (client,) = await doors_of(served)
             assert client["in_control"] is True
             assert await call("release_control") == (True, "Control is released.")
-            assert served.container.arbiter.lease.holder is None
+            assert served.get(ControlArbiter).lease.holder is None
         expected = {
             ("Lab", "Open a door", "done"),
             ("Lab", "Take control", "refused"),
@@ -86,7 +88,7 @@ def test_a_viewer_behind_a_router_stops_the_robot_and_does_nothing_else(settings
                 assert [name for name, _ in served.runtime.asked if name != "there"] == ["stop", "stop"]
         finally:
             await asyncio.to_thread(router.close)
-        await until(lambda: not served.container.doors.doors["ros2"].clients, "the end")
+        await until(lambda: not served.get(Doors).doors["ros2"].clients, "the end")
 
     with reserved_port() as port:
         address = f"tcp/127.0.0.1:{port}"

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from server.container import Container
 from server.features.doors.commands import DoorCommands
+from server.features.doors.house import Doors
 from server.features.doors.ros2_messages import TRIGGER, ros2_types
 from server.features.doors.ros2_names import Attachment
 from server.features.doors.ros2_node import Incoming
@@ -46,7 +47,7 @@ def test_the_door_uses_or_refuses_anything(
             pass
 
         with join_door(container, "ros2") as (client, pilot, commands):
-            session = Ros2Session(client, pilot, container.doors, commands, writable)
+            session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
             calls: list[Coroutine[Any, Any, None]] = []
             session.begin = lambda call, **_: calls.append(call)  # type: ignore[method-assign]
             session.act(Incoming(endpoint, typed, payload, attachment, query), None)  # type: ignore[arg-type]

@@ -10,6 +10,8 @@ import zenoh
 
 from server.container import Container
 from server.features.doors import ros2_door
+from server.features.doors.house import Doors
+from server.features.doors.ros2_door import Ros2Door
 from server.features.doors.ros2_messages import PAYLOAD_MAX
 from server.features.doors.ros2_names import Endpoint
 from server.features.doors.ros2_node import Incoming, read_payload
@@ -94,10 +96,10 @@ def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
             await asyncio.to_thread(peer.subscribe, topic, "sensor_msgs/msg/CompressedImage")
             await until(lambda: subscribed(served) == {topic}, "the subscription")
             reading.clear()
-            door, number = served.container.doors.doors["ros2"], 0
+            door, number = served.get(Doors).doors["ros2"], 0
             while door.clients:
                 number += 1
-                served.container.doors.see(picture_block(number, 300_000))
+                served.get(Doors).see(picture_block(number, 300_000))
                 assert (await page.next("publish"))["topic"] == topic
                 await asyncio.sleep(0)
             reading.set()
@@ -144,7 +146,7 @@ def test_of_many_connections_at_once_no_more_than_the_limit_are_let_in(
         with ExitStack() as stack:
             # They wait in the listener's backlog, since the door does not run meanwhile.
             connections = [
-                stack.enter_context(socket.create_connection(served.container.ros2.address))
+                stack.enter_context(socket.create_connection(served.get(Ros2Door).address))
                 for _ in range(ros2_door.STRANGERS_MAX + refused_count)
             ]
             for one in connections:
@@ -155,7 +157,7 @@ def test_of_many_connections_at_once_no_more_than_the_limit_are_let_in(
 
             await until(lambda: ended() >= refused_count, "the others to be refused")
             assert ended() == refused_count
-            assert served.container.doors.doors["ros2"].strangers == ros2_door.STRANGERS_MAX
+            assert served.get(Doors).doors["ros2"].strangers == ros2_door.STRANGERS_MAX
 
     play_ros2(settings, scenario)
 
@@ -163,13 +165,13 @@ def test_of_many_connections_at_once_no_more_than_the_limit_are_let_in(
 def test_a_subscriber_that_comes_while_its_program_is_disconnected_gets_nothing(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         container = served.container
-        door = container.doors.doors["ros2"]
+        door = container.services.get(Doors).doors["ros2"]
         with join_door(container, "ros2") as (client, pilot, commands):
 
             async def writable() -> None:
                 pass
 
-            session = Ros2Session(client, pilot, container.doors, commands, writable)
+            session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
             (topic, *_) = door.publisher.channels
             session.match(Endpoint("MP", topic, "", "", 1, False), True)
             await asyncio.sleep(0)
@@ -186,7 +188,7 @@ def test_of_a_flood_of_stops_as_many_wait_as_of_other_messages(container: Contai
             async def writable() -> None:
                 pass
 
-            session = Ros2Session(client, pilot, container.doors, commands, writable)
+            session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
             drive, stop = (Endpoint("MS", name, "", "", 1, False) for name in (CMD_VEL, STOP_TOPIC))
             for _ in range(1000):
                 session.receive(Incoming(drive, True, b"", b""))
@@ -230,7 +232,7 @@ async def pass_on(
     served: Served, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, reading: asyncio.Event
 ) -> None:
     """Pass bytes on between a program and the door, to the program only while `reading` is set."""
-    there, back = await asyncio.open_connection(*served.container.ros2.address)
+    there, back = await asyncio.open_connection(*served.get(Ros2Door).address)
 
     async def pump(
         source: asyncio.StreamReader, sink: asyncio.StreamWriter, gate: asyncio.Event | None

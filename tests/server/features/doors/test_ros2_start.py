@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from robot_runtime.config import DoorsConfig
 from robot_runtime.contract.limits import ConfigError
+from server.features.doors.config import DoorsConfig
 from server.features.doors.ros2_door import check_ros2
 from server.features.doors.ros2_messages import NO_ROSBAGS
 from server.platform.authority import Authority

@@ -12,6 +12,7 @@ import pytest
 
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Beacon, Depth, Motor, Status
+from server.features.doors.house import Doors
 from server.features.doors.ros_channels import standard_channels
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block, picture_block
@@ -93,7 +94,7 @@ def test_a_late_subscriber_of_a_latched_topic_gets_the_newest_message(settings: 
         folder = await issue(served, "read")
         kind = "diagnostic_msgs/msg/DiagnosticArray"
         async with ros2_peer(served, tls_settings(served, folder)) as peer:
-            served.container.doors.see_health([{"name": "board", "state": "failed", "text": "Gone."}])
+            served.get(Doors).see_health([{"name": "board", "state": "failed", "text": "Gone."}])
             await asyncio.to_thread(peer.subscribe, "/diagnostics", kind)
             first = await peer.next("/diagnostics")
             await asyncio.to_thread(peer.subscribe, "/diagnostics", kind, ":1:,1:,:,:,,")
@@ -118,7 +119,7 @@ def publish_attitude(served: Served) -> None:
 
 def publish_most(served: Served) -> None:
     """A sample of each other topic."""
-    served.container.doors.see_health([{"name": "board", "state": "failed", "text": MARK}])
+    served.get(Doors).see_health([{"name": "board", "state": "failed", "text": MARK}])
     now = served.container.clock.now()
     flags: dict[str, Any] = dict.fromkeys(Status.wires, 0) | {"battery": 7.4}
     control = dict.fromkeys(Control.wires, 0.25)

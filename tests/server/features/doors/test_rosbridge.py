@@ -13,8 +13,11 @@ import server.stream.bridge as bridge_module
 from robot_runtime.contract.packets import Beacon, Depth
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
+from server.features.doors.config import DoorsConfig
+from server.features.doors.house import Doors
 from server.features.doors.rosbridge import FRAGMENT_MIN
 from server.features.doors.session import INVALID_MAX
+from server.features.lease.arbiter import ControlArbiter
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block, picture_block, state_block
 from tests.server.features.doors.rig import (
@@ -28,7 +31,7 @@ from tests.server.features.doors.rig import (
     rows_block,
     truth,
 )
-from tests.server.serving import Served, play
+from tests.server.serving import Served, next_text, play
 from tests.server.waiting import SECONDS, until
 
 
@@ -39,7 +42,19 @@ def test_a_door_is_closed_unless_the_configuration_opens_it(settings: Settings) 
             async with open_rosbridge(served, token):
                 pass
         (rosbridge, foxglove, _) = (await served.api.get("/doors")).json()
-        assert (rosbridge["open"], foxglove["open"]) == (False, False)
+        assert (rosbridge["open"], foxglove["open"]) == (False, True)
+
+    play(settings.with_section(DoorsConfig(foxglove=True)), scenario)
+
+
+def test_without_an_open_door_the_feature_is_off(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        with pytest.raises(InvalidStatus):
+            async with open_rosbridge(served, await make_token(served)):
+                pass
+        assert (await served.api.get("/doors")).status_code == 404
+        async with served.connect() as socket:
+            assert "doors" not in (await next_text(socket, "hello"))["features"]
 
     play(settings, scenario)
 
@@ -122,7 +137,7 @@ def test_samples_come_in_the_axes_units_and_stamps_of_ros(settings: Settings) ->
             assert _vector(measured["linear_acceleration"]) == pytest.approx((1.0, -2.0, 9.5), abs=1e-3)
             stamp = measured["header"]["stamp"]
             clock = served.container.clock
-            before, utc_ns, after = clock.now(), served.container.doors.utc_ns(), clock.now()
+            before, utc_ns, after = clock.now(), served.get(Doors).utc_ns(), clock.now()
             age = (utc_ns - (stamp["sec"] * 10**9 + stamp["nanosec"])) / 1e9
             assert before - now - 0.01 < age < after - now + 0.01
             assert _angles(found["/pose"]["pose"]["orientation"])[2] == pytest.approx(-yaw, abs=2e-4)
@@ -254,7 +269,7 @@ def test_a_program_drives_with_control_and_not_without(settings: Settings) -> No
             await viewer.say(op="publish", topic="/mucat/stop", msg={})
             await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
             assert (await client.call("/mucat/release_control"))["result"] is True
-            assert served.container.arbiter.lease.holder is None
+            assert served.get(ControlArbiter).lease.holder is None
         expected = {
             ("Program", "Take control", "done"),
             ("Program", "arm", "done"),
@@ -368,8 +383,8 @@ def test_control_ends_with_the_connection(settings: Settings) -> None:
         await served.api.post("/control/release")
         async with open_rosbridge(served, await make_token(served)) as socket:
             assert (await RosbridgeClient(socket).call("/mucat/take_control"))["result"] is True
-            assert served.container.arbiter.lease.holder is not None
-        await until(lambda: served.container.arbiter.lease.holder is None, "control to be free")
+            assert served.get(ControlArbiter).lease.holder is not None
+        await until(lambda: served.get(ControlArbiter).lease.holder is None, "control to be free")
 
     play_open(settings, scenario)
 
@@ -402,7 +417,7 @@ def test_parameters_are_read_and_set(settings: Settings) -> None:
             listed = [{"name": "depth.kp", "type": "number", "value": 1.0}]
             document = json.dumps([{"time": 1.0, "parameters": listed}]).encode()
             served.runtime.publish(Block.of(BY_NAME["parameters"], 1, 0, document))
-            await until(lambda: served.container.doors.parameters(), "the parameters")
+            await until(lambda: served.get(Doors).parameters(), "the parameters")
             assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["values"]["value"] == "1.0"
             served.runtime.answer = {"changed": {"depth.kp": [1.0, 2.5]}}
             await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"})
@@ -419,7 +434,7 @@ def test_parameters_are_read_and_set(settings: Settings) -> None:
 def test_the_newest_state_comes_at_once_and_lines_of_text_are_the_log(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.publish(state_block(0, mode="manual"))
-        await until(lambda: served.container.doors.document("state"), "the state")
+        await until(lambda: served.get(Doors).document("state"), "the state")
         async with open_rosbridge(served, await make_token(served, "read")) as socket:
             client = RosbridgeClient(socket)
             await client.say(op="subscribe", topic="/mucat/state")
@@ -526,12 +541,12 @@ def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
                 await RosbridgeClient(socket).say(op="subscribe", topic="/camera/image/compressed")
             await RosbridgeClient(well).call("/rosapi/get_time")
             await served.heard("picture")
-            door = served.container.doors.doors["rosbridge"]
+            door = served.get(Doors).doors["rosbridge"]
             await until(lambda: len(door.clients) == 2, "both")
             number = 0
             while len(door.clients) == 2:
                 number += 1
-                served.container.doors.see(picture_block(number, 300_000))
+                served.get(Doors).see(picture_block(number, 300_000))
                 picture = await RosbridgeClient(well).next("publish")
                 assert picture["topic"] == "/camera/image/compressed"
                 await asyncio.sleep(0)

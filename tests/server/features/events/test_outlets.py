@@ -15,13 +15,16 @@ from typing import Any
 import pytest
 from paho.mqtt.client import Client
 
-from robot_runtime.config import EventsConfig
 from robot_runtime.contract.published_events import PublishedEvent
 from server.features.events import mqtt, webhook
+from server.features.events.announcer import EventAnnouncer
+from server.features.events.config import EventsConfig
 from server.features.events.mqtt import MqttOutlet
 from server.features.events.outlet import WAITING_MAX, OutletCondition
 from server.features.events.webhook import WebhookOutlet
+from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import EndedRun
+from server.features.tuning.runner import TuningRunner
 from server.features.tuning.schemas import ControllerInForce, TuningRun
 from server.platform.settings import Settings
 from tests.server.features.events.rig import Listener, Receiver, broker, wait_for
@@ -327,7 +330,7 @@ def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
 
         async def scenario(served: Served) -> None:
             await until(connected.is_set, "the broker to be asked")
-            announcer = served.container.events
+            announcer = served.get(EventAnnouncer)
             longest = 0.0
             for number in range(2 * WAITING_MAX):
                 began = time.perf_counter()
@@ -339,7 +342,7 @@ def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
             assert part["name"] == "events"
             assert f"mqtt://127.0.0.1:{port}" in part["text"]
 
-        play(replace(settings, events=mute), scenario)
+        play(settings.with_section(mute), scenario)
         server.shutdown(socket.SHUT_RDWR)
         thread.join()
         for one in held:
@@ -361,7 +364,7 @@ def test_a_server_tells_of_a_recording_from_its_start_to_its_end(
             session = started.raise_for_status().json()["id"]
             began = await asyncio.to_thread(listener.next, "mucat/tested/event/session_began")
             assert (began["subject"], began["id"]) == ("Dive", session)
-            scenarios, tuning = served.container.scenarios, served.container.tuning
+            scenarios, tuning = served.get(ScenarioRunner), served.get(TuningRunner)
             scenarios._last, tuning._last = SCENARIO, TUNING
             scenarios.announce()
             tuning.announce()
@@ -369,7 +372,7 @@ def test_a_server_tells_of_a_recording_from_its_start_to_its_end(
                 ended = await asyncio.to_thread(listener.next, f"mucat/tested/event/{kind}_ended")
                 assert (ended["subject"], ended["state"]) == (kind, "complete")
 
-        play(replace(settings, events=both), scenario)
+        play(settings.with_section(both), scenario)
         # The server has ended, and the recording with it.
         assert listener.next("mucat/tested/event/session_ended")["subject"] == "Dive"
         assert listener.next("mucat/tested/status") == "offline"

@@ -20,6 +20,7 @@ from server.features.exports import export_process as child_module
 from server.features.exports import jobs as jobs_module
 from server.features.exports.jobs import JOBS_MAX, OPERATORS_ONLY, RETENTION_DAYS, Jobs
 from server.features.exports.schemas import ExportOptions, Job, NewExport
+from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.session import find_row
 from server.platform.models import SessionRow
 from server.platform.schema import prepare
@@ -47,7 +48,7 @@ async def start(api: AsyncClient, session: int, **wanted: Any) -> dict[str, Any]
 
 
 async def ended(served: Served, job: dict[str, Any]) -> dict[str, Any]:
-    found = served.container.jobs.find
+    found = served.get(Jobs).find
     await until(lambda: found(job["id"]).state in ("done", "failed"), "the file", 60)
     answer: dict[str, Any] = (await served.api.get(f"/exports/{job['id']}")).json()
     return answer
@@ -138,7 +139,7 @@ def test_old_exports_are_deleted(settings: Settings) -> None:
     young = finished(settings, "b" * 16, limit + timedelta(minutes=10))
 
     async def scenario(served: Served) -> None:
-        jobs = served.container.jobs
+        jobs = served.get(Jobs)
         await until(lambda: len(jobs.list()) == 1, "the old file to go")
         names = {path.name for path in settings.data.exports.iterdir()}
         assert names == {young.id, f"{young.id}.json"}
@@ -178,7 +179,7 @@ def test_a_job_whose_files_cannot_be_written_or_deleted_fails_and_the_next_is_do
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario(served: Served) -> None:
-        jobs, row = served.container.jobs, find_row(served.container.store, session)
+        jobs, row = served.get(Jobs), find_row(served.get(Store), session)
         ids = iter(["a" * 16, "b" * 16])
         monkeypatch.setattr(jobs_module, "token_hex", lambda _: next(ids))
         (settings.data.exports / f"{'a' * 16}{PART}").mkdir()
@@ -216,7 +217,7 @@ def test_the_next_job_starts_after_a_cancelled_one(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario(served: Served) -> None:
-        jobs = served.container.jobs
+        jobs = served.get(Jobs)
         first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
         await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
         assert (await served.api.get(f"/exports/{second['id']}")).json()["state"] == "waiting"
@@ -235,7 +236,7 @@ def test_the_next_job_starts_after_a_cancelled_one(
 @pytest.mark.usefixtures("slow")
 def test_a_killed_export_process_leaves_no_file(settings: Settings, session: int) -> None:
     async def scenario(served: Served) -> None:
-        jobs = served.container.jobs
+        jobs = served.get(Jobs)
         job = await start(served.api, session)
         await until(lambda: jobs.find(job["id"]).progress == 0.25, "progress")
         assert jobs._running is not None
@@ -260,7 +261,7 @@ def test_a_cancelled_process_that_does_not_end_is_ended_by_force(
     monkeypatch.setattr(child_module, "CANCEL_SECONDS", 0.01)
 
     async def scenario(served: Served) -> None:
-        jobs = served.container.jobs
+        jobs = served.get(Jobs)
         first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
         await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
         assert jobs._running is not None
@@ -314,7 +315,7 @@ async def purge(served: Served, session: int) -> None:
     """Remove a session for good, and wait until it is gone."""
     assert (await served.api.delete(f"/sessions/{session}")).status_code == 200
     assert (await served.api.post(f"/sessions/{session}/purge")).status_code == 204
-    await served.container.retention.apply(time.time())
+    await served.get(RetentionWorker).apply(time.time())
 
 
 @pytest.mark.usefixtures("slow")
@@ -322,12 +323,12 @@ def test_exports_of_a_purged_session_fail_and_the_next_session_has_another_numbe
     settings: Settings, session: int
 ) -> None:
     async def scenario(served: Served) -> None:
-        jobs = served.container.jobs
+        jobs = served.get(Jobs)
         running, waiting = await start(served.api, session), await start(served.api, session, format="jsonl")
         await until(lambda: jobs.find(running["id"]).progress == 0.25, "progress")
         await purge(served, session)
         assert jobs.find(waiting["id"]).state == "failed"
-        following = await asyncio.to_thread(record, served.container.store, settings, [depth_block(0, 10)])
+        following = await asyncio.to_thread(record, served.get(Store), settings, [depth_block(0, 10)])
         assert following > session
         texts = [(await ended(served, job))["problem"] for job in (running, waiting)]
         assert texts == [jobs_module.PURGED_RUNNING, jobs_module.PURGED_WAITING]
@@ -340,7 +341,7 @@ def test_a_waiting_export_reads_the_session_of_its_identifier_alone(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario(served: Served) -> None:
-        jobs, store = served.container.jobs, served.container.store
+        jobs, store = served.get(Jobs), served.get(Store)
         first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
         await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
         # As a restored database might: the number is another session's.

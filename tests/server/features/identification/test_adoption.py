@@ -12,7 +12,7 @@ from server.features.identification.adoption import CraftAdoption
 from server.features.identification.schemas import describe_improvement
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
-from server.processes.supervisor import SIMULATION_ELSEWHERE
+from server.processes.supervisor import SIMULATION_ELSEWHERE, ProcessSupervisor
 from tests.server.serving import serve
 
 LIGHT = 'title = "Light"\n[craft]\nmass = 2.5\n'
@@ -89,8 +89,8 @@ def test_only_a_simulator_on_another_computer_must_be_started_again(
     async def scenario() -> None:
         simulator = ProcessCommand("simulator", "simulator", asleep)
         async with serve(replace(settings, mode="hil"), [simulator]) as served:
-            await served.container.processes.pause("simulator", why)
-            effects = " ".join(await served.container.craft_adoption.adopt(HEAVY, ""))
+            await served.get(ProcessSupervisor).pause("simulator", why)
+            effects = " ".join(await served.get(CraftAdoption).adopt(HEAVY, ""))
             assert ("must be started again with this craft" in effects) == restart
             assert "was started again" not in effects
 

@@ -10,7 +10,9 @@ import pytest
 
 from robot_runtime.contract.craft import load_craft
 from server.features.identification import runner
+from server.features.identification.runner import IdentificationRunner
 from server.platform.settings import Settings
+from server.stream.feed import Feed
 from tests.server.blocks import state_block
 from tests.server.features.identification.conftest import RecordedTrials
 from tests.server.serving import Served, play
@@ -108,7 +110,7 @@ def test_a_fit_is_cancelled_at_once(
         assert await start(served, sessions=[1]) == 409
         first = (await state(served))["active"]["run"]
         assert (await served.api.post(f"/identification/cancel?run={first}")).status_code == 204
-        await until(lambda: served.container.identification._active is None, "the fit to end")
+        await until(lambda: served.get(IdentificationRunner)._active is None, "the fit to end")
         assert (await state(served))["last"]["problem"] == "It was cancelled."
         assert (await served.api.post("/identification/adopt")).status_code == 409
         assert await start(served, sessions=[1]) == 201
@@ -139,7 +141,7 @@ def test_a_fit_that_fails_says_why(
 
     async def scenario(served: Served) -> None:
         assert await start(served, sessions=[999]) == 201
-        await until(lambda: served.container.identification._active is None, "the fit to end")
+        await until(lambda: served.get(IdentificationRunner)._active is None, "the fit to end")
         assert (await state(served))["last"]["problem"] == why
 
     play(settings, scenario)
@@ -161,7 +163,7 @@ def test_no_craft_is_changed_while_the_robot_is_armed(settings: Settings) -> Non
     settings.data.craft_before.write_text('title = "Before"\n')
 
     async def scenario(served: Served) -> None:
-        served.container._deliver([state_block(0, armed=True)])
+        served.get(Feed).deliver([state_block(0, armed=True)])
         refused = await served.api.post("/identification/undo")
         assert (refused.status_code, refused.json()["detail"]) == (
             409,
@@ -169,7 +171,7 @@ def test_no_craft_is_changed_while_the_robot_is_armed(settings: Settings) -> Non
         )
         assert (await state(served))["craft"]["problem"] == "The robot is armed. Disarm it first."
         assert not settings.data.craft.exists()
-        served.container._deliver([state_block(1, armed=False)])
+        served.get(Feed).deliver([state_block(1, armed=False)])
         assert (await served.api.post("/identification/undo")).status_code == 200
         assert load_craft(settings.data.craft).title == "Before"
 

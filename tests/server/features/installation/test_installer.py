@@ -16,7 +16,7 @@ from server.features.installation.installer import adapt_config
 from server.features.installation.places import COMPLETE, InstallPlaces
 from server.features.installation.release import read_release
 from server.features.installation.units import write_command, write_units
-from server.platform.settings import Settings, SetupError
+from server.platform.settings import Settings, SetupError, read_settings
 from tests.server.features.installation.computer import (
     CONFIG_TXT,
     KERNEL_LINE,
@@ -48,7 +48,8 @@ def test_an_installation_is_whole(tmp_path: Path, release: Path) -> None:
     ).read_text() == "dialout:x:20:mucat\nvideo:x:44:somebody,mucat\nlp:x:7:\n"
     config = load(places.config)
     assert (config.robot.mode, config.vision.camera) == ("robot", "pi")
-    assert (config.server.host, config.server.tls) == ("0.0.0.0", True)
+    settings = read_settings(places.config, None, None, None, {})
+    assert (settings.host, settings.tls) == ("0.0.0.0", True)
     assert {one.name for one in places.units.iterdir()} == set(write_units(places))
     assert places.command.stat().st_mode & 0o777 == 0o755
     assert "SystemMaxUse=100M" in places.journal_limit.read_text()
@@ -316,7 +317,8 @@ def test_the_default_configuration_is_adapted_and_stays_valid(tmp_path: Path) ->
     path = tmp_path / "robot.toml"
     path.write_text(adapt_config(DEFAULT_CONFIG.read_text(), robot=False))
     config = load(path)
-    assert (config.robot.mode, config.server.host, config.vision.camera) == ("emulated", "0.0.0.0", "scene")
+    assert (config.robot.mode, config.vision.camera) == ("emulated", "scene")
+    assert read_settings(path, None, None, None, {}).host == "0.0.0.0"
 
 
 def test_no_service_comes_before_a_path_unit() -> None:

@@ -5,6 +5,7 @@ import sqlite3
 from contextlib import closing
 
 from server.features.installation.survey import survey
+from server.health.monitor import HealthMonitor
 from server.platform.running_server import announce
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
@@ -16,7 +17,7 @@ async def arm(served: Served) -> None:
     """Make an armed robot that this computer's shell can ask about."""
 
     def is_armed() -> bool:
-        return (served.container.monitor.state() or {}).get("armed") is True
+        return (served.get(HealthMonitor).state() or {}).get("armed") is True
 
     announce(served.settings)
     served.runtime.publish(state_block(0, armed=True))

@@ -8,6 +8,7 @@ from typing import Any
 import httpx
 from websockets.asyncio.client import ClientConnection
 
+from server.features.lease.arbiter import ControlArbiter
 from tests.server.serving import Served, next_text
 
 
@@ -37,7 +38,7 @@ class Page:
     def command(self, **changes: Any) -> dict[str, Any]:
         whole = {
             "op": "drive",
-            "lease": self.served.container.arbiter.lease.epoch,
+            "lease": self.served.get(ControlArbiter).lease.epoch,
             "sequence": 1,
             "taken": self.served.container.clock.now(),
             "axes": [0, 0, 1, 0, 0, 0],

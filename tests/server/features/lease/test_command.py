@@ -3,6 +3,7 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
+from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.command import in_control, renew_control
 from server.platform.running_server import announce, ask
 from server.platform.settings import Settings, SetupError
@@ -32,7 +33,7 @@ def test_a_command_takes_control_and_releases_it(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await asyncio.to_thread(command, served)
         assert served.runtime.asked == [("arm", {})] * 2
-        assert served.container.arbiter.state().holder is None
+        assert served.get(ControlArbiter).state().holder is None
 
     play(settings, with_address(scenario))
 
@@ -44,7 +45,7 @@ def test_a_command_does_not_take_control_over(settings: Settings) -> None:
             with pytest.raises(SetupError, match=r"Control is with the shell of this .* with --take-over"):
                 await asyncio.to_thread(command, served)
             assert served.runtime.asked == []
-            assert served.container.arbiter.lease.holder == page.client
+            assert served.get(ControlArbiter).lease.holder == page.client
 
     play(settings, with_address(scenario))
 
@@ -55,7 +56,7 @@ def test_a_command_takes_control_over_on_purpose(settings: Settings) -> None:
             await page.ask("/control/take")
             await asyncio.to_thread(command, served, over=True)
             assert served.runtime.asked == [("arm", {})] * 2
-            assert served.container.arbiter.lease.holder is None
+            assert served.get(ControlArbiter).lease.holder is None
 
     play(settings, with_address(scenario))
 
@@ -74,6 +75,6 @@ def test_a_command_whose_control_is_taken_over_does_not_take_it_back(settings: S
             loop = asyncio.get_running_loop()
             with pytest.raises(SetupError, match="Control is with"):
                 await asyncio.to_thread(lose)
-            assert served.container.arbiter.lease.holder == page.client
+            assert served.get(ControlArbiter).lease.holder == page.client
 
     play(settings, with_address(scenario))

@@ -3,9 +3,11 @@
 import json
 
 from robot_runtime.clock import SimulatedClock
+from server.features.lease.arbiter import ControlArbiter
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform.settings import Settings
+from server.platform.store import Store
 from tests.server.blocks import state_block
 from tests.server.features.lease.pages import free, open_page
 from tests.server.serving import Served, next_text, play
@@ -27,7 +29,7 @@ def test_changes_of_control_are_recorded_in_the_session(settings: Settings) -> N
         (await served.api.post("/control/take")).raise_for_status()
         (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
         container = served.container
-        recording = Recording(container.store, find_row(container.store, session))
+        recording = Recording(container.services.get(Store), find_row(container.services.get(Store), session))
         # The doctor's words come when its look at the start is done.
         texts = [one["text"] for one in recording.documents("notice") if one["kind"] == "control"]
         shell = "“the shell of this computer”"
@@ -96,7 +98,7 @@ def test_only_the_holder_may_command_and_everybody_may_stop(settings: Settings) 
             ("POST", "/scenarios/runs", {"text": SCENARIO, "place": "live"}),
             ("POST", "/comm-tests/runs", {"text": "[]", "place": "robot"}),
         ]
-        name = served.container.arbiter.state().holder
+        name = served.get(ControlArbiter).state().holder
         assert name is not None
         async with open_page(served) as page:
             for key in (bare, {"X-Mucat-Client": page.key}):
@@ -121,7 +123,7 @@ def test_only_the_holder_may_command_and_everybody_may_stop(settings: Settings) 
 def test_a_silent_program_loses_control(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with open_page(served) as page:
-            arbiter = served.container.arbiter
+            arbiter = served.get(ControlArbiter)
             client = arbiter.clients.get(arbiter.lease.holder or 0)
             assert client is not None
             # As if it had been silent for nearly all of its time.
@@ -142,11 +144,11 @@ def test_only_the_holder_s_driving_commands_reach_the_runtime(settings: Settings
             await until(lambda: served.runtime.epochs, "the runtime to be told")
             # A command grows no older on its way, however busy the computer is.
             clock = SimulatedClock(served.container.clock.now())
-            served.container.arbiter.driving._clock = clock
+            served.get(ControlArbiter).driving._clock = clock
             await anna.drive(sequence=1, taken=clock.now())
             await anna.drive(sequence=2, taken=clock.now() - 0.4)
             await ben.drive(sequence=3)
-            await anna.drive(sequence=4, lease=served.container.arbiter.lease.epoch - 1)
+            await anna.drive(sequence=4, lease=served.get(ControlArbiter).lease.epoch - 1)
             await anna.drive(sequence=1)
             await anna.drive(sequence=5, taken=clock.now())
             await until(lambda: len(served.runtime.driven) == 2, "two commands")
@@ -163,7 +165,7 @@ def test_only_the_holder_s_driving_commands_reach_the_runtime(settings: Settings
 
 def test_a_restarted_runtime_gets_the_epoch_again(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        epoch = served.container.arbiter.lease.epoch
+        epoch = served.get(ControlArbiter).lease.epoch
         await until(lambda: served.runtime.epochs[-1:] == [epoch], "the runtime to be told")
         before = len(served.runtime.epochs)
         served.runtime.publish(state_block(0))

@@ -21,6 +21,8 @@ from server.features.missions import trials as trials_module
 from server.features.missions.library import VERSIONS_MAX, MissionLibrary, UnknownMissionError
 from server.features.missions.nodes import list_node_kinds
 from server.features.missions.trials import MissionTrials
+from server.features.sessions.auto_recording import AutoRecorder
+from server.features.sessions.recorder import Recorder
 from server.platform.disk_space import FileWriteError
 from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.platform.runs import RunOverError
@@ -249,9 +251,9 @@ def test_the_session_that_a_mission_starts_names_who_started_it(settings: Settin
         started = await served.api.post("/missions/start", json={"text": OWN})
         assert (started.status_code, served.runtime.asked[-1][0]) == (201, "mission")
         served.runtime.publish(state_block(0, armed=True))
-        recorder = served.container.recorder
+        recorder = served.get(Recorder)
         await until(lambda: recorder.session is not None, "the session to begin")
-        await served.container.arming.close()
+        await served.get(AutoRecorder).close()
         assert recorder.session is not None
         session = recorder.session.id
         await recorder.stop(session)

@@ -10,6 +10,7 @@ import pytest
 from robot_runtime.contract.commands import ParametersCommand, SteeringCommand
 from server.features.parameters.changes import Changes, Send
 from server.features.parameters.profiles import ProfileError, read_file
+from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
 from tests.server.blocks import state_block
@@ -27,7 +28,7 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
         async with serve(settings) as served:
             await served.heard("stream")
             served.runtime.publish(state_block(0))
-            await until(served.container.monitor.state, "the state")
+            await until(served.get(HealthMonitor).state, "the state")
             await served.reached()
             whole: dict[str, Any] = {
                 "type": "number",
@@ -138,7 +139,7 @@ def test_an_undo_that_cannot_be_stored_is_done_and_the_one_before_it_can_follow(
         await change(served, 3.0, 4.0)
         newest, first = (await served.api.get("/parameters/changes")).json()
         with monkeypatch.context() as full:
-            full.setattr(served.container.store, "write", fail)
+            full.setattr(served.get(Store), "write", fail)
             answer = await served.api.post("/parameters/undo", json={"change": newest["id"]})
         assert answer.raise_for_status().json()["changed"][0]["after"] == 3.0
         listed = (await served.api.get("/parameters/changes")).json()
@@ -175,7 +176,7 @@ def test_gains_and_vision_settings_are_in_the_history_and_undone(settings: Setti
 
 def test_parameters_that_a_scenario_left_changed_are_in_the_history(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        changes, swim = served.container.changes, SteeringCommand(by="beacons")
+        changes, swim = served.get(Changes), SteeringCommand(by="beacons")
 
         async def tuned(before: float, after: float, send: Send) -> None:
             served.runtime.answer = {"changed": {"depth.pid.kp": [before, after]}}

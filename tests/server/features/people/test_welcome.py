@@ -7,6 +7,7 @@ import pytest
 
 from server.features.people.pairing_links import qr_text
 from server.features.people.welcome import welcome
+from server.http.sign_in.access import Access
 from server.platform.settings import Settings
 from tests.server.serving import Served, serve
 from tests.server.sign_in.browsers import browser
@@ -15,7 +16,7 @@ PUBLIC = ("localhost", "127.0.0.1", "turtle.local", "192.168.0.7")
 
 
 def lines(served: Served, settings: Settings, *, picture: bool = False) -> list[str]:
-    return welcome(settings, served.container.access, None, picture=picture)
+    return welcome(settings, served.get(Access), None, picture=picture)
 
 
 def code_in(lines: list[str]) -> str:
@@ -32,7 +33,7 @@ def test_the_link_of_each_start_signs_this_computer_s_browser_in(settings: Setti
                 assert f"http://localhost:{served.settings.port}/#pair=" in "".join(told)
                 answer = await one.pair(code_in(told))
                 assert answer.json()["identity"]["role"] == "operator"
-                assert len(served.container.access.devices.all()) == number
+                assert len(served.get(Access).devices.all()) == number
 
     asyncio.run(run())
 

@@ -5,6 +5,7 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
+from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.shell_run import _follow
 from server.platform.running_server import announce
 from server.platform.settings import Settings, SetupError
@@ -37,7 +38,7 @@ def left_after(
         with pytest.raises(SetupError, match=TAKEN_OUT):
             async with asyncio.timeout(20):
                 await following
-        state = served.container.scenarios.state()
+        state = served.get(ScenarioRunner).state()
         left.extend(runs.index(one.run) + 1 for one in (state.active, *state.queued) if one is not None)
 
     play(settings, scenario)

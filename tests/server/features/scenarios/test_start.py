@@ -11,6 +11,7 @@ from robot_runtime.control.craft_gains import craft_gains
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from server.features.scenarios import routes
+from server.features.scenarios.runs import ScenarioRunner
 from server.platform.settings import Settings
 from tests.server.serving import serve
 
@@ -58,7 +59,7 @@ def test_a_live_scenario_on_the_robots_craft_has_the_craft_in_force(
     async def run() -> None:
         async with serve(settings) as served:
             await served.take_control()
-            monkeypatch.setattr(served.container.scenarios, "start", start)
+            monkeypatch.setattr(served.get(ScenarioRunner), "start", start)
             answer = await served.api.post("/scenarios/runs", json={"text": ON_ITS_CRAFT, "place": "live"})
             assert answer.status_code == 201, answer.text
 

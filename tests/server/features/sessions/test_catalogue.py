@@ -6,7 +6,9 @@ import pytest
 
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
+from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
+from server.platform.store import Store
 from tests.server.blocks import depth_block, state_block, thumbnail_block
 from tests.server.serving import Served, next_text, play
 from tests.server.waiting import until
@@ -132,13 +134,13 @@ def test_bookmarks_are_set_live_and_later(settings: Settings) -> None:
 def test_a_session_lists_its_contents(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.publish(state_block(0, set_point_default=0.7))
-        await until(lambda: served.container.monitor.state() is not None, "the state")
+        await until(lambda: served.get(HealthMonitor).state() is not None, "the state")
         session = (await served.api.post("/sessions", json={"name": "whole"})).json()["id"]
         now = served.container.clock.now()
         small = [thumbnail_block(n, now + n, bytes([n])) for n in range(2)]
         served.runtime.publish(depth_block(5, 10, start=now - 0.1), depth_block(20, 1, start=now))
         served.runtime.publish_bytes(b"".join(block.data for block in small))
-        store = served.container.store
+        store = served.get(Store)
 
         def counts() -> dict[str, int]:
             return Recording(store, find_row(store, session)).counts()

@@ -96,7 +96,7 @@ def test_firmware_built_anew_is_recorded_once_it_is_on_the_board(rig: Rig) -> No
 def test_the_runtime_says_what_it_has_read(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.provenance["configuration"] = "# older\n"
-        watch = served.container.provenance
+        watch = served.get(ProvenanceWatch)
         served.runtime.publish(state_block(0))
         await until(lambda: watch._now.configuration == "# older\n", "the runtime's answer")
         session = (await served.api.post("/sessions", json={})).json()

@@ -335,7 +335,7 @@ def test_a_picture_s_address_does_not_show_that_of_another_session(settings: Set
         again = await served.api.get(url, headers=seen)
         assert (again.status_code, again.content) == (304, b"")
         # As in a restored database: the number is another session's.
-        await served.container.store.execute(update(SessionRow).values(identifier="another"))
+        await served.get(Store).execute(update(SessionRow).values(identifier="another"))
         assert (await served.api.get(url, headers=seen)).status_code == 200
 
     over_http(settings, scenario)

@@ -4,7 +4,6 @@ import asyncio
 import json
 import shutil
 from collections.abc import Callable, Coroutine
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import pytest
@@ -14,9 +13,9 @@ from sqlmodel import func, select
 import server.features.sessions.retention as tidying_module
 import server.features.sessions.storage as storage_module
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.config import SessionsConfig
 from robot_runtime.transport.blocks import Block
 from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.config import SessionsConfig
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.retention import BIN_SECONDS, RetentionWorker
 from server.features.sessions.session import REMOVING, new_row
@@ -42,7 +41,7 @@ class Keeper:
 
     def __init__(self, store: Store, settings: Settings, rules: SessionsConfig) -> None:
         self.store = store
-        self.settings = replace(settings, sessions=rules)
+        self.settings = settings.with_section(rules)
         self.clock = SimulatedClock(50.0)
         self.told: list[str] = []
         self.notices = Notices(self.clock, self._hear)
@@ -284,7 +283,7 @@ def test_the_worker_goes_on_where_the_disk_cannot_be_examined(
             raise OSError("Input/output error")
 
         monkeypatch.setattr(shutil, "disk_usage", refuse)
-        rules = replace(settings, sessions=SessionsConfig(keep_free=1.0))
+        rules = settings.with_section(SessionsConfig(keep_free=1.0))
         worker = RetentionWorker(store, rules, Notices(clock, print), clock)
         running = asyncio.create_task(worker.run())
         async with asyncio.timeout(SECONDS):

@@ -111,8 +111,8 @@ async def begin(served: Served, wanted: dict[str, Any]) -> int:
 
 async def over(served: Served) -> dict[str, Any]:
     """The ended run."""
-    await until(lambda: served.container.tuning.state().active is None, "the run's end")
-    last = served.container.tuning.state().last
+    await until(lambda: served.get(TuningRunner).state().active is None, "the run's end")
+    last = served.get(TuningRunner).state().last
     assert last is not None
     answer: dict[str, Any] = (await served.api.get(f"/tuning/runs/{last.id}")).raise_for_status().json()
     return answer
@@ -282,9 +282,9 @@ def test_an_experiment_that_cannot_start_is_refused_and_stores_nothing(settings:
         served.runtime.refusal = "No, since the runtime knows better."
         assert "the runtime knows better" in await refused(served, STEP, 409)
         served.runtime.refusal = None
-        served.container.tuning._occupied = lambda: "The scenario “Dive” is being run."
+        served.get(TuningRunner)._occupied = lambda: "The scenario “Dive” is being run."
         assert "The scenario “Dive”" in await refused(served, STEP, 409)
-        served.container.tuning._occupied = lambda: None
+        served.get(TuningRunner)._occupied = lambda: None
         nothing = await served.api.post("/tuning/stop")
         assert (nothing.status_code, nothing.json()["detail"]) == (409, "No experiment is running.")
         assert (await served.api.get("/tuning/runs")).json()["runs"] == []

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from server.features.metrics.series import Floats
-from server.features.metrics.strokes import count_strokes
+from server.metrics.series import Floats
+from server.metrics.strokes import count_strokes
 
 RATE = 50.0
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY
+from server.features.doors.config import DoorsConfig
 from server.http.sign_in.tokens import digest
 from server.platform.authority import Authority, check_name
 from server.platform.command_line import FILE, with_settings
@@ -65,8 +66,9 @@ def ros2(settings: Settings, name: str, scope: str, days: int, destination: Path
         raise
     echo(f"“{name}” is device {device}. Copy the folder {folder} to its computer, and remove it here.")
     echo("There, in the folder's place, with the robot's address:")
-    echo(f"  {override(folder.name, settings.doors.ros2_listen)} ros2 run rmw_zenoh_cpp rmw_zenohd")
-    if not settings.doors.ros2:
+    door = settings.section(DoorsConfig)
+    echo(f"  {override(folder.name, door.ros2_listen)} ros2 run rmw_zenoh_cpp rmw_zenohd")
+    if not door.ros2:
         echo("The door is closed: set ros2 = true under [doors] in robot.toml.")
 
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from server.features.metrics.series import Floats
+from server.metrics.series import Floats
 
 SWING_LEAST = 0.2
 """rad; less is noise of the encoders (0.006 rad a count) and a fin that holds still."""

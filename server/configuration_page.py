@@ -12,8 +12,10 @@ from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from robot_runtime.config import Config
 from robot_runtime.generate.markdown import page, table
+from server.feature import list_features
+from server.platform.server_config import ServerConfig
 
-SOURCE = "robot_runtime/config.py and the comments of robot.toml"
+SOURCE = "the classes of the sections and the comments of robot.toml"
 INTRODUCTION = """\
 `robot.toml` holds everything about one robot that is not code. An entry that is left out has its default.
 An entry that is not known here is refused with its name. [Configure](../run/configure.md) says how to
@@ -34,15 +36,19 @@ def configuration_page(robot_toml: str) -> str:
     """The whole text of configuration.md. Raises ValueError where an entry has no comment in `robot_toml`."""
     meanings = read_comments(robot_toml)
     parts = [INTRODUCTION]
-    for section in fields(Config):
-        cls = type(section.default)
-        parts += [f"## `[{section.name}]`\n", " ".join((cls.__doc__ or "").split()) + "\n"]
-        parts.append(
-            table(
-                ("entry", "value", "default", "meaning"), _rows(cls, section.name, section.default, meanings)
-            )
-        )
+    for name, cls in list_sections().items():
+        parts += [f"## `[{name}]`\n", " ".join((cls.__doc__ or "").split()) + "\n"]
+        parts.append(table(("entry", "value", "default", "meaning"), _rows(cls, name, cls(), meanings)))
     return page("Configuration", SOURCE, *parts)
+
+
+def list_sections() -> dict[str, type]:
+    """The classes of all sections: the robot's, the server's, the features'."""
+    return {
+        **{one.name: type(one.default) for one in fields(Config)},
+        "server": ServerConfig,
+        **{one.name: one.section for one in list_features().values() if one.section is not None},
+    }
 
 
 def read_comments(text: str) -> dict[str, str]:

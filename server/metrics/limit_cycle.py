@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from server.features.metrics.series import Floats, Series
+from server.metrics.series import Floats, Series
 
 CORRELATION_LEAST = 0.5
 PERIODS_LEAST = 3

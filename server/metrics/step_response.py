@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from server.features.metrics.series import Series
+from server.metrics.series import Series
 
 BAND = 0.05
 STAY = 0.2

@@ -3,8 +3,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from server.features.metrics.limit_cycle import find_limit_cycle
-from server.features.metrics.series import Floats, Series
+from server.metrics.limit_cycle import find_limit_cycle
+from server.metrics.series import Floats, Series
 
 RATE = 50.0
 

@@ -5,8 +5,8 @@ from math import acos, exp, pi, sqrt
 import numpy as np
 import pytest
 
-from server.features.metrics.series import Floats, Series
-from server.features.metrics.step_response import measure_step
+from server.metrics.series import Floats, Series
+from server.metrics.step_response import measure_step
 
 WN = 2.0
 """rad/s"""

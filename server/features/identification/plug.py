@@ -1,0 +1,15 @@
+"""The plug of the identification."""
+
+from server.feature import Plug
+from server.features.identification.runner import IdentificationRunner
+
+
+class IdentificationPlug(Plug):
+    """Ends a run with the server."""
+
+    def __init__(self, runner: IdentificationRunner) -> None:
+        self._runner = runner
+
+    async def stop(self) -> None:
+        """Cancel what runs."""
+        await self._runner.close()

@@ -1,0 +1,73 @@
+"""The plug of scenarios."""
+
+from collections.abc import Coroutine, Sequence
+from typing import Any, ClassVar
+
+from robot_runtime.clock import Clock
+from server.feature import Plug
+from server.features.parameters.changes import Changes
+from server.features.scenarios.live_run import LiveExecutor
+from server.features.scenarios.runs import ScenarioRunner
+from server.features.scenarios.simulated_run import SimulatedExecutor
+from server.features.sessions.recorder import Recorder
+from server.health.monitor import HealthMonitor
+from server.health.occupation import Occupation
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.platform.store import Store
+from server.processes.supervisor import ProcessSupervisor
+from server.services import Maker
+from server.stream.bridge import Bridge
+from server.stream.hub import Hub
+
+
+def make_live(
+    settings: Settings,
+    store: Store,
+    recorder: Recorder,
+    bridge: Bridge,
+    changes: Changes,
+    monitor: HealthMonitor,
+    processes: ProcessSupervisor,
+    clock: Clock,
+    notices: Notices,
+) -> LiveExecutor:
+    """Runs scenarios on the robot."""
+    return LiveExecutor(settings, store, recorder, bridge, changes, monitor, processes, clock, notices.notify)
+
+
+def make_scenarios(live: LiveExecutor, simulated: SimulatedExecutor, hub: Hub) -> ScenarioRunner:
+    """Runs scenarios."""
+    return ScenarioRunner(live, simulated, hub.notify)
+
+
+class ScenariosPlug(Plug):
+    """Ends a scenario on the robot at a STOP."""
+
+    makers: ClassVar[tuple[Maker, ...]] = (make_live, make_scenarios)
+
+    def __init__(
+        self, scenarios: ScenarioRunner, live: LiveExecutor, bridge: Bridge, occupation: Occupation
+    ) -> None:
+        self._scenarios = scenarios
+        self._live = live
+        bridge.on_stop.append(scenarios.see_stop)
+        occupation.robot.append(self._explain)
+
+    async def start(self) -> None:
+        """Send the pages the state."""
+        self._scenarios.announce()
+
+    def work(self) -> Sequence[Coroutine[Any, Any, None]]:
+        """Clean up after a killed server."""
+        return (self._live.recover(),)
+
+    async def stop(self) -> None:
+        """Cancel what runs."""
+        await self._scenarios.close()
+
+    def _explain(self) -> str | None:
+        run = self._scenarios.active
+        if run is None or run.place != "live":
+            return None
+        return f"The scenario “{run.scenario.title}” is being run. Cancel it first."

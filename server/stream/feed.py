@@ -1,0 +1,54 @@
+"""The server's bus: blocks of the robot and of the server itself, for whoever listens to their topics."""
+
+import logging
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+
+from robot_runtime.contract.topics import TOPICS, AnyTopic
+from robot_runtime.transport.blocks import Block
+
+log = logging.getLogger(__name__)
+
+BlockListener = Callable[[Block], None]
+RoundListener = Callable[[Sequence[Block]], None]
+
+
+class Feed:
+    """Delivers each block to the listeners of its topic, and each round of blocks that came together.
+
+    A listener must be quick. One that fails is logged and reported to `on_failure`; the others still hear.
+    """
+
+    def __init__(self) -> None:
+        self.on_failure: Callable[[str, Exception], None] = lambda _, __: None
+        """Gets the name of a listener and its error."""
+        self._listeners: dict[int, list[BlockListener]] = defaultdict(list)
+        self._rounds: list[RoundListener] = []
+
+    def listen(self, listener: BlockListener, *topics: AnyTopic) -> None:
+        """Call `listener` with every block of these topics, or of all where none is named."""
+        for topic in topics or TOPICS:
+            self._listeners[topic.id].append(listener)
+
+    def listen_to_rounds(self, listener: RoundListener) -> None:
+        """Call `listener` with the blocks that came together, after their own listeners."""
+        self._rounds.append(listener)
+
+    def deliver(self, blocks: Sequence[Block]) -> None:
+        """Call the listeners with these blocks, in order."""
+        for block in blocks:
+            for listener in self._listeners[block.topic.id]:
+                try:
+                    listener(block)
+                except Exception as problem:
+                    self._report(listener, problem)
+        for heard in self._rounds:
+            try:
+                heard(blocks)
+            except Exception as problem:
+                self._report(heard, problem)
+
+    def _report(self, listener: Callable[..., None], problem: Exception) -> None:
+        name = getattr(listener, "__qualname__", repr(listener))
+        log.error("%s cannot take what was delivered", name, exc_info=problem)
+        self.on_failure(name, problem)
