@@ -20,6 +20,9 @@ INTRODUCTION = """\
 `robot.toml` holds everything about one robot that is not code. An entry that is left out has its default.
 An entry that is not known here is refused with its name. [Configure](../run/configure.md) says how to
 change it.
+
+`[features]` switches the optional parts of the server on and off, by name: `identification = false`. What is off is not
+loaded, and what it offers is not there.
 """
 TABLES = {
     "gains": "gains of each controller; [Parameters](parameters.md) lists them",
