@@ -21,8 +21,8 @@ INTRODUCTION = """\
 An entry that is not known here is refused with its name. [Configure](../run/configure.md) says how to
 change it.
 
-`[features]` switches the optional parts of the server on and off, by name: `identification = false`. What is off is not
-loaded, and what it offers is not there.
+`[features]` switches the optional parts of the server on and off, by name: `identification = false`. What is
+off is not loaded, and what it offers is not there.
 """
 TABLES = {
     "gains": "gains of each controller; [Parameters](parameters.md) lists them",
