@@ -13,7 +13,7 @@ def open_system(page: Page, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/system")
     control = page.get_by_role("button", name=re.compile("^Control:"))
     expect(control).to_have_accessible_name("Control: this page")
-    expect(page.get_by_role("region", name="Other programs").get_by_role("listitem").first).to_be_visible()
+    expect(page.get_by_role("region", name="Other programs").get_by_text("Closed.")).to_be_visible()
     expect(page.locator("summary", has_text="good check")).to_be_visible()
 
 
