@@ -25,15 +25,17 @@ class Feature:
     """A feature and what it consists of; places in the code are written "module:name".
 
     `section` is the class of its section of robot.toml, which has its name. `is_on` tells by the section
-    whether the feature has anything to do. An `optional` one can be switched off in `[features]`. `routes`
-    are places of `Operations`, or of functions that make them of their section. `commands` are those of the
-    shell, by their names. `plug` is the place of its `Plug`.
+    whether the feature has anything to do. An `optional` one can be switched off in `[features]`. `removed`
+    are entries of earlier versions: empty ones are passed over, others refused in words. `routes` are places
+    of `Operations`, or of functions that make them of their section. `commands` are those of the shell, by
+    their names. `plug` is the place of its `Plug`.
     """
 
     name: str
     section: type | None = None
     is_on: Callable[[Any], bool] = lambda _: True
     optional: bool = False
+    removed: Sequence[str] = ()
     routes: Sequence[str] = ()
     commands: Mapping[str, str] = field(default_factory=dict)
     plug: str = ""

@@ -1,4 +1,4 @@
-"""The events that are published to other programs, by MQTT and webhooks (docs/use/events.md)."""
+"""The events that are published to other programs, by MQTT (docs/use/events.md)."""
 
 from dataclasses import dataclass, field
 from typing import Literal

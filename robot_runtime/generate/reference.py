@@ -44,7 +44,7 @@ are the log of an MCAP export. Every sample has a time in s of the steady clock.
 """
 EVENTS_SOURCE = "robot_runtime/contract/published_events.py"
 EVENTS_INTRODUCTION = """\
-Each event is one JSON object: over MQTT at `mucat/ROBOT/event/EVENT`, to a web address one POST.
+Each event is one JSON object, which MQTT carries at `mucat/ROBOT/event/EVENT`.
 [Events](../use/events.md) says how they are switched on. The JSON Schema is
 `robot_runtime/contract/published_events.schema.json`.
 """
@@ -53,17 +53,16 @@ EVENTS_RULES = """\
 
 An event is sent at least once: `run` and `number` tell a repetition. Up to 200 wait while the other end is
 away; further ones are lost and counted on **System**. At a start of the server, active alarms and a resumed
-recording are sent again; what ended while the server was down is not sent. The robot never waits for a broker
-or an address.
+recording are sent again; what ended while the server was down is not sent. The robot never waits for a
+broker.
 
-| | MQTT | webhook |
-|---|---|---|
-| protocol | 3.1.1, quality of service 1 | HTTP/1.1, POST, `application/json` |
-| accepted by | the broker's acknowledgement | any status of 200 to 299 |
-| again after a failure | 1 s to 60 s | 1 s to 60 s; not after another 4xx than 401, 403, 404, 408, 429 |
-| redirections | | not followed |
-| longest wait | 5 s to connect | 5 s to connect, 10 s for an answer |
-| end of the server | waits up to 2 s | waits up to 2 s |
+| | |
+|---|---|
+| protocol | MQTT 3.1.1, quality of service 1 |
+| accepted by | the broker's acknowledgement |
+| again after a failure | 1 s to 60 s |
+| longest wait | 5 s to connect |
+| end of the server | waits up to 2 s |
 
 ## Retained topics
 

@@ -6,7 +6,7 @@ import re
 import socket
 import stat
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from ipaddress import ip_address
@@ -316,31 +316,43 @@ def _read_sections(
     table: Mapping[str, Any], where: DocumentEntry
 ) -> tuple[ServerConfig, Mapping[str, bool], Mapping[type, object]]:
     """The sections of robot.toml beside the robot's own. Raises ConfigError."""
-    named = {one.name: one.section for one in list_features().values() if one.section is not None}
-    optional = [one.name for one in list_features().values() if one.optional]
+    features = list_features().values()
+    named = {one.name: one for one in features if one.section is not None}
+    optional = [one.name for one in features if one.optional]
     known = [*(one.name for one in fields(Config)), "server", "features", *named]
     problems = [
         where.field(name, repr(name)).problem(f"is not known here; known are {', '.join(known)}")
         for name in table
         if name not in known
     ]
-    features = read_value(dict[str, bool], table.get("features", {}), where.field("features"))
+    switched = read_value(dict[str, bool], table.get("features", {}), where.field("features"))
     problems += [
         where.field("features")
         .field(name)
         .problem(f"is no optional feature; there are {', '.join(optional)}")
-        for name in features
+        for name in switched
         if name not in optional
     ]
     if problems:
         raise ConfigError(*problems)
-    sections = {
-        kind: read_value(kind, table[name], where.field(name))
-        for name, kind in named.items()
-        if name in table
-    }
+    sections: dict[type, object] = {}
+    for name, feature in named.items():
+        if name in table and feature.section is not None:
+            entries = _without_removed(table[name], feature.removed, where.field(name))
+            sections[feature.section] = read_value(feature.section, entries, where.field(name))
     server = read_value(ServerConfig, table.get("server", {}), where.field("server"))
-    return server, features, sections
+    return server, switched, sections
+
+
+def _without_removed(section: Any, removed: Sequence[str], where: DocumentEntry) -> Any:
+    """A section without empty entries of earlier versions. Raises ConfigError where one is not empty."""
+    if not isinstance(section, dict):
+        return section
+    used = [name for name in removed if section.get(name)]
+    if used:
+        words = "is no longer there; remove the entry. The changelog says what to use"
+        raise ConfigError(*(where.field(name).problem(words) for name in used))
+    return {name: value for name, value in section.items() if name not in removed}
 
 
 def data_folder(data: Path | None, environment: Mapping[str, str]) -> DataFolder:

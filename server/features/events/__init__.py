@@ -1,4 +1,4 @@
-"""Events for other programs: alarms, sessions, tests and missions, by MQTT and webhooks."""
+"""Events for other programs: alarms, sessions, tests and missions, by MQTT."""
 
 from server.feature import Feature
 from server.features.events.config import EventsConfig
@@ -6,6 +6,7 @@ from server.features.events.config import EventsConfig
 FEATURE = Feature(
     name="events",
     section=EventsConfig,
-    is_on=lambda events: bool(events.mqtt or events.webhook),
+    is_on=lambda events: bool(events.mqtt),
+    removed=("webhook", "webhook_token_file"),
     plug="server.features.events.plug:EventsPlug",
 )

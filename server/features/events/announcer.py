@@ -14,7 +14,6 @@ from robot_runtime.transport.blocks import Block
 from server.features.events.config import EventsConfig
 from server.features.events.mqtt import MqttOutlet
 from server.features.events.outlet import EventOutlet, OutletCondition
-from server.features.events.webhook import WebhookOutlet
 from server.platform.settings import Settings
 
 Alarms = dict[str, dict[str, Any]]
@@ -204,6 +203,4 @@ class EventAnnouncer:
         outlets: list[EventOutlet] = []
         if events.mqtt:
             outlets.append(MqttOutlet(settings.robot, self.run, events, folder))
-        if events.webhook:
-            outlets.append(WebhookOutlet(events, folder))
         return outlets

@@ -1,14 +1,14 @@
 """The section [events] of robot.toml."""
 
 from dataclasses import dataclass
-from urllib.parse import SplitResult, quote, urlsplit
+from urllib.parse import SplitResult, urlsplit
 
 from robot_runtime.contract.limits import ConfigError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EventsConfig:
-    """The broker and the address that are told of alarms, sessions, tests and missions; off unless named.
+    """The broker that is told of alarms, sessions, tests and missions; off unless named.
 
     Files are beside this one, or have a whole path, and are readable by the robot's user alone.
     """
@@ -16,37 +16,29 @@ class EventsConfig:
     mqtt: str = ""
     mqtt_user: str = ""
     mqtt_password_file: str = ""
-    webhook: str = ""
-    webhook_token_file: str = ""
     ca_file: str = ""
 
     def __post_init__(self) -> None:
-        broker = _check_address("events.mqtt", self.mqtt, ("mqtt", "mqtts"))
-        receiver = _check_address("events.webhook", self.webhook, ("http", "https"))
-        if self.mqtt and (broker.path or broker.query):
-            raise ConfigError(f"events.mqtt is {self.mqtt!r}; it ends with the broker's name and port")
+        broker = _check_broker(self.mqtt)
         if bool(self.mqtt_user) != bool(self.mqtt_password_file):
             raise ConfigError("events.mqtt_user and events.mqtt_password_file go together; one is missing")
         if self.mqtt_password_file and broker.scheme == "mqtt" and not _is_here(broker):
             raise ConfigError("events.mqtt would send the password for everybody to read; use mqtts://")
-        if self.webhook_token_file and receiver.scheme == "http" and not _is_here(receiver):
-            raise ConfigError("events.webhook would send the token for everybody to read; use https://")
 
 
-def _check_address(name: str, address: str, schemes: tuple[str, str]) -> SplitResult:
-    """The parts of an address, which may be empty. Raises ConfigError."""
+def _check_broker(address: str) -> SplitResult:
+    """The parts of the broker's address, which may be empty. Raises ConfigError."""
     try:
         parts = urlsplit(address)
         # Encoded as it is looked up, which a name with an empty part cannot be.
         host = parts.hostname and parts.hostname.encode("idna")
-        usable = parts.scheme in schemes and host and parts.port != 0 and "@" not in parts.netloc
+        usable = parts.scheme in ("mqtt", "mqtts") and host and parts.port != 0 and "@" not in parts.netloc
     except ValueError:
         usable = False
     if address and (not usable or "#" in address or not address.isprintable() or " " in address):
-        raise ConfigError(f"{name} is {address!r}; use {schemes[0]}://NAME or {schemes[1]}://NAME")
-    other = "".join(one for one in parts.path + parts.query if not one.isascii())
-    if other:
-        raise ConfigError(f"{name} has {other!r}, which addresses write as {quote(other)}")
+        raise ConfigError(f"events.mqtt is {address!r}; use mqtt://NAME or mqtts://NAME")
+    if parts.path or parts.query:
+        raise ConfigError(f"events.mqtt is {address!r}; it ends with the broker's name and port")
     return parts
 
 

@@ -7,7 +7,7 @@ import json
 import signal
 import sys
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, closing
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +20,10 @@ from server.features.comm_tests.runner import CommTestRunner, Progress
 from server.features.events.config import EventsConfig
 from server.platform.settings import Settings
 from tests.board.rig import ROOT, build
-from tests.server.features.events.rig import Receiver
+from tests.server.features.events.rig import Listener, broker
+from tests.server.ports import reserved_port
 from tests.server.serving import Served, next_text, serve
-from tests.server.waiting import SECONDS, until
+from tests.server.waiting import until
 
 QUICK: dict[str, Any] = {
     "id": 1,
@@ -193,21 +194,20 @@ def test_a_killed_lab_process_fails_its_run_only(settings: Settings) -> None:
     asyncio.run(scenario())
 
 
-def test_the_end_of_the_server_cancels_the_run(settings: Settings) -> None:
-    async def scenario() -> None:
-        receiver = Receiver()
-        telling = settings.with_section(EventsConfig(webhook=receiver.url))
+def test_the_end_of_the_server_cancels_the_run(settings: Settings, tmp_path: Path) -> None:
+    async def scenario(port: int, listener: Listener) -> None:
+        telling = settings.with_section(EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}"))
         async with serve(telling) as served, watching(served) as socket:
             number = await start(served, ENDLESS)
             await news_until(socket, cell=0)
         async with serve(settings) as served:
             assert (await get(served, f"runs/{number}"))["state"] == "cancelled"
         # The server waits for it, but not longer than 2 s.
-        _, _, event = await asyncio.to_thread(receiver.requests.get, timeout=SECONDS)
-        await asyncio.to_thread(receiver.close)
-        assert (event["event"], event["id"], event["state"]) == ("comm_test_ended", number, "cancelled")
+        event = await asyncio.to_thread(listener.next, "mucat/tested/event/comm_test_ended")
+        assert (event["id"], event["state"]) == (number, "cancelled")
 
-    asyncio.run(scenario())
+    with reserved_port() as port, broker(tmp_path, port), closing(Listener(port)) as listener:
+        asyncio.run(scenario(port, listener))
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A broker and a web address for tests, each on a port of the system's choice."""
+"""A broker for tests, on a port of the system's choice."""
 
 import json
 import queue
@@ -9,7 +9,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
@@ -81,34 +80,3 @@ class Listener:
 
     def _keep(self, _client: Client, _data: Any, message: MQTTMessage) -> None:
         self.messages.put((message.topic, bytes(message.payload), message.retain))
-
-
-class Receiver:
-    """A web address that answers with `answers` in turn, then 204, and keeps the requests."""
-
-    def __init__(self, *answers: int) -> None:
-        self.requests: queue.Queue[tuple[str, dict[str, str], Any]] = queue.Queue()
-        self.answers = [*answers]
-        receiver = self
-
-        class Handler(BaseHTTPRequestHandler):
-            def do_POST(self) -> None:
-                body = self.rfile.read(int(self.headers["Content-Length"]))
-                receiver.requests.put((self.path, dict(self.headers), json.loads(body)))
-                self.send_response(receiver.answers.pop(0) if receiver.answers else 204)
-                self.send_header("Location", "/elsewhere")
-                self.end_headers()
-
-            def log_message(self, *_: Any) -> None:
-                pass
-
-        self.server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-        self.url = f"http://127.0.0.1:{self.server.server_port}/robots?lab=1"
-        self._thread = threading.Thread(target=self.server.serve_forever, args=(0.01,))
-        self._thread.start()
-
-    def close(self) -> None:
-        """Stop serving."""
-        self.server.shutdown()
-        self._thread.join()
-        self.server.server_close()

@@ -1,4 +1,4 @@
-"""Events to a real broker and a web address, and what happens where these are away, or wrong."""
+"""Events to a real broker, and what happens where it is away, or wrong."""
 
 import asyncio
 import socket
@@ -6,7 +6,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import closing, suppress
+from contextlib import closing
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,18 +16,17 @@ import pytest
 from paho.mqtt.client import Client
 
 from robot_runtime.contract.published_events import PublishedEvent
-from server.features.events import mqtt, webhook
+from server.features.events import mqtt
 from server.features.events.announcer import EventAnnouncer
 from server.features.events.config import EventsConfig
 from server.features.events.mqtt import MqttOutlet
 from server.features.events.outlet import WAITING_MAX, OutletCondition
-from server.features.events.webhook import WebhookOutlet
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import EndedRun
 from server.features.tuning.runner import TuningRunner
 from server.features.tuning.schemas import ControllerInForce, TuningRun
 from server.platform.settings import Settings
-from tests.server.features.events.rig import Listener, Receiver, broker, wait_for
+from tests.server.features.events.rig import Listener, broker, wait_for
 from tests.server.ports import reserved_port
 from tests.server.serving import Served, play
 from tests.server.waiting import SECONDS, until
@@ -71,25 +70,10 @@ TUNING = TuningRun(
 
 
 @pytest.fixture
-def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[Receiver]:
-    # The last answer is read, however busy the computer is.
-    monkeypatch.setattr(webhook, "CLOSE_SECONDS", SECONDS)
-    one = Receiver()
-    yield one
-    one.close()
-
-
-@pytest.fixture
 def port() -> Iterator[int]:
     """A broker's port, at which nobody else listens while the broker is away."""
     with reserved_port() as number:
         yield number
-
-
-@pytest.fixture
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No waiting before another attempt."""
-    monkeypatch.setattr(webhook, "RETRY_SECONDS", (0.01, 0.02))
 
 
 def event(number: int) -> PublishedEvent:
@@ -224,84 +208,13 @@ def test_a_secret_that_others_can_read_is_not_used(tmp_path: Path) -> None:
     secret.write_text("word\n")
     secret.chmod(0o644)
     broken = to_broker(tmp_path, 1, mqtt_user="turtle", mqtt_password_file="secret")
-    hook = WebhookOutlet(EventsConfig(webhook="http://127.0.0.1:1", webhook_token_file="secret"), tmp_path)
-    for outlet in (broken, hook):
-        outlet.open()
-        assert "Other users can read" in outlet.condition().text
-        outlet.publish(EVENT)
-        outlet.close()
+    broken.open()
+    assert "Other users can read" in broken.condition().text
+    broken.publish(EVENT)
+    broken.close()
     absent = to_broker(tmp_path, 1, mqtt_user="turtle", mqtt_password_file="none")
     absent.open()
     assert "cannot be read" in absent.condition().text
-
-
-def test_a_token_that_no_header_can_hold_is_refused_in_words(tmp_path: Path) -> None:
-    (tmp_path / "token").write_text("schlüssel…\n")
-    (tmp_path / "token").chmod(0o600)
-    outlet = WebhookOutlet(EventsConfig(webhook="http://127.0.0.1:1", webhook_token_file="token"), tmp_path)
-    outlet.open()
-    assert outlet.condition().state == "failed"
-    assert "has letters that a header cannot" in outlet.condition().text
-    outlet.close()
-
-
-def test_a_web_address_gets_each_event_with_its_token(tmp_path: Path, receiver: Receiver) -> None:
-    (tmp_path / "token").write_text("lab-token\n")
-    (tmp_path / "token").chmod(0o600)
-    outlet = WebhookOutlet(EventsConfig(webhook=receiver.url, webhook_token_file="token"), tmp_path)
-    outlet.open()
-    for number in (1, 2):
-        outlet.publish(event(number))
-    for number in (1, 2):
-        path, headers, body = receiver.requests.get(timeout=SECONDS)
-        assert path == "/robots?lab=1"
-        assert headers["Authorization"] == "Bearer lab-token"
-        assert body["number"] == number
-    outlet.close()
-    origin = receiver.url.removesuffix("/robots?lab=1")
-    assert outlet.condition() == ("ok", f"Receiver {origin}: Accepts events. Messages sent: 2.")
-
-
-@pytest.mark.usefixtures("quick")
-def test_an_address_that_fails_gets_the_event_again_and_is_not_followed_elsewhere(
-    tmp_path: Path, receiver: Receiver
-) -> None:
-    receiver.answers = [503, 307, 401, 400, 204]
-    outlet = WebhookOutlet(EventsConfig(webhook=receiver.url), tmp_path)
-    outlet.open()
-    outlet.publish(event(1))
-    outlet.publish(event(2))
-    found = [receiver.requests.get(timeout=SECONDS) for _ in range(5)]
-    assert [body["number"] for _, _, body in found] == [1, 1, 1, 1, 2]
-    assert {path for path, _, _ in found} == {"/robots?lab=1"}
-    outlet.close()
-    assert outlet.condition().text.endswith("Accepts events. Messages sent: 1, lost: 1.")
-
-
-def drip(server: socket.socket) -> None:
-    """Answer byte by byte, without an end."""
-    connection, _ = server.accept()
-    with connection, suppress(OSError):
-        connection.sendall(b"HTTP/1.1 200 OK\r\nX-Long: ")
-        while True:
-            connection.sendall(b"a")
-            time.sleep(0.02)
-
-
-def test_an_address_that_never_answers_is_cut_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(webhook, "ANSWER_SECONDS", 0.2)
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        threading.Thread(target=drip, args=(server,), daemon=True).start()
-        outlet = WebhookOutlet(EventsConfig(webhook=f"http://127.0.0.1:{server.getsockname()[1]}/"), tmp_path)
-        outlet.open()
-        for number in range(WAITING_MAX + 5):
-            outlet.publish(event(number))
-        wait_for(lambda: outlet.condition().state == "failed", "the address to be given up")
-        assert "Cannot be reached" in outlet.condition().text
-        assert "lost" in outlet.condition().text
-        began = time.monotonic()
-        outlet.close()
-        assert time.monotonic() - began < SECONDS
 
 
 def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
@@ -309,8 +222,6 @@ def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
 ) -> None:
     # Whoever waited for the broker would wait longer than any computer is busy.
     monkeypatch.setattr(mqtt, "CONNECT_SECONDS", 4 * SECONDS)
-    monkeypatch.setattr(webhook, "CONNECT_SECONDS", 4 * SECONDS)
-    monkeypatch.setattr(webhook, "ANSWER_SECONDS", 4 * SECONDS)
     connected = threading.Event()
 
     def accept(server: socket.socket, held: list[socket.socket]) -> None:
@@ -326,7 +237,7 @@ def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
         thread = threading.Thread(target=accept, args=(server, held), daemon=True)
         thread.start()
         port = server.getsockname()[1]
-        mute = EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}", webhook=f"http://127.0.0.1:{port}/")
+        mute = EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}")
 
         async def scenario(served: Served) -> None:
             await until(connected.is_set, "the broker to be asked")
@@ -350,12 +261,12 @@ def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
 
 
 def test_a_server_tells_of_a_recording_from_its_start_to_its_end(
-    settings: Settings, receiver: Receiver, port: int, monkeypatch: pytest.MonkeyPatch
+    settings: Settings, port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The last messages may take their time on a busy computer.
     monkeypatch.setattr(mqtt, "CLOSE_SECONDS", SECONDS)
     folder = settings.config.parent
-    both = EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}", webhook=receiver.url)
+    telling = EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}")
     with broker(folder, port), closing(Listener(port)) as listener:
 
         async def scenario(served: Served) -> None:
@@ -372,9 +283,7 @@ def test_a_server_tells_of_a_recording_from_its_start_to_its_end(
                 ended = await asyncio.to_thread(listener.next, f"mucat/tested/event/{kind}_ended")
                 assert (ended["subject"], ended["state"]) == (kind, "complete")
 
-        play(settings.with_section(both), scenario)
+        play(settings.with_section(telling), scenario)
         # The server has ended, and the recording with it.
         assert listener.next("mucat/tested/event/session_ended")["subject"] == "Dive"
         assert listener.next("mucat/tested/status") == "offline"
-    kinds = [receiver.requests.get(timeout=SECONDS)[2]["event"] for _ in range(4)]
-    assert kinds == ["session_began", "scenario_ended", "tuning_ended", "session_ended"]
