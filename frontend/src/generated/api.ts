@@ -131,7 +131,7 @@ export interface paths {
          *
          *     Sets a cookie, and answers the page's own secret: the page sends it as the header `X-Mucat`, and its live
          *     socket as the second subprotocol, after `mucat`. A browser that is signed in already keeps both, and gets
-         *     the code's role if that is higher. A new one gets a number after its name if that looks like another's.
+         *     the code's role if that is higher. A new one gets a number after its name if another has it.
          */
         post: operations["pairBrowser"];
         delete?: never;
@@ -7334,7 +7334,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description No operator would be left, or the name looks like another's */
+            /** @description No operator would be left, or another has the name */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -7594,7 +7594,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Too many devices are paired, or the name looks like another's */
+            /** @description Too many devices are paired, or another has the name */
             409: {
                 headers: {
                     [name: string]: unknown;

@@ -37,8 +37,8 @@ COOKIE_SECONDS = 400 * 86400
 """The longest time for which browsers keep a cookie."""
 
 TOO_MANY = {409: "Too many devices are paired"}
-NO_TOKEN = {409: "Too many devices are paired, or the name looks like another's"}
-NO_CHANGE = {409: "No operator would be left, or the name looks like another's"}
+NO_TOKEN = {409: "Too many devices are paired, or another has the name"}
+NO_CHANGE = {409: "No operator would be left, or another has the name"}
 
 router = Operations(prefix="/api/access", tags=["access"])
 
@@ -61,7 +61,7 @@ async def pair_browser(
 
     Sets a cookie, and answers the page's own secret: the page sends it as the header `X-Mucat`, and its live
     socket as the second subprotocol, after `mucat`. A browser that is signed in already keeps both, and gets
-    the code's role if that is higher. A new one gets a number after its name if that looks like another's.
+    the code's role if that is higher. A new one gets a number after its name if another has it.
     """
     address = address_of(request.scope)
     identity, secrets = await access.pair(body.code, body.name, request.scope[IDENTITY], address)

@@ -14,7 +14,7 @@ from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.identity import SHELL, Identity, Kind, Role, Scope
-from server.http.sign_in.names import find_alike, number_name
+from server.http.sign_in.names import find_same, number_name
 from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
 from server.platform.errors import NotFoundError, SignedOutError
 from server.platform.models import DeviceRow
@@ -179,7 +179,7 @@ class Devices:
     async def add_browser(self, name: str, role: Role) -> tuple[Device, BrowserSecrets]:
         """A new browser, and its secrets, which are not stored.
 
-        Its name gets a number where it looks like that of another, or of a removed one. Raises RefusedError
+        Its name gets a number where another has it, or a removed one had it. Raises RefusedError
         where there are too many devices, StoreError.
         """
         page = make_token()
@@ -191,7 +191,7 @@ class Devices:
     async def add_program(self, name: str, scope: Scope, days: int | None) -> tuple[Device, str]:
         """A new program, and its token, which is not stored; it ends after `days`, never where that is None.
 
-        Raises RefusedError where there are too many devices, the name looks like another's, or the clock has
+        Raises RefusedError where there are too many devices, another has the name, or the clock has
         not been set and the token is to end, StoreError.
         """
         if days is not None and not is_set(self._utc()):
@@ -199,7 +199,7 @@ class Devices:
         role: Role = "viewer" if scope == "read" else "operator"
         ends = None if days is None else self._utc() + days * DAY_SECONDS
         async with self._naming:
-            self._refuse_alike(name, self._list_names())
+            self._refuse_same(name, self._list_names())
             return await self._add(name, role, "program", limited=scope != "administer", ends=ends)
 
     async def _add(
@@ -245,11 +245,11 @@ class Devices:
     async def rename(self, number: int, name: str) -> None:
         """Rename a device.
 
-        Raises UnknownDeviceError, RefusedError where the name looks like another's, StoreError.
+        Raises UnknownDeviceError, RefusedError where another has the name, StoreError.
         """
         async with self._naming:
             device = self.get(number)
-            self._refuse_alike(name, self._list_names(but=number))
+            self._refuse_same(name, self._list_names(but=number))
             await self._update(number, name=name)
             device.name = name
 
@@ -258,8 +258,8 @@ class Devices:
         return [SHELL.name, *(one.name for one in self._devices.values() if one.id != but)]
 
     @staticmethod
-    def _refuse_alike(name: str, others: list[str]) -> None:
-        if (other := find_alike(name, others)) is not None:
+    def _refuse_same(name: str, others: list[str]) -> None:
+        if (other := find_same(name, others)) is not None:
             raise RefusedError(
                 f"“{name}” is, or looks like, the name of another: “{other}”. Choose one that nobody can "
                 "mistake for it."
