@@ -29,7 +29,7 @@ def busy(stack: Stack, hour: int) -> Iterator[None]:
         sign_in(page.context, stack.url, stack.data)
         page.goto(stack.url)
         page.get_by_role("button", name="bystander").click()
-        for kind in ("mcap", "csv", "jsonl") * _ROUNDS:
+        for kind in ("mcap", "csv", "csv-grid") * _ROUNDS:
             wanted = {"session": hour, "format": kind}
             stack.api.post("/exports", json=wanted).raise_for_status()
         yield

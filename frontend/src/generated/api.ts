@@ -3895,7 +3895,7 @@ export interface components {
              * Format
              * @enum {string}
              */
-            format: "csv" | "csv-grid" | "xlsx" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            format: "csv" | "csv-grid" | "xlsx" | "parquet" | "mcap" | "archive" | "report";
             /**
              * Period
              * @description s between the lines of csv-grid
@@ -4997,7 +4997,7 @@ export interface components {
              * Format
              * @enum {string}
              */
-            format: "csv" | "csv-grid" | "xlsx" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            format: "csv" | "csv-grid" | "xlsx" | "parquet" | "mcap" | "archive" | "report";
             /**
              * Period
              * @description s between the lines of csv-grid

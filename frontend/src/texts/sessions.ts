@@ -132,7 +132,6 @@ export const sessions = {
       xlsx: { title: 'Excel workbook', text: 'For Excel and LibreOffice in any language: one sheet per topic.' },
       mcap: { title: 'MCAP', text: 'For Foxglove and Lichtblick: depth, attitude, camera and log.' },
       parquet: { title: 'Parquet', text: 'For pandas and other tools for large tables: small files, exact numbers.' },
-      jsonl: { title: 'JSON Lines', text: 'For programs: one object per sample, ordered by time.' },
       report: { title: 'Report', text: 'For reading and printing: charts and figures in one HTML file that works offline.' },
       archive: { title: 'Archive', text: 'For another µ-CAT: import the whole session there to replay and compare it.' },
     },

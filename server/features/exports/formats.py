@@ -6,7 +6,6 @@ from typing import BinaryIO, NamedTuple
 from server.features.comparison.schemas import DEFAULT_SIGNALS, REPORT_POINTS, ComparisonQuery
 from server.features.exports.archive import write_archive
 from server.features.exports.grid import write_grid
-from server.features.exports.json_lines import write_lines
 from server.features.exports.mcap_file import check_compression, check_mcap, write_mcap
 from server.features.exports.parquet import check_parquet, write_parquet
 from server.features.exports.schemas import ExportOptions, Format
@@ -52,7 +51,6 @@ KINDS: dict[Format, ExportFormat] = {
     "csv": ExportFormat(write_tables, ".csv.zip", ZIP),
     "csv-grid": ExportFormat(write_grid, ".grid.zip", ZIP),
     "xlsx": ExportFormat(write_workbook, ".xlsx", WORKBOOK, require=require_sheets),
-    "jsonl": ExportFormat(write_lines, ".jsonl", "application/jsonl"),
     "parquet": ExportFormat(write_parquet, ".parquet.zip", ZIP, check_parquet),
     "mcap": ExportFormat(write_mcap, ".mcap", "application/octet-stream", check_mcap),
     "archive": ExportFormat(write_archive, ".mucat.zip", ZIP),

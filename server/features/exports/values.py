@@ -1,4 +1,4 @@
-"""Samples as objects in SI units, for JSON Lines, MCAP and Parquet.
+"""Samples as objects in SI units, for MCAP and Parquet.
 
 A field named `time` becomes `board_time`, since `time` is the sample's; µs become s.
 """

@@ -1,5 +1,6 @@
 import asyncio
 import hashlib
+import zipfile
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -43,10 +44,10 @@ def test_a_session_is_exported_and_imported_by_shell_commands(
     assert capsys.readouterr().out == "session 1: Dive no. 1: Öresund/../x\n"
     assert run(settings, "import", str(path), data=tmp_path / "other") == 1
     assert "is here already, as number 1" in capsys.readouterr().err
-    lines = tmp_path / "lines.jsonl"
-    wanted = ["--format", "jsonl", "--topics", "depth", "--start", "0.6", "--end", "0.7"]
-    assert run(settings, "export", "1", *wanted, "-o", str(lines), data=tmp_path / "other") == 0
-    assert len(lines.read_text().splitlines()) == 6
+    tables = tmp_path / "tables.zip"
+    wanted = ["--format", "csv", "--topics", "depth", "--start", "0.6", "--end", "0.7"]
+    assert run(settings, "export", "1", *wanted, "-o", str(tables), data=tmp_path / "other") == 0
+    assert len(zipfile.ZipFile(tables).read("depth.csv").splitlines()) == 7
 
 
 def test_the_import_command_uses_a_running_server(

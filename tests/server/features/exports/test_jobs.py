@@ -99,11 +99,11 @@ def finished(settings: Settings, name: str, made: datetime) -> Job:
         id=name,
         session=1,
         session_name="dive",
-        wanted=ExportOptions(format="jsonl"),
+        wanted=ExportOptions(format="mcap"),
         state="done",
         progress=1.0,
         made=made,
-        file="dive.jsonl",
+        file="dive.mcap",
         bytes=len(content),
         sha256=hashlib.sha256(content).hexdigest(),
     )
@@ -218,7 +218,7 @@ def test_the_next_job_starts_after_a_cancelled_one(
 ) -> None:
     async def scenario(served: Served) -> None:
         jobs = served.get(Jobs)
-        first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
+        first, second = await start(served.api, session), await start(served.api, session, format="mcap")
         await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
         assert (await served.api.get(f"/exports/{second['id']}")).json()["state"] == "waiting"
         for job in (first, second):
@@ -262,7 +262,7 @@ def test_a_cancelled_process_that_does_not_end_is_ended_by_force(
 
     async def scenario(served: Served) -> None:
         jobs = served.get(Jobs)
-        first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
+        first, second = await start(served.api, session), await start(served.api, session, format="mcap")
         await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
         assert jobs._running is not None
         process = jobs._running[1]._process
@@ -324,7 +324,7 @@ def test_exports_of_a_purged_session_fail_and_the_next_session_has_another_numbe
 ) -> None:
     async def scenario(served: Served) -> None:
         jobs = served.get(Jobs)
-        running, waiting = await start(served.api, session), await start(served.api, session, format="jsonl")
+        running, waiting = await start(served.api, session), await start(served.api, session, format="mcap")
         await until(lambda: jobs.find(running["id"]).progress == 0.25, "progress")
         await purge(served, session)
         assert jobs.find(waiting["id"]).state == "failed"
@@ -342,7 +342,7 @@ def test_a_waiting_export_reads_the_session_of_its_identifier_alone(
 ) -> None:
     async def scenario(served: Served) -> None:
         jobs, store = served.get(Jobs), served.get(Store)
-        first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
+        first, second = await start(served.api, session), await start(served.api, session, format="mcap")
         await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
         # As a restored database might: the number is another session's.
         await store.execute(update(SessionRow).values(identifier="another"))
@@ -376,7 +376,7 @@ def test_a_full_disk_is_reported_and_no_data_is_lost(
     monkeypatch.setattr(child_module, "sys", System)
 
     async def scenario(served: Served) -> None:
-        job = await ended(served, await start(served.api, session, format="jsonl"))
+        job = await ended(served, await start(served.api, session, format="mcap"))
         assert job["state"] == "failed"
         assert job["problem"].endswith("is full. Free some space, and try again.")
         await until(lambda: only_described(settings, job), "the half file to go")

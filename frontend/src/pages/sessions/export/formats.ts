@@ -15,7 +15,6 @@ export const CHOICES: readonly Choice[] = [
   { format: 'xlsx', parts: 'topics' },
   { format: 'mcap', parts: 'topics' },
   { format: 'parquet', parts: 'topics' },
-  { format: 'jsonl', parts: 'topics' },
   { format: 'report', parts: 'whole' },
   { format: 'archive', parts: 'whole' },
 ];
