@@ -58,7 +58,7 @@ class Health(BaseModel):
     robot: str
     parts: list[PartHealth] = Field(
         description="server, database, runtime, link, board, simulator, scene, camera, and events where "
-        "`[events]` in robot.toml names a broker or an address"
+        "`[events]` in robot.toml names a broker"
     )
 
 

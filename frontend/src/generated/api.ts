@@ -4077,7 +4077,7 @@ export interface components {
         Health: {
             /**
              * Parts
-             * @description server, database, runtime, link, board, simulator, scene, camera, and events where `[events]` in robot.toml names a broker or an address
+             * @description server, database, runtime, link, board, simulator, scene, camera, and events where `[events]` in robot.toml names a broker
              */
             parts: components["schemas"]["PartHealth"][];
             /** Robot */

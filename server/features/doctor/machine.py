@@ -72,7 +72,7 @@ class Machine:
     """State of the link by the running server's health; empty without a server."""
     link_text: str = ""
     events_named: bool = False
-    """`[events]` in robot.toml names a broker or an address."""
+    """`[events]` in robot.toml names a broker."""
     events_state: str = ""
     events_text: str = ""
     boot_settings: str = ""
