@@ -1,8 +1,8 @@
 """The budget of a viewer: messages to and from the sockets of one device.
 
 A device has many sockets, and each message costs the event loop some time, which heartbeats and STOP need.
-Whoever asks for more waits; nothing is lost but what a slow client loses as well. Operators have none: a
-program that steers must not find its commands late.
+Whoever asks for more waits; nothing is lost but what a slow client loses as well. Operators share none:
+what one of their programs sends must not make the commands of another late.
 """
 
 import asyncio
@@ -14,6 +14,8 @@ RECEIVED_PER_SECOND, RECEIVED_BURST = 100.0, 500.0
 SENT_PER_SECOND, SENT_BURST = 2000.0, 4000.0
 """Messages; a large one counts as one for each `SENT_BYTES`. Every topic at the robot's full rate is less."""
 SENT_BYTES = 2048
+STREAM_PER_SECOND, STREAM_BURST = 65_536.0, 524_288.0
+"""Bytes of programs whose messages cannot be counted: a router of ROS 2 first tells of all its nodes."""
 
 
 class Allowance:
@@ -37,9 +39,11 @@ class DeviceBudget:
     """The budget of one device."""
 
     def __init__(self, clock: Clock, *, limited: bool) -> None:
+        self._clock = clock
         self._limited = limited
         self._received = Allowance(clock, RECEIVED_PER_SECOND, RECEIVED_BURST)
         self._sent = Allowance(clock, SENT_PER_SECOND, SENT_BURST)
+        self._streamed = self._make_streamed()
 
     async def wait_to_receive(self) -> None:
         """Wait after a message of the client until the next one may be read."""
@@ -50,6 +54,13 @@ class DeviceBudget:
         """Wait until a message of so many bytes may be sent."""
         if self._limited and (wait := self._sent.spend(1.0 + size // SENT_BYTES)) > 0:
             await asyncio.sleep(wait)
+
+    def open_stream(self) -> Allowance:
+        """The bytes of a new connection: a viewer's share one allowance, an operator's have one each."""
+        return self._streamed if self._limited else self._make_streamed()
+
+    def _make_streamed(self) -> Allowance:
+        return Allowance(self._clock, STREAM_PER_SECOND, STREAM_BURST)
 
 
 class Budgets:

@@ -6,7 +6,6 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.clock import SteadyClock
 from server.features.doors.commands import DoorCommands, DoorPilot
 from server.features.doors.house import Doors
 from server.features.doors.ros2_node import Ros2Node
@@ -15,8 +14,6 @@ from server.features.doors.subscriptions import DoorClient
 from server.stream.budget import Allowance
 
 CHUNK_BYTES = 65_536
-BURST_BYTES, BYTES_PER_SECOND = 524_288, 65_536
-"""Limit of what a program sends: a router of ROS 2 first tells of all its nodes."""
 
 MakeNode = Callable[[Ros2Session], tuple[Ros2Node, Path]]
 """Makes the robot's node for a session, and the path of the socket that leads to it. Raises OSError."""
@@ -54,7 +51,8 @@ class Ros2Connection:
         async with _open_node(make_node, session) as (node, path):
             self._publish = lambda data: node.publish(*session.unpack(data))
             reader, writer = await asyncio.open_unix_connection(path)
-            parts = (_pump_in(self._reader, writer), _pump(reader, self._writer), session.run(node))
+            pump_in = _pump_in(self._reader, writer, client.budget.open_stream())
+            parts = (pump_in, _pump(reader, self._writer), session.run(node))
             work = [asyncio.create_task(one) for one in parts]
             try:
                 await asyncio.wait(work, return_when=asyncio.FIRST_COMPLETED)
@@ -108,9 +106,8 @@ async def _pump(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> N
             await writer.drain()
 
 
-async def _pump_in(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+async def _pump_in(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, allowance: Allowance) -> None:
     """The same from a program, with a limit of bytes per second."""
-    allowance = Allowance(SteadyClock(), BYTES_PER_SECOND, BURST_BYTES)
     with suppress(OSError):
         while data := await reader.read(CHUNK_BYTES):
             writer.write(data)

@@ -14,6 +14,8 @@ from server.stream.budget import (
     SENT_BURST,
     SENT_BYTES,
     SENT_PER_SECOND,
+    STREAM_BURST,
+    STREAM_PER_SECOND,
     Allowance,
     Budgets,
 )
@@ -70,3 +72,13 @@ def test_a_large_message_counts_as_several(monkeypatch: pytest.MonkeyPatch) -> N
         assert pauses == [pytest.approx(2 / SENT_PER_SECOND)]
 
     asyncio.run(scenario())
+
+
+def test_a_viewer_s_connections_share_their_bytes_and_an_operator_s_do_not() -> None:
+    budgets = Budgets(SimulatedClock())
+    first, second = (budgets.of(VIEWER).open_stream() for _ in range(2))
+    assert first.spend(STREAM_BURST) == 0
+    assert second.spend(STREAM_PER_SECOND) == pytest.approx(1.0)
+    first, second = (budgets.of(SHELL).open_stream() for _ in range(2))
+    assert first.spend(STREAM_BURST) == 0
+    assert second.spend(STREAM_BURST) == 0

@@ -1,4 +1,4 @@
-"""The end of a ROS 2 program's connection, where its task is cancelled meanwhile."""
+"""A ROS 2 program's connection: its end where its task is cancelled meanwhile, and its limit of bytes."""
 
 import asyncio
 import threading
@@ -8,8 +8,12 @@ from unittest.mock import MagicMock
 
 import pytest
 
-from server.features.doors.ros2_connection import _open_node
+from robot_runtime.clock import SimulatedClock
+from server.features.doors.ros2_connection import Ros2Connection, _open_node
 from server.features.doors.ros2_node import Ros2Node
+from server.features.doors.subscriptions import DoorClient
+from server.http.sign_in.identity import Identity
+from server.stream.budget import STREAM_BURST, STREAM_PER_SECOND, Budgets
 
 
 def test_the_session_is_closed_also_where_all_threads_are_busy_and_its_task_is_cancelled(
@@ -46,3 +50,25 @@ def test_the_session_is_closed_also_where_all_threads_are_busy_and_its_task_is_c
     asyncio.run(run())
     node.close.assert_called_once()
     assert not path.exists()
+
+
+def test_what_a_viewer_sends_over_one_connection_is_missing_to_the_others(tmp_path: Path) -> None:
+    path, clock = tmp_path / "ros2-1.sock", SimulatedClock()
+    viewer = Identity(7, "Viewer", "viewer", "program")
+    budget = Budgets(clock).of(viewer)
+
+    async def take(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        await reader.read()
+        writer.close()
+
+    async def run() -> None:
+        async with await asyncio.start_unix_server(take, path):
+            sent = asyncio.StreamReader()
+            sent.feed_data(bytes(int(STREAM_BURST)))
+            sent.feed_eof()
+            visit = Ros2Connection(MagicMock(), MagicMock(), MagicMock(), sent, MagicMock())
+            client = DoorClient(1, viewer, "", visit.send, clock, budget)
+            await visit.listen(client, lambda _: (MagicMock(spec=Ros2Node), path))
+
+    asyncio.run(run())
+    assert budget.open_stream().spend(STREAM_PER_SECOND) == pytest.approx(1.0)
