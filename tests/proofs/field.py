@@ -1,6 +1,7 @@
 """The robot that attackers attack, over the loopback from an address of their own."""
 
 import socket
+import time
 from contextlib import suppress
 from urllib.parse import urlsplit
 
@@ -39,6 +40,17 @@ class Field:
         with httpx.Client(base_url=self.url, timeout=PATIENCE, transport=transport) as client:
             answer = client.get("/api/sessions?limit=1", headers=self.viewer).raise_for_status()
         return int(answer.json()[0]["id"])
+
+    def make_viewers(self, count: int) -> list[dict[str, str]]:
+        """The headers of so many new viewers."""
+        made = []
+        transport = httpx.HTTPTransport(local_address=FROM)
+        with httpx.Client(base_url=self.url, timeout=PATIENCE, transport=transport) as client:
+            for _ in range(count):
+                body = {"name": f"viewer {time.monotonic_ns()}", "scope": "read"}
+                answer = client.post("/api/access/tokens", headers=self.operator, json=body)
+                made.append({"authorization": f"Bearer {answer.raise_for_status().json()['token']}"})
+        return made
 
     def refuse(
         self, method: str, path: str, headers: dict[str, str] | None = None, **options: object

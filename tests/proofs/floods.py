@@ -19,6 +19,7 @@ from tests.proofs.field import Field
 FLOOD_SECONDS = 5.0
 DEVICE_SOCKETS = 8
 """Sockets that one device may have at a door."""
+VIEWERS = 20
 UNREAD = 95
 """Connections below the limit of one address."""
 BATCH = 400
@@ -131,20 +132,31 @@ def history_unread(field: Field) -> None:
 
 
 def small_connections(field: Field) -> None:
-    _ask_in_turn(field, ["/api/sessions"])
+    _ask_in_turn(field, ["/api/sessions"], [field.viewer])
 
 
 def crowded_session(field: Field) -> None:
     newest = f"/api/sessions/{field.newest_session()}"
-    _ask_in_turn(field, [newest, f"{newest}/timeline"])
+    _ask_in_turn(field, [newest, f"{newest}/timeline"], [field.viewer])
 
 
-def _ask_in_turn(field: Field, paths: list[str]) -> None:
+def many_viewers(field: Field) -> None:
+    newest = f"/api/sessions/{field.newest_session()}"
+    query = "&".join(f"topic={one}" for one in ROWS)
+    lists = [f"/api/{one}" for one in ("sessions", "missions", "scenarios", "exports")]
+    parts = [f"{newest}{one}" for one in ("", "/timeline", "/missions", "/signals")]
+    paths = [f"/api/past?{query}&until=1e9", *parts, *lists]
+    statuses = {path: field.ask("GET", path, field.viewer) for path in paths}
+    assert set(statuses.values()) == {200}, statuses
+    _ask_in_turn(field, paths, field.make_viewers(VIEWERS))
+
+
+def _ask_in_turn(field: Field, paths: list[str], viewers: list[dict[str, str]]) -> None:
     """Ask for these over many connections, one request each, and read the answers."""
-    token = field.viewer["authorization"]
     end = time.monotonic() + FLOOD_SECONDS
 
     def ask(place: int) -> None:
+        token = viewers[place % len(viewers)]["authorization"]
         head = f"GET {paths[place % len(paths)]} HTTP/1.1\r\nHost: localhost\r\nAuthorization: {token}\r\n"
         request = f"{head}Connection: close\r\n\r\n".encode()
         while time.monotonic() < end:
@@ -195,5 +207,6 @@ FLOODS: dict[str, Callable[[Field], None]] = {
     "the history asked for and not read": history_unread,
     "small connections": small_connections,
     "a session of 400,000 gaps": crowded_session,
+    "twenty viewers who read all there is": many_viewers,
 }
 """Each alone, while an operator presses STOP."""
