@@ -1,7 +1,8 @@
 """The attackers of `attacks.py`, in a process of their own: each repeats one until its input is closed.
 
-`python -m tests.proofs.attackers URL VIEWER OPERATOR [WORDS]`, with two tokens, prints a JSON object: for
-each attack an empty text where it was held, else what went wrong. All loads are bounded, and on the loopback.
+`python -m tests.proofs.attackers URL VIEWER OPERATOR ROS2 [WORDS]`, with two tokens and the folder of a
+viewer's certificate for the door of ROS 2, prints a JSON object: for each attack an empty text where it was
+held, else what went wrong. All loads are bounded, and on the loopback.
 With words, it runs the attacks that have them in their names.
 """
 
@@ -263,8 +264,8 @@ def main() -> None:
     """Runs every attack at once."""
     # It logs an internal error, with its trace, where a connection ends in the middle of a message.
     logging.getLogger("websockets").setLevel(logging.CRITICAL)
-    url, viewer, operator, *words = sys.argv[1:]
-    field, end, attacks = Field(url, viewer, operator), Event(), choose(" ".join(words))
+    url, viewer, operator, ros2, *words = sys.argv[1:]
+    field, end, attacks = Field(url, viewer, operator, Path(ros2)), Event(), choose(" ".join(words))
     with ThreadPoolExecutor(len(attacks)) as threads:
         found = threads.map(lambda attack: repeat(attack, field, end), attacks.values())
         sys.stdin.read()

@@ -30,7 +30,7 @@ from robot_runtime.transport.blocks import read_blocks, read_rows
 from server.platform.pidfile import pid_file
 from tests.proofs.attackers import ATTACKS, choose
 from tests.proofs.floods import FLOOD_SECONDS, FLOODS
-from tests.stack import ROOT, Stack
+from tests.stack import ROOT, Stack, free_port
 
 PRESSES = 100
 QUIET_PRESSES = 20
@@ -74,7 +74,7 @@ AFTERWARDS = ("files, sockets and serial line as nobody", "the runtime killed in
 LIVE = (*ATTACKS, *AFTERWARDS, *FLOODS)
 PAUSE = 0.03
 """s between two presses in a flood."""
-DOORS = "[doors]\nrosbridge = true\nfoxglove = true\n"
+DOORS = '[doors]\nrosbridge = true\nfoxglove = true\nros2 = true\nros2_listen = "{}"\n'
 
 
 def percentile(values: Sequence[float], share: float) -> float:
@@ -110,6 +110,20 @@ def make_token(stack: Stack, scope: str) -> str:
     made = stack.api.post("/access/tokens", json={"name": name, "scope": scope}).raise_for_status()
     token: str = made.json()["token"]
     return token
+
+
+def ros2_folder(stack: Stack) -> Path:
+    """The folder of a viewer's certificate for the door of ROS 2."""
+    return stack.data.parent / "ros2"
+
+
+def certify(stack: Stack, config: Path, endpoint: str) -> None:
+    """Make that certificate, and note the door's endpoint beside it."""
+    folder = ros2_folder(stack)
+    places = ["--config", str(config), "--data", str(stack.data), "--to", str(folder)]
+    command = [sys.executable, "-m", "server.cli", "certificate", "ros2", "viewer", *places]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+    (folder / "endpoint").write_text(endpoint, encoding="utf-8")
 
 
 def record(stack: Stack) -> None:
@@ -208,7 +222,15 @@ def attack(stack: Stack, words: str) -> Outcome:
 def start_attackers(stack: Stack, words: str) -> subprocess.Popen[str]:
     """The process of the attackers, which attack until their input is closed."""
     tokens = [make_token(stack, scope) for scope in ("read", "administer")]
-    command = [sys.executable, "-m", "tests.proofs.attackers", stack.url, *tokens, words]
+    command = [
+        sys.executable,
+        "-m",
+        "tests.proofs.attackers",
+        stack.url,
+        *tokens,
+        str(ros2_folder(stack)),
+        words,
+    ]
     pipe = subprocess.PIPE
     return subprocess.Popen(command, cwd=ROOT, stdin=pipe, stdout=pipe, text=True)
 
@@ -276,8 +298,10 @@ def main() -> int:
     if any(words in name for name in LIVE):
         with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
             config = Path(folder) / "robot.toml"
-            config.write_text(DOORS, encoding="utf-8")
+            endpoint = f"tls/127.0.0.1:{free_port()}"
+            config.write_text(DOORS.format(endpoint), encoding="utf-8")
             with Stack(Path(folder) / "data", "--config", str(config)) as stack:
+                certify(stack, config, endpoint)
                 outcome = attack(stack, words)
         rows |= outcome.problems
     if not rows:

@@ -3,6 +3,7 @@
 import socket
 import time
 from contextlib import suppress
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import httpx
@@ -15,10 +16,14 @@ PATIENCE = 60.0
 
 
 class Field:
-    """The attacked robot, and the tokens of a viewer and an operator without control."""
+    """The attacked robot, the tokens of a viewer and an operator without control, and a viewer's ROS 2.
 
-    def __init__(self, url: str, viewer: str, operator: str) -> None:
+    `ros2` is the folder of its certificate for the door; the door's endpoint is in its file `endpoint`.
+    """
+
+    def __init__(self, url: str, viewer: str, operator: str, ros2: Path) -> None:
         self.url = url
+        self.ros2 = ros2
         parts = urlsplit(url)
         self.address = parts.hostname or "", parts.port or 0
         self.viewer = {"authorization": f"Bearer {viewer}"}

@@ -11,10 +11,15 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing, suppress
 from struct import Struct
 
+import zenoh
 from websockets.exceptions import WebSocketException
 
 from robot_runtime.contract.topics import TOPICS, Kind
+from server.features.doors.ros2_messages import TRIGGER, ros2_types
+from server.features.doors.ros2_names import GID_BYTES, Attachment, Endpoint, Ros2Names
+from server.features.doors.twist import TAKEN_IN
 from tests.proofs.field import Field
+from tests.server.features.doors.ros2_rig import open_zenoh
 
 FLOOD_SECONDS = 5.0
 DEVICE_SOCKETS = 8
@@ -151,6 +156,41 @@ def many_viewers(field: Field) -> None:
     _ask_in_turn(field, paths, field.make_viewers(VIEWERS))
 
 
+def messages_at_ros2(field: Field) -> None:
+    """Calls of STOP and twists of as many programs as one certificate may have, and no answer is awaited."""
+    types, names = ros2_types(), Ros2Names(0, "")
+    stop = names.key(Endpoint("SS", "/mucat/stop", TRIGGER, types.hash(TRIGGER)))
+    twists = [names.key(Endpoint("MS", name, kind, types.hash(kind))) for name, kind in TAKEN_IN.items()]
+    certificate = {
+        "root_ca_certificate": str(field.ros2 / "authority.pem"),
+        "connect_certificate": str(field.ros2 / "certificate.pem"),
+        "connect_private_key": str(field.ros2 / "key.pem"),
+        "enable_mtls": True,
+        "verify_name_on_connect": False,
+    }
+    values = {
+        "mode": "client",
+        "connect/endpoints": [(field.ros2 / "endpoint").read_text(encoding="utf-8")],
+        "transport/link/tls": certificate,
+    }
+    end = time.monotonic() + FLOOD_SECONDS
+
+    def send(_: int) -> None:
+        with suppress(zenoh.ZError), open_zenoh(values) as one:
+            number = 0
+            while time.monotonic() < end:
+                number += 1
+                attachment = Attachment(number, 0, bytes(GID_BYTES)).to_bytes()
+                one.get(stop, lambda _: None, payload=bytes(5), attachment=attachment, timeout=FLOOD_SECONDS)
+                for key in twists:
+                    one.put(key, bytes(52), attachment=attachment)
+                # Far more than the door takes in already: what Zenoh drops here costs the attackers alone.
+                time.sleep(0.002)
+
+    with ThreadPoolExecutor(DEVICE_SOCKETS) as threads:
+        list(threads.map(send, range(DEVICE_SOCKETS)))
+
+
 def _ask_in_turn(field: Field, paths: list[str], viewers: list[dict[str, str]]) -> None:
     """Ask for these over many connections, one request each, and read the answers."""
     end = time.monotonic() + FLOOD_SECONDS
@@ -208,5 +248,6 @@ FLOODS: dict[str, Callable[[Field], None]] = {
     "small connections": small_connections,
     "a session of 400,000 gaps": crowded_session,
     "twenty viewers who read all there is": many_viewers,
+    "STOPs and twists at ROS 2": messages_at_ros2,
 }
 """Each alone, while an operator presses STOP."""
