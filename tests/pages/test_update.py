@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from server import VERSION, container
+from server import VERSION
 from server.features.installation.places import InstallPlaces
 from server.features.installation.report import UpdateReport
+from server.features.updates import plug
 from tests.browser.people import somebody
 from tests.pages.dive_site import DiveSite
 
@@ -35,7 +36,7 @@ def places(tmp_path_factory: pytest.TempPathFactory) -> InstallPlaces:
 @pytest.fixture(scope="module")
 def installed(places: InstallPlaces) -> Iterator[DiveSite]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(container, "InstallPlaces", lambda: places)
+        patch.setattr(plug, "InstallPlaces", lambda: places)
         with DiveSite(places.data) as site:
             yield site
 

@@ -140,7 +140,7 @@ def run_surface() -> Iterator[Surface]:
         page = Path(name) / "page"
         page.mkdir()
         (page / "index.html").write_text("the page", encoding="utf-8")
-        settings = Settings(data=folder, config=config, robot="tested", page=page)
+        settings = Settings(data=folder, config=config, robot="tested", page=page, every_feature=True)
         thread = threading.Thread(target=lambda: asyncio.run(run(settings)))
         thread.start()
         try:

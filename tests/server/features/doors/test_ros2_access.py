@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 import zenoh
 
+from server.features.doors.config import DoorsConfig
 from server.features.doors.house import Doors
 from server.features.doors.ros2_door import Ros2Door
 from server.features.lease.arbiter import ControlArbiter
@@ -34,7 +35,7 @@ def test_the_door_is_closed_unless_the_configuration_opens_it(settings: Settings
         assert (door["open"], door["clients"]) == (False, [])
         assert served.get(Ros2Door).address == ("", 0)
 
-    play(settings, scenario)
+    play(settings.with_section(DoorsConfig(foxglove=True)), scenario)
 
 
 def test_only_a_certificate_that_is_in_force_gets_in(settings: Settings) -> None:

@@ -52,9 +52,9 @@ def test_a_live_scenario_on_the_robots_craft_has_the_craft_in_force(
     settings.data.craft.write_text('title = "Heavy"\n[craft]\nbuoyancy = 1.003\nfin_drag = 0.22\n')
     started: list[Scenario] = []
 
-    def start(scenario: Scenario, *_: object) -> int:
+    def start(scenario: Scenario, *_: object) -> str:
         started.append(scenario)
-        return 1
+        return "0123456789abcdef"
 
     async def run() -> None:
         async with serve(settings) as served:
