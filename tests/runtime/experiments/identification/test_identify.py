@@ -41,6 +41,9 @@ OTHER = Craft(
 """Its thrust, damping, inertia, surplus of buoyancy and trim differ from the default's by up to 40 %."""
 START = Craft()
 
+pytestmark = pytest.mark.timeout(900)
+"""s. The fit takes a minute of processor time, and waits for it behind the tests in real time."""
+
 
 @pytest.fixture(scope="module")
 def found() -> Identification:
