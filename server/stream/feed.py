@@ -16,7 +16,8 @@ RoundListener = Callable[[Sequence[Block]], None]
 class Feed:
     """Delivers each block to the listeners of its topic, and each round of blocks that came together.
 
-    A listener must be quick. One that fails is logged and reported to `on_failure`; the others still hear.
+    A listener must be quick. The first failure of each is logged and reported to `on_failure`; the others
+    still hear.
     """
 
     def __init__(self) -> None:
@@ -24,6 +25,7 @@ class Feed:
         """Gets the name of a listener and its error."""
         self._listeners: dict[int, list[BlockListener]] = defaultdict(list)
         self._rounds: list[RoundListener] = []
+        self._failed: set[tuple[str, Callable[..., None]]] = set()
 
     def listen(self, listener: BlockListener, *topics: AnyTopic) -> None:
         """Call `listener` with every block of these topics, or of all where none is named."""
@@ -41,14 +43,18 @@ class Feed:
                 try:
                     listener(block)
                 except Exception as problem:
-                    self._report(listener, problem)
+                    self._report("block", listener, problem)
         for heard in self._rounds:
             try:
                 heard(blocks)
             except Exception as problem:
-                self._report(heard, problem)
+                self._report("round", heard, problem)
 
-    def _report(self, listener: Callable[..., None], problem: Exception) -> None:
+    def _report(self, kind: str, listener: Callable[..., None], problem: Exception) -> None:
+        # Once: a report is delivered, too, and may make the same listener fail again.
+        if (kind, listener) in self._failed:
+            return
+        self._failed.add((kind, listener))
         name = getattr(listener, "__qualname__", repr(listener))
         log.error("%s cannot take what was delivered", name, exc_info=problem)
         self.on_failure(name, problem)

@@ -3,7 +3,7 @@
 from robot_runtime.contract.topics import DEPTH, STATE
 from robot_runtime.transport.blocks import Block
 from server.stream.feed import Feed
-from tests.server.blocks import depth_block, state_block
+from tests.server.blocks import debug_block, depth_block, state_block
 
 
 def test_a_listener_hears_its_topics_alone_in_order() -> None:
@@ -38,3 +38,20 @@ def test_a_listener_that_fails_is_reported_and_the_others_hear() -> None:
     feed.deliver([depth_block(0, 1)])
     assert len(heard) == 1
     assert reported == [("fail", "worn out")] * 2
+
+
+def test_a_listener_that_fails_at_its_own_report_is_reported_once() -> None:
+    feed, reported = Feed(), list[str]()
+
+    def fail(_: object) -> None:
+        raise ValueError("worn out")
+
+    def report(_name: str, problem: Exception) -> None:
+        reported.append(str(problem))
+        feed.deliver([debug_block(0, "it has failed")])
+
+    feed.on_failure = report
+    feed.listen(fail)
+    for place in range(3):
+        feed.deliver([depth_block(place, 1)])
+    assert reported == ["worn out"]
