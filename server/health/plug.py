@@ -15,7 +15,6 @@ from server.health.monitor import HealthMonitor
 from server.health.watchdog import DOWN, Watchdog
 from server.platform.notices import Notices
 from server.platform.settings import Settings
-from server.platform.store import Store
 from server.processes.managed_process import ProcessCommand
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessSupervisor
 from server.services import Maker
@@ -55,25 +54,6 @@ def make_processes(
     return ProcessSupervisor(start.processes, settings.data, clock, ends.see)
 
 
-def make_monitor(
-    settings: Settings, clock: Clock, store: Store, processes: ProcessSupervisor
-) -> HealthMonitor:
-    """The health of the parts."""
-    return HealthMonitor(settings, clock, store, processes)
-
-
-def make_watchdog(
-    settings: Settings,
-    clock: Clock,
-    monitor: HealthMonitor,
-    processes: ProcessSupervisor,
-    store: Store,
-    alarms: Alarms,
-) -> Watchdog:
-    """Raises the alarms."""
-    return Watchdog(settings, clock, monitor, processes, store, alarms)
-
-
 class ProcessEnds:
     """Acts on the unexpected end of a process."""
 
@@ -97,7 +77,7 @@ class ProcessEnds:
 class HealthPlug(Plug):
     """Starts the processes, watches them, and ends them last."""
 
-    makers: ClassVar[tuple[Maker, ...]] = (make_alarms, make_processes, make_monitor, make_watchdog)
+    makers: ClassVar[tuple[Maker, ...]] = (make_alarms, make_processes)
 
     def __init__(
         self,

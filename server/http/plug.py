@@ -28,11 +28,6 @@ def make_page(settings: Settings) -> Page:
     return Page(settings.page)
 
 
-def make_memory_reserve(clock: Clock) -> MemoryReserve:
-    """The memory that is kept for STOP."""
-    return MemoryReserve(clock)
-
-
 def make_audit_log(settings: Settings, clock: Clock, notices: Notices) -> AuditLog:
     """The audit log, whose acts are notices too."""
     return AuditLog(settings.data.audit, clock, lambda _, text: notices.notify("control", "info", text))
@@ -53,7 +48,7 @@ def make_access(
 class HttpPlug(Plug):
     """Opens access first, and closes it last."""
 
-    makers: ClassVar[tuple[Maker, ...]] = (make_page, make_memory_reserve, make_audit_log, make_access)
+    makers: ClassVar[tuple[Maker, ...]] = (make_page, make_audit_log, make_access)
 
     def __init__(self, access: Access, audit: AuditLog, reserve: MemoryReserve, store: Store) -> None:
         self._access = access

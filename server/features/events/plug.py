@@ -1,28 +1,16 @@
 """The plug of events for other programs."""
 
-from typing import ClassVar
-
-from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import MISSION, STATE
 from server.feature import Plug
 from server.features.events.announcer import EventAnnouncer
 from server.health.monitor import HealthMonitor
-from server.platform.settings import Settings
-from server.services import Maker
 from server.stream.ends import RunEnds
 from server.stream.feed import Feed
 from server.stream.hub import Hub
 
 
-def make_announcer(settings: Settings, clock: Clock) -> EventAnnouncer:
-    """Publishes the events."""
-    return EventAnnouncer(settings, clock)
-
-
 class EventsPlug(Plug):
     """Announces what the pages are sent."""
-
-    makers: ClassVar[tuple[Maker, ...]] = (make_announcer,)
 
     def __init__(
         self, announcer: EventAnnouncer, feed: Feed, hub: Hub, ends: RunEnds, monitor: HealthMonitor

@@ -18,15 +18,10 @@ def make_jobs(settings: Settings, store: Store, clock: Clock) -> Jobs:
     return Jobs(settings.data, store, clock)
 
 
-def make_imports(settings: Settings, store: Store) -> Imports:
-    """The imports of archives."""
-    return Imports(settings.data, store)
-
-
 class ExportsPlug(Plug):
     """Makes the exports that were asked for."""
 
-    makers: ClassVar[tuple[Maker, ...]] = (make_jobs, make_imports)
+    makers: ClassVar[tuple[Maker, ...]] = (make_jobs,)
 
     def __init__(self, jobs: Jobs, imports: Imports, retention: RetentionWorker) -> None:
         self._jobs = jobs

@@ -79,11 +79,6 @@ def make_auto_recorder(
     return AutoRecorder(recorder, clock, notices, make_row)
 
 
-def make_retention(settings: Settings, store: Store, notices: Notices, clock: Clock) -> RetentionWorker:
-    """Removes sessions."""
-    return RetentionWorker(store, settings, notices, clock)
-
-
 class SessionsPlug(Plug):
     """Records, goes on with the recording of a killed server, and ends it with the server."""
 
@@ -93,7 +88,6 @@ class SessionsPlug(Plug):
         make_catalogue,
         make_clock_correction,
         make_auto_recorder,
-        make_retention,
     )
 
     def __init__(
