@@ -4,6 +4,7 @@ The other sections are the server's and its features', which declare them.
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -161,28 +162,37 @@ def load(path: Path) -> Config:
 
 def load_with_text(path: Path) -> tuple[Config, str]:
     """Reads the configuration and its text, which the file may not hold later. Raises as `load`."""
+    text = read_file(path)
+    return parse_text(text, path), text
+
+
+def read_file(path: Path) -> str:
+    """Reads the text of a configuration. Raises ConfigError if it cannot be read."""
     try:
-        text = load_text(path)
+        return load_text(path)
     except OSError as problem:
         raise ConfigError(f"{path} cannot be read: {problem}") from problem
     except TextError as problem:
         raise ConfigError(f"{path} cannot be read: it {problem}") from problem
-    return parse_text(text, path), text
 
 
 def parse_text(text: str, path: Path) -> Config:
     """Returns the configuration in this text of the file `path`. Raises ConfigError if it cannot be used."""
-    table = read_table(text, path)
-    own = {one.name for one in fields(Config)}
-    return parse(Config, {name: one for name, one in table.items() if name in own}, DocumentEntry(path.name))
+    return parse_table(read_table(text, path), path)
 
 
 def read_table(text: str, path: Path) -> dict[str, Any]:
-    """Returns the sections in this text of the file `path`. Raises ConfigError if it is no TOML."""
+    """Returns all sections in this text of the file `path`. Raises ConfigError if it is no TOML."""
     try:
         return read_toml(text)
     except TomlError as problem:
         raise ConfigError(f"{path} cannot be read: it {problem}") from problem
+
+
+def parse_table(table: Mapping[str, Any], path: Path) -> Config:
+    """Returns the robot's sections among these of the file `path`. Raises ConfigError."""
+    own = {one.name for one in fields(Config)}
+    return parse(Config, {name: one for name, one in table.items() if name in own}, DocumentEntry(path.name))
 
 
 def craft_path(config: Config, path: Path, data: Path) -> Path:

@@ -47,7 +47,7 @@ _WITH_THE_RUNTIME = (
     "imu_stale",
     "vision_stale",
 )
-"""What a runtime that stalled has missed seems to have been absent."""
+"""Faults of what arrived while a runtime stalled, so that it seems to have been absent."""
 
 FAULTS = (
     FaultRule(

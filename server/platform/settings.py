@@ -21,7 +21,8 @@ from robot_runtime.config import (
     ZenohConfig,
     craft_in,
     craft_path,
-    load_with_text,
+    parse_table,
+    read_file,
     read_table,
 )
 from robot_runtime.contract.craft import Craft
@@ -266,8 +267,9 @@ def read_settings(
     folder = data_folder(data, environment)
     config = config or find_config(folder)
     try:
-        loaded, text = load_with_text(config)
+        text = read_file(config)
         table = read_table(text, config)
+        loaded = parse_table(table, config)
         server, features, sections = _read_sections(table, DocumentEntry(config.name))
         check_control(loaded.control)
     except ConfigError as problem:

@@ -10,9 +10,9 @@ from tests.documents.blocks import DOCS
 
 DECLARED = tomllib.loads((PACKAGES / "pyproject.toml").read_text())["project"]["optional-dependencies"]
 CHOSEN = DECLARED.keys() - {"emulator"}
-"""Those that a person adds; the emulator's wheel is named beside that of mucat."""
+"""The extras that a person adds; the emulator's wheel is named beside that of mucat."""
 LARGE = {"scene"}
-"""Those that no release brings."""
+"""The extras that no release brings."""
 
 
 def test_every_extra_is_documented_tested_and_kept_by_an_update() -> None:
