@@ -42,7 +42,7 @@ IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-syn
 BESIDE := nice $(SYSTEM_PYTHON) -m tests.beside
 
 .DEFAULT_GOAL := help
-.PHONY: help run test services bring-ups test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
+.PHONY: help run test services test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -159,9 +159,6 @@ soak: setup-test ## prove the link at length: corrupted frames by the million, a
 services: setup-test build/.packages-packages ## install, update and roll back on computers with systemd, and cut their power (needs root; one with ONLY=name)
 	@nice $(PYTHON) -m tests.proofs.services $(ONLY)
 
-bring-ups: setup-test host-firmware ## bring up a robot with each mistake of wiring and parts, on the page and from a shell
-	@nice $(PYTHON) -W ignore -m tests.proofs.bring_ups
-
 kills: setup ## kill the server a hundred times while it records, and look for holes (KILLS=100)
 	@nice $(PYTHON) -m tests.proofs.kills $(KILLS)
 
@@ -171,13 +168,13 @@ power: setup-test ## cut the power ten thousand times while the server stores, a
 faults: setup-test host-firmware ## inject every fault a hundred times, and measure how soon the fins stop (FAULTS=100)
 	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS)
 
-robot-faults: setup-test host-firmware ## of these, the faults of robot and chip, in simulated time
-	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS) robot
+robot-faults: setup-test host-firmware ## of these, the faults of robot and chip, in simulated time (some with ONLY=words of their names)
+	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS) robot $(ONLY)
 
 outages: setup-test ## of these, the processes that are killed or hang, in real time, two robots at once
 	@$(PYTHON) -m tests.proofs.injections $(FAULTS) processes
 
-missions: setup-test host-firmware ## end each leaf of a mission in each way, and swim a thousand random missions (MISSIONS=1000)
+missions: setup-test host-firmware ## end each leaf of a mission in each way, compare lanes by dead reckoning with the truth, and swim a thousand random missions (MISSIONS=1000)
 	@nice $(PYTHON) -W ignore -m tests.proofs.missions $(MISSIONS)
 
 chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
@@ -194,7 +191,7 @@ firmware: build/.packages-run .venv/.ready ## compile the firmware for the baud 
 # After the robot's firmware, of which it needs objects, too. What robots in real time run is not left to a build of
 # little weight, for which they would wait.
 host-firmware: firmware
-	@$(MAKE) --silent -C firmware host hang proofs
+	@$(MAKE) --silent -C firmware host hang full proofs
 	@$(MAKE) --silent -C firmware HIL=1 robot > /dev/null
 
 setup: build/.packages-run .venv/.ready server/page/index.html server/help/index.html firmware

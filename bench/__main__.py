@@ -11,12 +11,15 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from bench.goals import GOALS
 from bench.hour import SHARED
 from bench.measurement import MeasurementError, measure
-from bench.parts import PARTS, Part
-from bench.results import Figure, Results
+from bench.parts import PARTS, BenchPart
+from bench.results import MeasuredFigure, Results
 
 
 def main() -> int:
-    """Exit status: 1 where a goal is missed, or a part or a goal's figure could not be measured."""
+    """Run the parts.
+
+    Return the exit status: 1 where a goal is missed, or a part or a goal's figure could not be measured.
+    """
     parser = argparse.ArgumentParser(prog="python -m bench", description=__doc__)
     parser.add_argument(
         "parts", nargs="*", metavar="PART", help=f"one of {', '.join(PARTS)}; without, all but the long ones"
@@ -44,13 +47,13 @@ def main() -> int:
     return summarise(results, {part.name for part in parts}, not options.parts, left_out)
 
 
-def _measure_all(parts: Sequence[Part], at_once: int, results: Results) -> None:
+def _measure_all(parts: Sequence[BenchPart], at_once: int, results: Results) -> None:
     with ThreadPoolExecutor(at_once) as pool:
         running = {pool.submit(measure, part): part for part in parts}
-        for one in as_completed(running):
-            part = running[one]
+        for future in as_completed(running):
+            part = running[future]
             try:
-                measured = one.result()
+                measured = future.result()
             except MeasurementError as problem:
                 results.fail(part.name, str(problem))
                 print(f"{part.name} could not be measured: {problem}", file=sys.stderr, flush=True)
@@ -62,10 +65,10 @@ def _measure_all(parts: Sequence[Part], at_once: int, results: Results) -> None:
 
 
 def summarise(results: Results, parts: set[str], is_whole: bool, left_out: Collection[str] = ()) -> int:
-    """Prints what is met, missed and not measured; goals of parts that are left out may have no figure."""
-    mine = {name: one for name, one in results.figures.items() if is_whole or one.part in parts}
-    judged = {name: one for name, one in mine.items() if name in GOALS}
-    missed = [name for name, one in judged.items() if not _is_met(name, one)]
+    """Print the goals that are met, missed and not measured; goals of omitted parts may have no figure."""
+    mine = {name: figure for name, figure in results.figures.items() if is_whole or figure.part in parts}
+    judged = {name: figure for name, figure in mine.items() if name in GOALS}
+    missed = [name for name, figure in judged.items() if not _is_met(name, figure)]
     failed = sorted(part for part in results.failures if is_whole or part in parts)
     without = GOALS.keys() - mine.keys() if is_whole else set[str]()
     longer = {name for name in without if any(name.startswith(PARTS[part].prefix) for part in left_out)}
@@ -79,15 +82,15 @@ def summarise(results: Results, parts: set[str], is_whole: bool, left_out: Colle
 
 
 def _list(title: str, lines: Iterable[str]) -> None:
-    if found := list(lines):
-        print(f"\n{title}:", *found, sep="\n")
+    if entries := list(lines):
+        print(f"\n{title}:", *entries, sep="\n")
 
 
-def _is_met(name: str, figure: Figure) -> bool:
+def _is_met(name: str, figure: MeasuredFigure) -> bool:
     return GOALS[name].scaled(figure.slowness).is_met(figure.value)
 
 
-def _row(name: str, figure: Figure) -> str:
+def _row(name: str, figure: MeasuredFigure) -> str:
     row = f"  {name:<40} {figure.value:>12.4g}"
     if name not in GOALS:
         return row

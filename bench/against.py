@@ -26,7 +26,7 @@ Rounds = dict[str, list[float]]
 
 
 def main() -> int:
-    """Exit status: 1 where a figure that has a goal is worse than before, or a part failed here alone."""
+    """Compare. Return the exit status: 1 where a figure with a goal is worse, or a part failed here alone."""
     parser = argparse.ArgumentParser(prog="python -m bench.against", description=__doc__)
     parser.add_argument("commit", help="what this tree is compared with")
     parser.add_argument("parts", nargs="*", metavar="PART", help="all but the long ones without")
@@ -40,12 +40,12 @@ def main() -> int:
 
 
 def _check_out(commit: str) -> Path:
-    """Returns a working tree of the commit, set up for measuring."""
-    found = _run(["git", "rev-parse", "--short=10", f"{commit}^{{commit}}"], Path.cwd())
-    tree = (_TREES / found).absolute()
+    """Return a working tree of the commit, set up for measuring."""
+    commit_hash = _run(["git", "rev-parse", "--short=10", f"{commit}^{{commit}}"], Path.cwd())
+    tree = (_TREES / commit_hash).absolute()
     if not tree.exists():
-        _run(["git", "worktree", "add", "--detach", str(tree), found], Path.cwd())
-    print(f"Setting up {found} in {tree} ...", file=sys.stderr, flush=True)
+        _run(["git", "worktree", "add", "--detach", str(tree), commit_hash], Path.cwd())
+    print(f"Setting up {commit_hash} in {tree} ...", file=sys.stderr, flush=True)
     subprocess.run(
         ["make", "--silent", "setup-test", ".venv/.ready-bench", "host-firmware"], cwd=tree, check=True
     )
@@ -58,27 +58,27 @@ def _run(command: list[str], folder: Path) -> str:
 
 
 def _compare(part: str, before: Path, now: Path, rounds: int) -> bool:
-    """Measures and prints a part; False where a figure with a goal is worse, or this tree has none at all."""
-    found: dict[Path, Rounds] = {before: defaultdict(list), now: defaultdict(list)}
+    """Measure and print a part; return False where a figure with a goal is worse, or there is none."""
+    measured: dict[Path, Rounds] = {before: defaultdict(list), now: defaultdict(list)}
     for number in range(rounds):
         for tree in (before, now) if number % 2 == 0 else (now, before):
             name = "before" if tree == before else "now"
             print(f"{part}, round {number + 1} of {rounds}, {name} ...", file=sys.stderr, flush=True)
             for figure, value in _measure(tree, part).items():
-                found[tree][figure].append(value)
-    if not found[now]:
+                measured[tree][figure].append(value)
+    if not measured[now]:
         print(f"  {part} could not be measured in this tree")
         return False
     verdicts = {
-        name: verdict(name, found[before].get(name, []), values) for name, values in found[now].items()
+        name: verdict(name, measured[before].get(name, []), values) for name, values in measured[now].items()
     }
-    for name, values in found[now].items():
-        print(_row(name, found[before].get(name, []), values, verdicts[name]), flush=True)
+    for name, values in measured[now].items():
+        print(_row(name, measured[before].get(name, []), values, verdicts[name]), flush=True)
     return not any(verdict == "worse" for name, verdict in verdicts.items() if name in GOALS)
 
 
 def _measure(tree: Path, part: str) -> dict[str, float]:
-    """The part's figures by the tree's own program; none where it fails or does not know the part."""
+    """Return the part's figures by the tree's own program; no figures where it fails or lacks the part."""
     file = tree / "build/bench.json"
     file.unlink(missing_ok=True)
     command = [".venv/bin/python", "-m", "bench", part]
@@ -88,13 +88,15 @@ def _measure(tree: Path, part: str) -> dict[str, float]:
     stored = json.loads(file.read_text())
     # Before 0.3.0 the file was flat.
     figures = (
-        {name: one["value"] for name, one in stored["figures"].items()} if "figures" in stored else stored
+        {name: figure["value"] for name, figure in stored["figures"].items()}
+        if "figures" in stored
+        else stored
     )
     return {name: float(value) for name, value in figures.items()}
 
 
 def verdict(name: str, before: Sequence[float], now: Sequence[float]) -> str:
-    """Verdict of the rounds on a figure; without a goal, no direction counts as better."""
+    """Return the verdict of the rounds on a figure; without a goal, no direction counts as better."""
     if not before:
         return "new"
     if min(now) > max(before):

@@ -49,15 +49,15 @@ _DRAWING = """
 
 
 def measure_slowness(draws: bool) -> Slowness:
-    """Times Python and memory, and drawing too where `draws` is True, which starts a browser."""
-    found: Slowness = {"python": _best(_interpret), "memory": _best(_copy)}
+    """Time Python and memory, and drawing too where `draws` is True, which starts a browser."""
+    slowness: Slowness = {"python": _best(_interpret), "memory": _best(_copy)}
     if draws:
-        found["drawing"] = _draw()
-    return {work: took / REFERENCE[work] for work, took in found.items()}
+        slowness["drawing"] = _draw()
+    return {work: took / REFERENCE[work] for work, took in slowness.items()}
 
 
 def mean(before: Slowness, after: Slowness) -> Slowness:
-    """Returns the geometric mean of two measurements."""
+    """Return the geometric mean of two measurements."""
     return {work: math.sqrt(before[work] * after[work]) for work in get_args(Work) if work in before}
 
 
@@ -71,7 +71,7 @@ def _best(work: Callable[[], object]) -> float:
 
 
 def _interpret() -> None:
-    """Packs, parses and looks up, as the runtime and the server do."""
+    """Pack, parse and look up, as the runtime and the server do."""
     layout = struct.Struct("<d4h")
     table: dict[str, float] = {}
     for number in range(_NUMBERS):
@@ -81,7 +81,7 @@ def _interpret() -> None:
 
 
 def _copy() -> None:
-    """Passes over arrays that fit into no cache."""
+    """Pass over arrays that fit into no cache."""
     values = np.arange(_ARRAY, dtype=np.float64)
     for _ in range(3):
         values = values * 1.0001 + values[::-1]

@@ -31,7 +31,7 @@ _POOL = Basin(2.5, 12.0, 6.0)
 
 
 def measure() -> dict[str, float]:
-    """A robot that swims and rolls, with the underwater look."""
+    """Measure the camera of a robot that swims and rolls, with the underwater look."""
     problem = missing()
     if problem:
         raise RuntimeError(problem)
@@ -45,7 +45,7 @@ def measure() -> dict[str, float]:
 
 
 def _measure_delivery(basin: Basin) -> float:
-    """Returns the pictures a second that a camera reads from the scene's process."""
+    """Return the pictures a second that a camera reads from the scene's process."""
     beacons: dict[str, object] = {"positions": []}
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         endpoint = f"unixsock-stream/{folder}/zenoh"
@@ -74,7 +74,7 @@ def _measure_delivery(basin: Basin) -> float:
 
 
 def _connect(messages: ZenohTransport) -> SceneCamera:
-    """Waits until the scene renders; it must have heard of the robot's position."""
+    """Wait until the scene renders; it must have heard of the robot's position."""
     end = time.monotonic() + _START_SECONDS
     while True:
         try:

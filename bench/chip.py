@@ -9,7 +9,7 @@ from robot_runtime.link.channel import Channel
 from robot_runtime.link.framing import Decoder, build
 from robot_runtime.link.session import session_key
 from robot_runtime.simulation.boards.emulator_process import LineDirection
-from tests.board.rig import ROOT, Rig
+from tests.board.rig import ROOT, BoardRig
 
 _BAUDS = (1200, 9600, 115_200, 250_000)
 _NOISY_BAUD = 115_200
@@ -31,12 +31,12 @@ _DRAIN = 60.0
 
 
 def measure() -> dict[str, float]:
-    """Payload bytes of the slower direction as a share of baud/10; nothing lost, doubled or out of order.
+    """Return the slower direction's payload bytes as a share of baud/10, without loss, doubling or disorder.
 
-    `bench/link_speed` on the emulated board has the firmware's link, with its queue of 228 bytes and room for
-    158 of frames out of order, and does nothing else; the host's end is the product's `Channel`. Both always
-    have something to say: lines of text whose payload, with time, level and length, is 6 or 18 bytes. The
-    host looks at its port every four characters.
+    `bench/link_speed` on the emulated board has the firmware's link, with a queue of 228 bytes (the robot's
+    has 114: its events are few) and room for 158 of frames out of order, and does nothing else; the host's
+    end is the product's `Channel`. Both always have something to say: lines of text whose payload, with time,
+    level and length, is 6 or 18 bytes. The host looks at its port every four characters.
 
     Bit errors are those of the wire, start and stop bits too. Where 1 in 1000 is wrong, 53 % of the longest
     frames survive, which would make 0.44, and 77 % of those with one line of 18 bytes, which would make 0.53,
@@ -51,18 +51,22 @@ def measure() -> dict[str, float]:
 
 
 def build_for(baud: int, name: str) -> Path:
-    """A program of the firmware's for this baud. Raises CalledProcessError where it does not compile."""
-    folder = ROOT / f"build/bench/firmware_{baud}"
-    target = {"robot": "robot", "link_speed": "speed"}[name]
-    command = ["make", "-s", "-C", str(ROOT / "firmware"), target, f"BAUD={baud}", f"BUILD={folder}"]
+    """Return a program of the firmware's for this baud.
+
+    Raise CalledProcessError where it does not compile.
+    """
+    folder = ROOT / f"build/bench/{name}_{baud}"
+    target, queue = {"robot": ("robot", 2), "link_speed": ("speed", 4)}[name]
+    variables = [f"BAUD={baud}", f"QUEUE={queue}", f"BUILD={folder}"]
+    command = ["make", "-s", "-C", str(ROOT / "firmware"), target, *variables]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     return folder / f"{name}.elf"
 
 
 def goodput(baud: int, size: int, bit_errors: float = 0.0, seconds: float = _SECONDS) -> float:
-    """Share of baud/10 that the slower direction carries, in at least so many seconds and 150 frames."""
+    """Return the share of baud/10 that the slower direction carries, in at least so many s and 150 frames."""
     elf = build_for(baud, "link_speed")
-    with tempfile.TemporaryDirectory() as folder, Rig(elf, Path(folder), baud=baud) as rig:
+    with tempfile.TemporaryDirectory() as folder, BoardRig(elf, Path(folder), baud=baud) as rig:
         host = _Host(rig, baud, size)
         host.greet()
         for direction in _DIRECTIONS:
@@ -80,9 +84,9 @@ def goodput(baud: int, size: int, bit_errors: float = 0.0, seconds: float = _SEC
 
 
 class _Host:
-    """The host's end, which counts what it says and hears."""
+    """The host's end, which counts sent and received messages."""
 
-    def __init__(self, rig: Rig, baud: int, size: int) -> None:
+    def __init__(self, rig: BoardRig, baud: int, size: int) -> None:
         self.now = rig.board.stats()["time"]
         self.heard = 0
         self._rig = rig
@@ -92,14 +96,14 @@ class _Host:
         self._decoder = Decoder()
         self._channel = Channel(baud, 64)
         self._report: Status | None = None
-        self._said = 0
+        self._sent = 0
         self._wrong = 0
         self._line_free = 0.0
 
     @property
     def delivered(self) -> int:
-        """Lines that the board has acknowledged."""
-        return self._said - len(self._channel.pending())
+        """The number of lines that the board has acknowledged."""
+        return self._sent - len(self._channel.pending())
 
     def greet(self) -> None:
         """Open a session, and let the board begin to talk as well."""
@@ -114,14 +118,14 @@ class _Host:
         self.talk(_START + 10 * 64 * self._byte_time)
 
     def talk(self, seconds: float) -> None:
-        """Lets time pass with more to send than the line carries."""
+        """Pass time with more to send than the line carries."""
         end = self.now + seconds
         while self.now < end:
             self._top_up()
             self._pass()
 
     def check(self) -> None:
-        """Waits until everything has arrived. Raises RuntimeError if lines are missing or not in order."""
+        """Wait until everything has arrived. Raise RuntimeError if lines are missing or not in order."""
         end = self.now + _DRAIN * 64 * self._byte_time + 1.0
         while self._channel.pending() and self.now < end:
             self._pass()
@@ -132,17 +136,17 @@ class _Host:
         report = self._report
         if report is None:
             raise RuntimeError("the board does not tell what has come")
-        if (report.time, report.missed_ticks, self._wrong) != (self._said & 0xFFFFFFFF, 0, 0):
+        if (report.time, report.missed_ticks, self._wrong) != (self._sent & 0xFFFFFFFF, 0, 0):
             raise RuntimeError(
-                f"of {self._said} lines the board has {report.time}, {report.missed_ticks} out of order,"
+                f"of {self._sent} lines the board has {report.time}, {report.missed_ticks} out of order,"
                 f" and {self._wrong} of its own were"
             )
 
     def _top_up(self) -> None:
         for _ in range(len(self._channel.pending()), _BACKLOG):
-            line = Debug(time=self._said, level=self._said & 255, text=self._text)
+            line = Debug(time=self._sent, level=self._sent & 255, text=self._text)
             self._channel.queue(encode(line))
-            self._said += 1
+            self._sent += 1
 
     def _pass(self) -> None:
         step = _STEP_BYTES * self._byte_time

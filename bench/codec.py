@@ -21,7 +21,8 @@ Action = Callable[[], object]
 
 
 def measure() -> dict[str, float]:
-    """µs of CPU there and back, and multiples of the peers' in the same rounds; the best round of each.
+    """Return µs of CPU there and back, and multiples of the peers' in the same rounds; each in its best
+    round.
 
     `us_per_packet`: from a payload's bytes to the frame on the line, and from that to the payload again, as
     the runtime handles most packets; sequence number, acknowledgement, session key, CRC and lengths are made
@@ -137,7 +138,10 @@ def _with_fields() -> Action:
 
 
 def _best(actions: dict[str, Action]) -> dict[str, float]:
-    """µs of each in its best round. All have their turn in each round, so that none has a better hour."""
+    """Return µs of each codec in its best round.
+
+    All have their turn in each round, so that none is favoured.
+    """
     timers = {name: timeit.Timer(action, timer=time.thread_time) for name, action in actions.items()}
     rounds = [{name: timer.timeit(_TIMES) for name, timer in timers.items()} for _ in range(_ROUNDS)]
-    return {name: min(one[name] for one in rounds) / _TIMES * 1e6 for name in actions}
+    return {name: min(timing[name] for timing in rounds) / _TIMES * 1e6 for name in actions}

@@ -14,7 +14,7 @@ _BUILD = Path("build")
 
 
 def measure() -> dict[str, float]:
-    """The least share of the numbers that arrived right, over all cells and directions."""
+    """Return the least share of the numbers that arrived right, over all cells and directions."""
     (thesis,) = read_document((SKETCHES / "comm_test/figure10.json").read_text(encoding="utf-8"))
     runner = Runner(Builder(_BUILD / "comm_test"), _BUILD / "board", os.cpu_count() or 1)
     rates = [

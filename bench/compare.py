@@ -17,7 +17,7 @@ from playwright.sync_api import sync_playwright
 from bench.hour import copy_hours
 from server.platform.settings import DataFolder
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 from tests.stack import ROOT, free_port
 
 SESSIONS = 3
@@ -28,8 +28,9 @@ CONFIG = '[robot]\nname = "bench"\nmode = "robot"\n[link]\nport = "/nowhere"\n'
 
 
 def measure() -> dict[str, float]:
-    """ms, each the median of several. `open` begins with a server that has read nothing of the sessions yet,
-    `again` and `zoom` (a minute of the hour) come after it; `page_open` is from address to drawn lines.
+    """Return ms, each the median of several. `open` begins with a server that has read nothing of the
+    sessions yet, `again` and `zoom` (a minute of the hour) come after it; `page_open` is from address to
+    drawn lines.
     """
     with tempfile.TemporaryDirectory() as folder:
         data = Path(folder)
@@ -38,15 +39,15 @@ def measure() -> dict[str, float]:
         opened, again, zoomed, drawn = [], [], [], []
         for _ in range(TIMES):
             with _serve(data) as api:
-                wanted = {
+                request = {
                     "sessions": ids,
                     "signals": ["depth.depth", "control.set_point"],
                     "align": {"by": "start"},
                 }
                 view = {"start": 0.0, "end": 60.0}
-                opened.append(_ask(api, "compare", wanted))
-                again.append(_ask(api, "compare", wanted | {"align": {"by": "armed"}}))
-                zoomed.append(_ask(api, "compare/lines", wanted | {"view": view}))
+                opened.append(_ask(api, "compare", request))
+                again.append(_ask(api, "compare", request | {"align": {"by": "armed"}}))
+                zoomed.append(_ask(api, "compare/lines", request | {"view": view}))
             with _serve(data) as api:
                 drawn.append(_draw(api, data, ids))
         return {
@@ -57,9 +58,9 @@ def measure() -> dict[str, float]:
         }
 
 
-def _ask(api: httpx.Client, path: str, wanted: object) -> float:
+def _ask(api: httpx.Client, path: str, request: object) -> float:
     began = time.perf_counter()
-    api.post(f"/api/{path}", json=wanted).raise_for_status()
+    api.post(f"/api/{path}", json=request).raise_for_status()
     return (time.perf_counter() - began) * 1000
 
 
@@ -87,7 +88,7 @@ def _serve(data: Path) -> Iterator[httpx.Client]:
     command += ["--config", str(data / "robot.toml")]
     with (data / "server.log").open("ab") as log:
         process = subprocess.Popen(command, cwd=ROOT, env=os.environ, stdout=log, stderr=log)
-    api = httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60, auth=ShellToken(DataFolder(data)))
+    api = httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60, auth=ShellAuth(DataFolder(data)))
     try:
         end = time.monotonic() + READY_SECONDS
         while True:

@@ -1,4 +1,4 @@
-"""The programs at a door, as its measurement uses them."""
+"""The interface of measured programs at a door."""
 
 from contextlib import AbstractContextManager
 from time import monotonic, time
@@ -9,15 +9,15 @@ END_SECONDS = 5.0
 
 
 class ConnectedPrograms(Protocol):
-    """Programs at a door, which read all that comes."""
+    """Programs at a door, which read everything."""
 
     def begin(self) -> None:
         """Count from now on."""
 
     def end(self) -> tuple[list[float], float]:
-        """The delay of each message of the first program since `begin`, s, and the number of all.
+        """Return the delay of each message of the first program since `begin`, s, and the number of all.
 
-        Raises ConnectionError where one was disconnected.
+        Raise ConnectionError where one was disconnected.
         """
 
 
@@ -25,15 +25,15 @@ class ProgramDoor(Protocol):
     """A door of a server that runs."""
 
     def programs(self, many: int) -> AbstractContextManager[ConnectedPrograms]:
-        """So many programs, which subscribe to attitude and depth."""
+        """Return so many programs, which subscribe to attitude and depth."""
 
     def stalled(self) -> AbstractContextManager[None]:
-        """One more program, which subscribes to more and reads nothing.
+        """Return another program, which subscribes to more and reads nothing.
 
-        Raises ConnectionError where it is not disconnected.
+        Raise ConnectionError where it is not disconnected.
         """
 
 
 def steady_time(utc: float) -> float:
-    """A moment of UTC on the steady clock, s."""
+    """Return a moment of UTC on the steady clock, s."""
     return utc - time() + monotonic()

@@ -21,7 +21,8 @@ _TASKS = Path("/proc/self/task")
 
 
 def measure() -> dict[str, float]:
-    """CPU in percent of one core, of this process alone by the scheduler's count; the median of some rounds.
+    """Return CPU in percent of one core, of this process alone by the scheduler's count; the median of some
+    rounds.
 
     The runtime's own connection, over a pseudo-terminal, to the real firmware on the emulated board at 1x
     and 250000 baud. The board sends its telemetry, 220 packets a second in 110 frames. A thread sends the
@@ -32,16 +33,16 @@ def measure() -> dict[str, float]:
     """
     heard: list[BoardMessage] = []
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder)
-        with EmulatorProcess(PROGRAM, FIRMWARE / "robot.elf", place / "tty", place / "socket"):
-            connection = SerialLink(str(place / "tty"), BAUD, SteadyClock(), 1, heard.extend, lambda: None)
+        path = Path(folder)
+        with EmulatorProcess(PROGRAM, FIRMWARE / "robot.elf", path / "tty", path / "socket"):
+            connection = SerialLink(str(path / "tty"), BAUD, SteadyClock(), 1, heard.extend, lambda: None)
             connection.start()
             try:
                 _await(connection)
                 rounds = [_talk(connection, heard) for _ in range(_ROUNDS)]
             finally:
                 connection.close()
-    figures = {name: median(one[name] for one in rounds) for name in rounds[0]}
+    figures = {name: median(timing[name] for timing in rounds) for name in rounds[0]}
     return figures | {"link.cpu_percent.wakings": _idle(figures["link.wakings_per_s"])}
 
 
@@ -72,7 +73,7 @@ def _talk(connection: SerialLink, heard: list[BoardMessage]) -> dict[str, float]
 
 
 def _idle(wakings_per_s: float) -> float:
-    """CPU in percent of waking so often."""
+    """Return CPU in percent of waking so often."""
     shares = []
     for _ in range(_ROUNDS):
         cpu, wakings = _cpu(), _wakings()
@@ -84,11 +85,11 @@ def _idle(wakings_per_s: float) -> float:
 
 
 def _cpu() -> float:
-    """s on a processor. The scheduler's own count: the usual one sees only who runs when the clock ticks."""
+    """Return s on a processor by the scheduler's count: the usual one only samples at clock ticks."""
     return sum(int((task / "schedstat").read_text().split()[0]) for task in _TASKS.iterdir()) * 1e-9
 
 
 def _wakings() -> int:
-    """Times that a thread has gone to sleep of its own accord."""
+    """Return the number of times that a thread has gone to sleep of its own accord."""
     lines = [line for task in _TASKS.iterdir() for line in (task / "status").read_text().splitlines()]
     return sum(int(line.split()[1]) for line in lines if line.startswith("voluntary_ctxt_switches"))

@@ -21,7 +21,7 @@ from tests.runtime.control.depth_experiment import (
     SEEDS,
     STEP,
     THESIS,
-    Figures,
+    DepthFigures,
     crossing_ratio,
     known_crafts,
     perform,
@@ -33,8 +33,8 @@ _ALL, _KNOWN = "<!-- made by `make control` -->", "<!-- made by `make control`: 
 _END = "<!-- end -->"
 
 
-def perform_all(controllers: Iterable[str]) -> dict[tuple[str, str], list[Figures]]:
-    """Figures by controller and variant, one for each seed."""
+def perform_all(controllers: Iterable[str]) -> dict[tuple[str, str], list[DepthFigures]]:
+    """Return figures by controller and variant, one for each seed."""
     robots = variants()
     pairs = [(name, craft) for name in controllers for craft in robots]
     with ProcessPoolExecutor(os.cpu_count()) as pool:
@@ -42,38 +42,38 @@ def perform_all(controllers: Iterable[str]) -> dict[tuple[str, str], list[Figure
             (name, craft): [pool.submit(perform, name, robots[craft], seed=seed) for seed in SEEDS]
             for name, craft in pairs
         }
-        return {which: [one.result() for one in some] for which, some in runs.items()}
+        return {which: [run.result() for run in some] for which, some in runs.items()}
 
 
-def perform_known() -> dict[str, tuple[Figures, Figures]]:
-    """The best controller's worst figures on each known craft, without and with the craft's numbers."""
+def perform_known() -> dict[str, tuple[DepthFigures, DepthFigures]]:
+    """Return the best controller's worst figures on each known craft, with and without its numbers."""
     robots = known_crafts()
     with ProcessPoolExecutor(os.cpu_count()) as pool:
 
-        def submit(robot: SimulationParameters, gains: Mapping[str, float]) -> list[Future[Figures]]:
+        def submit(robot: SimulationParameters, gains: Mapping[str, float]) -> list[Future[DepthFigures]]:
             return [pool.submit(perform, BEST, robot, seed=seed, gains=gains) for seed in SEEDS]
 
         runs = {
             craft: (submit(robot, {}), submit(robot, craft_gains(robot))) for craft, robot in robots.items()
         }
         return {
-            craft: (worst([one.result() for one in usual]), worst([one.result() for one in knowing]))
+            craft: (worst([run.result() for run in usual]), worst([run.result() for run in knowing]))
             for craft, (usual, knowing) in runs.items()
         }
 
 
 def measure() -> dict[str, float]:
-    """The best controller's worst figures over all variants, and those of the thesis's controller."""
-    found = perform_all((BEST, THESIS))
-    runs = {craft: some for (name, craft), some in found.items() if name == BEST}
-    theirs = {craft: some for (name, craft), some in found.items() if name == THESIS}
+    """Return the best controller's worst figures over all variants, and those of the thesis's controller."""
+    figures = perform_all((BEST, THESIS))
+    runs = {craft: some for (name, craft), some in figures.items() if name == BEST}
+    theirs = {craft: some for (name, craft), some in figures.items() if name == THESIS}
     best = {craft: worst(some) for craft, some in runs.items()}
     thesis = worst(theirs["nominal"])
     return {
-        "control.steady_cm_max": 100 * max(one.steady for one in best.values()),
-        "control.overshoot_max": max(one.overshoot for one in best.values()),
+        "control.steady_cm_max": 100 * max(result.steady for result in best.values()),
+        "control.overshoot_max": max(result.overshoot for result in best.values()),
         "control.crossing_ratio_max": max(crossing_ratio(runs[craft], theirs[craft]) for craft in runs),
-        "control.settling_s_max": max(one.settling for one in best.values()),
+        "control.settling_s_max": max(result.settling for result in best.values()),
         "control.rmse_cm": 100 * best["nominal"].rmse,
         "control.sine_rmse_cm": 100 * best["nominal"].sine,
         "control.bang_bang_steady_cm": 100 * thesis.steady,
@@ -81,54 +81,55 @@ def measure() -> dict[str, float]:
     }
 
 
-def table(found: dict[tuple[str, str], list[Figures]]) -> str:
-    """The worst figures as a Markdown table."""
-    titles = {one.name: one.title for one in CONTROLLERS["depth"]}
+def table(results: dict[tuple[str, str], list[DepthFigures]]) -> str:
+    """Return the worst figures as a Markdown table."""
+    titles = {controller.name: controller.title for controller in CONTROLLERS["depth"]}
     lines = [
         "| controller | craft | RMSE, cm | overshoot, % | settling, s | steady p-p, cm | reached after, s | "
         "to bang-bang | strokes | sine RMSE, cm |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
-    for (name, craft), runs in found.items():
-        one = worst(runs)
-        reached = " / ".join("-" if time >= STEP else f"{time:.2f}" for time in one.crossings)
-        settling = f"{one.settling:.1f}" if one.settling < STEP - 0.5 else "never"
+    for (name, craft), runs in results.items():
+        figures = worst(runs)
+        reached = " / ".join("-" if time >= STEP else f"{time:.2f}" for time in figures.crossings)
+        settling = f"{figures.settling:.1f}" if figures.settling < STEP - 0.5 else "never"
         lines.append(
-            f"| {titles[name]} | {craft} | {100 * one.rmse:.1f} | {100 * one.overshoot:.1f} | {settling} "
-            f"| {100 * one.steady:.1f} | {reached} | {crossing_ratio(runs, found[THESIS, craft]):.2f} "
-            f"| {one.strokes} | {100 * one.sine:.1f} |"
+            f"| {titles[name]} | {craft} | {100 * figures.rmse:.1f} | {100 * figures.overshoot:.1f} "
+            f"| {settling} | {100 * figures.steady:.1f} | {reached} "
+            f"| {crossing_ratio(runs, results[THESIS, craft]):.2f} | {figures.strokes} "
+            f"| {100 * figures.sine:.1f} |"
         )
     return "\n".join(lines)
 
 
-def known_table(found: Mapping[str, tuple[Figures, Figures]]) -> str:
-    """The worst figures with the default gains, and with the craft's, as a Markdown table."""
+def known_table(results: Mapping[str, tuple[DepthFigures, DepthFigures]]) -> str:
+    """Return the worst figures with the default gains, and with the craft's, as a Markdown table."""
     lines = [
         "| craft | gains | overshoot, % | settling, s | steady p-p, cm | reached after, s | sine RMSE, cm |",
         "|---|---|---|---|---|---|---|",
     ]
-    for craft, figures in found.items():
-        for gains, one in zip(("default", "the craft's"), figures, strict=True):
-            reached = " / ".join(f"{time:.2f}" for time in one.crossings)
+    for craft, figures in results.items():
+        for gains, outcome in zip(("default", "the craft's"), figures, strict=True):
+            reached = " / ".join(f"{time:.2f}" for time in outcome.crossings)
             lines.append(
-                f"| {craft} | {gains} | {100 * one.overshoot:.1f} | {one.settling:.1f} "
-                f"| {100 * one.steady:.1f} | {reached} | {100 * one.sine:.1f} |"
+                f"| {craft} | {gains} | {100 * outcome.overshoot:.1f} | {outcome.settling:.1f} "
+                f"| {100 * outcome.steady:.1f} | {reached} | {100 * outcome.sine:.1f} |"
             )
     return "\n".join(lines)
 
 
 def put(text: str, begin: str, made: str) -> str:
-    """The document with this table between the mark and the next end."""
+    """Return the document with this table between the mark and the next end."""
     head, rest = text.split(begin, 1)
     return f"{head}{begin}\n\n{made}\n\n{_END}{rest.split(_END, 1)[1]}"
 
 
 def main() -> None:
-    """Writes the tables into the document."""
+    """Write the tables into the document."""
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else PROOFS / "control.md"
     text = path.read_text(encoding="utf-8")
     text = put(text, _KNOWN, known_table(perform_known()))
-    text = put(text, _ALL, table(perform_all(one.name for one in CONTROLLERS["depth"])))
+    text = put(text, _ALL, table(perform_all(controller.name for controller in CONTROLLERS["depth"])))
     path.write_text(text, encoding="utf-8")
     print(f"The tables are in {path}.")
 

@@ -28,10 +28,10 @@ Phases = dict[str, tuple[float, float]]
 
 
 def measure() -> dict[str, float]:
-    """ms by which the time between two control ticks differs from their period, p50 and p999, of phases:
-    without a fault, with a vision process that crashes whenever it gives pictures, that hangs, whose memory
-    is exhausted, and with a video that crashes OpenCV's decoder whenever it is opened. s until the camera's
-    state names the first fault of a phase, until the alarm, and until pictures come again.
+    """Return the ms by which the time between two control ticks differs from their period, p50 and p999, of
+    phases: without a fault, with a vision process that crashes whenever it gives pictures, that hangs, whose
+    memory is exhausted, and with a video that crashes OpenCV's decoder whenever it is opened. s until the
+    camera's state names the first fault of a phase, until the alarm, and until pictures come again.
     """
     return _with_faults() | _with_video()
 
@@ -62,7 +62,7 @@ class _Swim:
     def __init__(self, data: Path, vision: str) -> None:
         self._data = data
         self._phases: Phases = {}
-        self._found: dict[str, float] = {}
+        self._figures: dict[str, float] = {}
         data.mkdir()
         config = data / "robot.toml"
         config.write_text(f"[vision]\n{vision}\n", "utf-8")
@@ -78,14 +78,14 @@ class _Swim:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._found["decoder.armed_at_the_end"] = float(self._viewer.state["armed"])
+        self._figures["decoder.armed_at_the_end"] = float(self._viewer.state["armed"])
         self._viewer.close()
         self._stack.api.post("/robot/stop")
         self._stack.api.post(f"/sessions/{self._session}/stop")
         self._stack.__exit__(None, None, None)
 
     def phase(self, name: str, act: Callable[[], object]) -> None:
-        """Acts again and again for the time of a phase, which begins with a camera that works."""
+        """Act again and again for the time of a phase, which begins with a camera that works."""
         # What fails sooner after another fault belongs to that one, and is not told of again.
         time.sleep(STEADY_SECONDS + 1.0)
         began = time.monotonic()
@@ -95,25 +95,25 @@ class _Swim:
         self._phases[name] = began, time.monotonic()
 
     def fault(self, name: str, cause: Callable[[psutil.Process], object]) -> None:
-        """Causes a fault of the vision process, and waits until pictures come again."""
+        """Cause a fault of the vision process, and wait until pictures come again."""
         self._stack.api.post("/robot/commands/acknowledge").raise_for_status()
         wait(lambda: not self._viewer.tells("vision_stale"), "the end of the alarm")
         vision, began = self._stack.part("vision"), time.monotonic()
         cause(vision)
         if name == "hang":
             alarm = wait(lambda: self._viewer.tells("vision_stale"), "the alarm")
-            self._found.setdefault("decoder.alarm_s.hang", alarm - began)
-        if f"decoder.named_s.{name}" not in self._found:
+            self._figures.setdefault("decoder.alarm_s.hang", alarm - began)
+        if f"decoder.named_s.{name}" not in self._figures:
             # The next ones of a series may be over before the next state.
             named = wait(self._is_named, f"the camera's state after {name}", _PATIENCE)
-            self._found[f"decoder.named_s.{name}"] = named - began
+            self._figures[f"decoder.named_s.{name}"] = named - began
         again = wait(lambda: self._is_back(began), f"pictures after {name}", _PATIENCE)
-        self._found.setdefault(f"decoder.pictures_again_s.{name}", again - began)
+        self._figures.setdefault(f"decoder.pictures_again_s.{name}", again - began)
 
     def figures(self) -> dict[str, float]:
-        """Returns all figures of the swim, which is over."""
-        found = jitter.figures(self._data, self._session, self._phases)
-        return {name.replace("jitter.", "decoder."): value for name, value in found.items()} | self._found
+        """Return all figures of the swim, which is over."""
+        figures = jitter.figures(self._data, self._session, self._phases)
+        return {name.replace("jitter.", "decoder."): value for name, value in figures.items()} | self._figures
 
     def _is_named(self) -> bool:
         return str(self._viewer.state.get("camera", "")).startswith(_MISSING)
@@ -127,6 +127,6 @@ def _crash(vision: psutil.Process) -> None:
 
 
 def _exhaust(vision: psutil.Process) -> None:
-    """Has the next allocation of the process fail."""
+    """Have the next allocation of the process fail."""
     _, hard = vision.rlimit(psutil.RLIMIT_DATA)
     vision.rlimit(psutil.RLIMIT_DATA, (1_000_000, hard))

@@ -81,7 +81,7 @@ class Dive:
         self._numbers = dict.fromkeys([*self._rows, *self._documents, "thumbnail"], 0)
 
     def until(self, time: float) -> Iterator[Block]:
-        """The blocks of what comes before `time` (s, steady clock) and was not taken yet."""
+        """Yield the blocks of samples before `time` (s, steady clock) that were not taken yet."""
         for name, rows in self._rows.items():
             first = self._numbers[name]
             last = int(np.searchsorted(self._times[name], time))
@@ -143,9 +143,13 @@ class Dive:
         return {"right": since % 40 < 15, "left": since % 40 > 25}
 
     def _motor(self, since: Floats) -> Fields:
-        wanted, angle = _fins(since, self._armed_at), _fins(since - 0.04, self._armed_at)
+        commanded, angle = _fins(since, self._armed_at), _fins(since - 0.04, self._armed_at)
         noise = self._noise(2e-3, len(since), 4)
-        return {"wanted": wanted, "angle": angle + noise, "drive": np.clip(120 * (wanted - angle), -63, 63)}
+        return {
+            "wanted": commanded,
+            "angle": angle + noise,
+            "drive": np.clip(120 * (commanded - angle), -63, 63),
+        }
 
     def _status(self, since: Floats) -> Fields:
         return {
@@ -160,13 +164,13 @@ class Dive:
         return {"z": np.sign(_set_point(since) - _depth(since, self._armed_at))}
 
     def _control(self, since: Floats) -> Fields:
-        depth, wanted = _depth(since, self._armed_at), _set_point(since)
+        depth, set_point = _depth(since, self._armed_at), _set_point(since)
         depth = depth + self._noise(0.0015, len(since))
         return {
-            "set_point": wanted,
+            "set_point": set_point,
             "depth": depth,
-            "error": wanted - depth,
-            "output": np.sign(wanted - depth),
+            "error": set_point - depth,
+            "output": np.sign(set_point - depth),
             "latency": self._chance.uniform(0.004, 0.02, len(since)),
         }
 
@@ -210,12 +214,12 @@ def _depth(since: Floats, armed_at: float) -> Floats:
         return np.zeros(len(since))
     depth, last = np.zeros(len(since)), 0.0
     before = armed_at
-    target = 0.0
-    for at, wanted in _steps(float(since[-1]) + 1.0, armed_at):
-        last = target + (last - target) * np.exp(-(at - before) / DELAY)
+    reached = 0.0
+    for at, target in _steps(float(since[-1]) + 1.0, armed_at):
+        last = reached + (last - reached) * np.exp(-(at - before) / DELAY)
         after = since >= at
-        depth[after] = wanted + (last - wanted) * np.exp(-(since[after] - at) / DELAY)
-        before, target = at, wanted
+        depth[after] = target + (last - target) * np.exp(-(since[after] - at) / DELAY)
+        before, reached = at, target
     swing = SWING * np.sin(2 * np.pi * (since - armed_at) / SWING_PERIOD)
     return depth + np.where(since >= armed_at, swing, 0.0)
 
@@ -225,7 +229,7 @@ def _yaw(since: Floats) -> Floats:
 
 
 def _quaternion(roll: Floats, pitch: Floats, yaw: Floats) -> Floats:
-    """Small roll and pitch after a yaw; w, x, y, z in the last axis."""
+    """Return a small roll and pitch after a yaw; w, x, y, z in the last axis."""
     w, z = np.cos(yaw / 2), np.sin(yaw / 2)
     x, y = roll / 2, pitch / 2
     whole = np.stack([w, w * x - z * y, w * y + z * x, z], axis=1)
@@ -272,13 +276,13 @@ def _make_documents(start: float, seconds: float, armed_at: float) -> dict[str, 
 
 
 def _make_thumbnails(chance: np.random.Generator, start: float, seconds: float) -> list[tuple[float, bytes]]:
-    """Water with a little noise, and a yellow card in it where one is shown; times in s, steady clock."""
+    """Return water with a little noise, and a yellow card where one is shown; times in s, steady clock."""
     since = np.arange(0.0, seconds, THUMBNAIL_SECONDS)
     made = []
-    for at, wanted in zip(since.tolist(), _set_point(since).tolist(), strict=True):
+    for at, target in zip(since.tolist(), _set_point(since).tolist(), strict=True):
         height = THUMBNAIL_WIDTH * 3 // 4
         picture = np.full((height, THUMBNAIL_WIDTH, 3), (120, 90, 20), np.uint8)
-        if wanted == DEEP:
+        if target == DEEP:
             picture[36:84, 48:112] = (30, 210, 230)
         picture += chance.integers(0, 12, picture.shape, np.uint8)
         _, jpeg = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 50])
@@ -308,6 +312,8 @@ def _state(start: float, since: float, armed_at: float) -> State:
         epoch=1,
         set_point_default=SHALLOW,
         set_point_detected=DEEP,
+        deepest=3.0,
+        unwatched=30.0,
         steering="none",
         control_rate=10.0,
         vision_rate=4.0,
@@ -323,8 +329,8 @@ def _state(start: float, since: float, armed_at: float) -> State:
                 controller="bang_bang",
                 controllers=[
                     ControllerChoice(
-                        name=one.name,
-                        title=one.title,
+                        name=controller.name,
+                        title=controller.title,
                         gains=[
                             Gain(
                                 name=name,
@@ -334,10 +340,10 @@ def _state(start: float, since: float, armed_at: float) -> State:
                                 unit=limits.unit,
                                 meaning=limits.meaning,
                             )
-                            for name, limits in one.limits.items()
+                            for name, limits in controller.limits.items()
                         ],
                     )
-                    for one in CONTROLLERS["depth"]
+                    for controller in CONTROLLERS["depth"]
                 ],
             )
         ],

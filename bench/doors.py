@@ -1,4 +1,4 @@
-"""Cost and delay of the doors for other programs, and what one that reads nothing does to the others.
+"""Cost and delay of the doors for other programs, and the effect of one that reads nothing on the others.
 
 Each program subscribes to attitude and depth, 100 samples a second of each. One of ROS 2 subscribes to
 pressure in place of depth, which has no time there.
@@ -14,10 +14,11 @@ import psutil
 from bench.connected_programs import ConnectedPrograms, ProgramDoor
 from bench.hub import process
 from bench.processes import core_percent, cpu_seconds
-from bench.ros2_programs import Ros2Door
+from bench.ros2_programs import ZenohDoor
 from bench.websocket_programs import foxglove_door, rosbridge_door
 from server.features.doors.config import DoorsConfig
 from server.platform.authority import Authority
+from server.platform.server_config import ServerConfig
 from server.platform.settings import DataFolder, Settings
 from tests.stack import free_port
 
@@ -32,19 +33,21 @@ _MANY = 10
 
 
 def measure() -> dict[str, float]:
-    """Latency (ms, from the sample to a program that has it) and CPU of each door."""
+    """Return latency (ms, from the sample to a program that has it) and CPU of each door."""
     with tempfile.TemporaryDirectory() as folder:
         ros2 = f"tls/127.0.0.1:{free_port()}"
         settings = Settings(
             data=DataFolder(Path(folder)),
             config=Path("robot.toml"),
-            port=free_port(),
-            sections={DoorsConfig: DoorsConfig(rosbridge=True, foxglove=True, ros2=True, ros2_listen=ros2)},
+            sections={
+                ServerConfig: ServerConfig(port=free_port()),
+                DoorsConfig: DoorsConfig(rosbridge=True, foxglove=True, ros2=True, ros2_listen=ros2),
+            },
         )
         settings.data.run.mkdir()
         Authority(settings).prepare()
         with (
-            process("doors", folder, str(settings.port), "server/page", ros2) as server,
+            process("doors", folder, str(settings.server.port), "server/page", ros2) as server,
             process("source", folder),
         ):
             rosbridge, foxglove = rosbridge_door(settings), foxglove_door(settings)
@@ -55,11 +58,11 @@ def measure() -> dict[str, float]:
             doors: dict[str, ProgramDoor] = {
                 "rosbridge": rosbridge,
                 "foxglove": foxglove,
-                "ros2": Ros2Door(settings),
+                "ros2": ZenohDoor(settings),
             }
             for name, door in doors.items():
-                found = _look_at_one(server, door) | _look_at_many(server, door)
-                figures |= {f"doors.{name}.{figure}": value for figure, value in found.items()}
+                results = _look_at_one(server, door) | _look_at_many(server, door)
+                figures |= {f"doors.{name}.{figure}": value for figure, value in results.items()}
     return figures
 
 
@@ -68,7 +71,7 @@ def _idle(server: psutil.Process) -> float:
 
 
 class _Count:
-    """Sums up times in which programs were measured."""
+    """The sum of the times in which programs were measured."""
 
     def __init__(self, server: psutil.Process) -> None:
         self._server = server
@@ -90,7 +93,7 @@ class _Count:
         self.p95s.append(_p95(latencies))
 
     def figures(self, many: int) -> dict[str, float]:
-        """The figures of so many programs."""
+        """Return the figures of so many programs."""
         return {
             f"latency_ms_p50.{many}": 1000 * median(self._latencies),
             f"latency_ms_p95.{many}": _p95(self._latencies),
@@ -108,7 +111,7 @@ def _look_at_one(server: psutil.Process, door: ProgramDoor) -> dict[str, float]:
 
 
 def _look_at_many(server: psutil.Process, door: ProgramDoor) -> dict[str, float]:
-    """Ten programs, by turns alone and beside an eleventh that reads nothing.
+    """Measure ten programs, by turns alone and beside an eleventh that reads nothing.
 
     A busy computer makes both slower; only what the eleventh does is in the ratio. The ten connect again for
     each turn, since those of WebSockets answer no ping and are disconnected after 40 s.

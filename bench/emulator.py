@@ -10,7 +10,7 @@ _SECONDS = 20.0
 
 
 def measure() -> dict[str, float]:
-    """With the robot's firmware, swimming in still water, nobody at its line."""
+    """Measure the robot's firmware, swimming in still water, nobody at its line."""
     with tempfile.TemporaryDirectory() as folder, start("robot", Path(folder)) as rig:
         rig.board.run(1.0)
         began = time.monotonic()

@@ -21,14 +21,14 @@ import pandas as pd
 from mcap.writer import CompressionType, Writer
 
 from bench.hour import copy_hours
+from robot_runtime.contract.chunks import row_layout
 from server.features.exports.files import write_part
 from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.exports.zip_stream import LEVEL
-from server.features.sessions.chunks import row_layout
-from server.features.sessions.session import find_row
 from server.platform.store import Reader
+from server.recording.session import find_row
 
 
 def measure() -> dict[str, float]:
@@ -52,7 +52,7 @@ def measure() -> dict[str, float]:
 
 
 def _export(session: int, data: Path, kind: Any) -> tuple[float, float]:
-    """s of the processor, and of the wall's clock."""
+    """Return s of the processor, and of the wall's clock."""
     with closing(Reader(data / "mucat.db")) as reader:
         cpu, wall = time.process_time(), time.monotonic()
         row = find_row(reader, session)
@@ -64,7 +64,7 @@ def _export(session: int, data: Path, kind: Any) -> tuple[float, float]:
 
 
 def _write_plain(session: int, data: Path, kind: str) -> float:
-    """s of the processor for writing the rows alone, which are in memory before."""
+    """Return s of the processor for writing the rows alone, which are in memory before."""
     with closing(Reader(data / "mucat.db")) as reader:
         row = find_row(reader, session)
         assert row is not None

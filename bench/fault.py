@@ -6,5 +6,5 @@ _TIMES = 5
 
 
 def measure() -> dict[str, float]:
-    """Some injections of each; `make faults` does a hundred."""
+    """Measure some injections of each fault; `make faults` does a hundred."""
     return injections.figures(faults.measure_all(_TIMES, seed=1), ())

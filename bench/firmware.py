@@ -1,19 +1,16 @@
 """The firmware's stack and timing in ten minutes while the line is full both ways."""
 
-import subprocess
 import tempfile
 from itertools import cycle
 from pathlib import Path
 
 from bench.chip import build_for
-from robot_runtime.contract.packets import Navigation, Start, Status, StatusFlag, encode
+from bench.stack_bound import RAM_BYTES, count_static, section_sizes
+from robot_runtime.contract.packets import Navigation, RequestCalibration, Start, Status, StatusFlag, encode
 from robot_runtime.link.session import NO_BOOT, LinkSession
 from tests.board.host import FIRMWARE
-from tests.board.rig import Rig
+from tests.board.rig import BoardRig
 
-RAM_BYTES = 2048
-"""Of the chip."""
-_SECTIONS_IN_RAM = (".data", ".bss", ".noinit")
 _SECTIONS_IN_FLASH = (".text", ".data")
 
 BAUD = 250_000
@@ -31,7 +28,7 @@ _BITS_PER_BYTE = 10
 
 
 def measure() -> dict[str, float]:
-    """Stack and loop from ten emulated minutes of swimming under full load.
+    """Measure stack and loop in ten emulated minutes of swimming under full load.
 
     At the default baud and, where the name ends in it, at the fastest. The robot is armed and swims. It says
     all it can: its telemetry, and a frame of text at every tick, since there is always a START of another
@@ -53,7 +50,7 @@ def measure() -> dict[str, float]:
 
 
 def _load(elf: Path, baud: int) -> dict[str, float]:
-    with tempfile.TemporaryDirectory() as folder, Rig(elf, Path(folder), baud=baud) as rig:
+    with tempfile.TemporaryDirectory() as folder, BoardRig(elf, Path(folder), baud=baud) as rig:
         host = FloodHost(rig, baud)
         host.arm()
         host.flood(1.0)
@@ -77,7 +74,7 @@ def _load(elf: Path, baud: int) -> dict[str, float]:
 class FloodHost:
     """The product's own session at the port of a paused board."""
 
-    def __init__(self, rig: Rig, baud: int) -> None:
+    def __init__(self, rig: BoardRig, baud: int) -> None:
         self.now = rig.board.stats()["time"]
         self.sent = 0
         self.heard = 0
@@ -92,7 +89,7 @@ class FloodHost:
         self._line_free = self.now
 
     def arm(self) -> None:
-        """START, once the board has heard enough."""
+        """Send START, once the board has heard enough."""
         self._run(_STEADY)
         board = self._session.board
         if board is None:
@@ -101,12 +98,13 @@ class FloodHost:
         self._run(_STEP)
 
     def flood(self, seconds: float) -> None:
-        """Lets time pass with more to send than the line carries."""
+        """Pass time with more to send than the line carries."""
         end = self.now + seconds
         while self.now < end:
             channel = self._session._channel
             for _ in range(len(channel.pending()), _BACKLOG):
                 channel.queue(encode(Start(epoch=next(self._epochs))))
+                channel.queue(encode(RequestCalibration()))
             self._pass(self._fill())
 
     def _run(self, seconds: float) -> None:
@@ -115,7 +113,7 @@ class FloodHost:
             self._pass(self._session.poll(self.now))
 
     def _fill(self) -> bytes:
-        """Bytes that fill the line for a step: the session's, otherwise another command."""
+        """Return bytes that fill the line for a step: the session's, otherwise another command."""
         side = 1.0 if self.now % 2 < 1 else -1.0
         command = Navigation(x=0.5, y=0.0, z=side, roll=0.0, pitch=0.0, yaw=0.5 * side)
         data = b""
@@ -141,20 +139,7 @@ class FloodHost:
                 self.faults |= self.status.faults
 
 
-def count_static(elf: Path) -> int:
-    """Returns the bytes of memory that a program has for itself; the stack gets the rest."""
-    size = _sections(elf)
-    return sum(size.get(name, 0) for name in _SECTIONS_IN_RAM)
-
-
 def count_flash(elf: Path) -> int:
-    """Returns the bytes of a program in the flash memory."""
-    size = _sections(elf)
-    return sum(size.get(name, 0) for name in _SECTIONS_IN_FLASH)
-
-
-def _sections(elf: Path) -> dict[str, int]:
-    command = ["avr-size", "-A", str(elf)]
-    lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
-    words = [line.split() for line in lines if line.startswith(".")]
-    return {name: int(size) for name, size, *_ in words}
+    """Return the bytes of a program in the flash memory."""
+    sizes = section_sizes(elf)
+    return sum(sizes.get(name, 0) for name in _SECTIONS_IN_FLASH)

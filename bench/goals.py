@@ -19,14 +19,14 @@ class Goal:
     work: Work | None = None
 
     def scaled(self, slowness: Slowness) -> "Goal":
-        """Returns the goal of a machine so slow."""
+        """Return the goal of a machine so slow."""
         if self.work is None:
             return self
         factor = slowness.get(self.work, 1.0)
         return Goal(self.limit / factor if self.is_least else self.limit * factor, self.is_least)
 
     def is_met(self, value: float) -> bool:
-        """Returns True for a good enough figure."""
+        """Return True for a good enough figure."""
         return value >= self.limit if self.is_least else value <= self.limit
 
     def __str__(self) -> str:
@@ -49,7 +49,7 @@ def _goodput(name: str) -> dict[str, Goal]:
 
 
 def _fault(name: str, noticed: float, off: float | None = None, rest: float | None = None) -> dict[str, Goal]:
-    """s until a fault is noticed, the motors have no power, and the fins rest."""
+    """Return the goals in s until a fault is noticed, the motors have no power, and the fins rest."""
     limits = {
         f"fault.{name}_ms_max": noticed,
         f"fault.{name}_off_ms_max": off,
@@ -88,9 +88,11 @@ GOALS = {
     **{f"doors.{door}.stalled_ratio": _most(1.5) for door in ("rosbridge", "foxglove", "ros2")},
     "export.csv_1h_ratio": _most(1.3),
     "export.mcap_1h_ratio": _most(1.3),
+    "fly.redraws_per_s": _least(55),
     **_fault("pilot_quiet", 0.5, rest=0.5),
     **_fault("pilot_lost", 3, 3),
     **_fault("server_silent", 5, 5),
+    **_fault("unwatched", 30, 30),
     **_fault("pi_silent", 1.2, **_CHIP),
     **_fault("line_cut", 1, **_CHIP),
     **_fault("board_silent", 1, 1),
@@ -99,6 +101,7 @@ GOALS = {
     **_fault("depth_stale", 0.5, 0.5),
     **_fault("depth_frozen", 0.5, 0.5),
     **_fault("depth_range", 0.5, 0.5),
+    **_fault("too_deep", 0.5, 0.5),
     **_fault("imu_stale", 0.2, 0.2),
     **_fault("imu_frozen", 0.5, 0.5),
     **_fault("capsized", 2, 2),
@@ -106,6 +109,8 @@ GOALS = {
     **_fault("not_rising", 20),
     # Until the motors have no power, 20.5 before: the host's STOP cut it, and no fin turned down.
     **_fault("battery_low", 20.5, 22.0),
+    **_fault("leak", 0.5, 0.3),
+    **_fault("memory_low", 0.5, 0.5),
     **_fault("runtime_killed", _AGAIN, 1.1),
     **_fault("server_killed", _AGAIN),
     **_fault("server_hung", _AGAIN, 5),
@@ -117,7 +122,10 @@ GOALS = {
     "firmware.hostile_missed_ticks": _most(0),
     "firmware.missed_ticks": _most(0),
     "firmware.missed_ticks.500000": _most(0),
-    "firmware.stack_margin_bytes": _least(0),
+    "firmware.stack_margin_bytes": _least(100),
+    # Of the full size, 640 × 480; smaller ones come where the computer has no time.
+    "fly.picture_age_ms_p95": _most(150, "memory"),
+    "fly.picture_hz": _least(14.5),
     "latency.key_to_fin_ms_p95": _most(150),
     "latency.sample_to_page_ms_p95": _most(80),
     "hub.latency_ms_p50.50": _most(15, "python"),

@@ -18,7 +18,7 @@ _BUILT = Path("build/bench_heap")
 
 
 def measure() -> dict[str, float]:
-    """MB by which it would grow in an hour, of four charts of three traces over a minute."""
+    """Return the MB by which it would grow in an hour, of four charts of three traces over a minute."""
     with serve_charts(_BUILT) as (url, data, browser):
         page, devtools = open_charts(browser, url, data, f"{url}/")
         page.wait_for_timeout(1000 * _SETTLE)
@@ -26,7 +26,7 @@ def measure() -> dict[str, float]:
 
 
 def _grow(page: Page, devtools: CDPSession) -> float:
-    """The slope of what is left on the heap after the garbage is gone."""
+    """Return the slope of the heap's size after the garbage is gone."""
     points: list[tuple[float, float]] = []
     began = time.monotonic()
     while time.monotonic() - began < _SECONDS:
@@ -37,7 +37,7 @@ def _grow(page: Page, devtools: CDPSession) -> float:
 
 
 def _read(page: Page, devtools: CDPSession) -> int:
-    """Waits, and returns the bytes on the heap after a collection of garbage."""
+    """Wait, and return the bytes on the heap after a collection of garbage."""
     page.wait_for_timeout(1000 * _EVERY)
     devtools.send("HeapProfiler.collectGarbage")
     return int(devtools.send("Runtime.getHeapUsage")["usedSize"])

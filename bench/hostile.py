@@ -3,12 +3,12 @@
 import tempfile
 from pathlib import Path
 
-from bench.firmware import BAUD, RAM_BYTES, FloodHost, count_flash, count_static
-from bench.stack_bound import stack_bound
+from bench.firmware import BAUD, FloodHost, count_flash
+from bench.stack_bound import RAM_BYTES, count_static, stack_bound
 from robot_runtime.contract.packets import StatusFlag
 from robot_runtime.simulation.boards.emulator_process import FaultKind
 from tests.board.host import FIRMWARE
-from tests.board.rig import Rig
+from tests.board.rig import BoardRig
 
 _SECONDS = 2.0
 _AGAIN = 0.1
@@ -35,7 +35,7 @@ _MISTAKES = (
 
 
 def measure() -> dict[str, float]:
-    """Bytes by the linker and by analysis; stack and loop with each fault and some mistakes in turn.
+    """Return bytes by the linker and by analysis; stack and loop with each fault and some mistakes in turn.
 
     `stack_bound_bytes` is what no program flow exceeds, in the deepest interrupt; `stack_room_bytes` is what
     the memory has left for it. The robot is armed and swims, with the load of the part `firmware`, for two
@@ -58,11 +58,11 @@ def measure() -> dict[str, float]:
 
 
 def _sweep(elf: Path) -> tuple[dict[str, float], int, int]:
-    """Worst loop (us) by fault, missed ticks of all, and the least free stack."""
+    """Return the worst loop (us) by fault, missed ticks of all, and the least free stack."""
     worst: dict[str, float] = {}
     missed, stack_free = 0, RAM_BYTES
     for name, commands, clear in _cases():
-        with tempfile.TemporaryDirectory() as folder, Rig(elf, Path(folder), baud=BAUD) as rig:
+        with tempfile.TemporaryDirectory() as folder, BoardRig(elf, Path(folder), baud=BAUD) as rig:
             host = FloodHost(rig, BAUD)
             host.arm()
             host.flood(0.5)
@@ -87,7 +87,7 @@ def _cases() -> list[tuple[str, list[str], str]]:
         (f"{device}_{kind}", [f"fault {device} {kind}"], f"fault {device} none") for device, kind in _FAULTS
     ]
     mistakes = [
-        (one.partition(":")[0].replace("-", "_"), ["mistake none", f"mistake {one}"], "mistake none")
-        for one in _MISTAKES
+        (mistake.partition(":")[0].replace("-", "_"), ["mistake none", f"mistake {mistake}"], "mistake none")
+        for mistake in _MISTAKES
     ]
     return [*faults, *mistakes]

@@ -13,12 +13,12 @@ from pathlib import Path
 
 from bench.dive import Dive
 from robot_runtime.clock import SimulatedClock
-from server.features.sessions.recorder import PERIOD, Recorder
-from server.features.sessions.session import new_row
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
+from server.recording.recorder import PERIOD, Recorder
+from server.recording.session import new_row
 
 SECONDS = 3600.0
 STARTED_STEADY = 5000.0
@@ -29,21 +29,21 @@ _RECORDED = (1, 3)
 
 
 def measure() -> dict[str, float]:
-    """s of a processor that making and recording an hour takes; the other parts read these hours."""
+    """Return s of a processor that making and recording an hour takes; the other parts read these hours."""
     began = time.process_time()
     _provide_hours()
     return {"store.hour_s": (time.process_time() - began) / _RECORDED[-1]}
 
 
 def copy_hours(data: Path, sessions: int = 1) -> list[int]:
-    """Copies one or three recorded hours into a new data folder. Returns the sessions' numbers."""
+    """Copy one or three recorded hours into a new data folder. Return the sessions' numbers."""
     shared = _provide_hours()
     shutil.copytree(shared / f"{sessions}", data, dirs_exist_ok=True)
     return list(range(1, sessions + 1))
 
 
 def _provide_hours() -> Path:
-    """The folder of the hours, which the first who wants some records."""
+    """Return the folder of the hours; the first caller records them."""
     shared = Path(os.environ[SHARED])
     with (shared / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -62,7 +62,7 @@ def _record_shared(shared: Path) -> None:
 
 
 def record_hour(data: Path, seconds: float = SECONDS, seed: int = 1, name: str = "an hour") -> int:
-    """Record `seconds` of a dive into a data folder that no server uses. Returns the session's number.
+    """Record `seconds` of a dive into a data folder that no server uses. Return the session's number.
 
     Chunks are as long as in real time. The same seed gives the same samples.
     """
@@ -95,9 +95,9 @@ def main() -> None:
     parser.add_argument("data", type=Path, help="data folder; it is made where there is none")
     parser.add_argument("--seconds", type=float, default=SECONDS, help="length of each session")
     parser.add_argument("--sessions", type=int, default=1, help="how many, each with noise of its own")
-    wanted = parser.parse_args()
-    for seed in range(1, wanted.sessions + 1):
-        number = record_hour(wanted.data, wanted.seconds, seed, f"dive {seed}")
+    arguments = parser.parse_args()
+    for seed in range(1, arguments.sessions + 1):
+        number = record_hour(arguments.data, arguments.seconds, seed, f"dive {seed}")
         print(f"session {number}")
 
 

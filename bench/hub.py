@@ -15,7 +15,7 @@ from typing import Self
 import psutil
 
 from bench.hub_ends import TOPICS
-from bench.hub_viewers import OURS, THEIRS, Drain, HealthMonitor, Viewer
+from bench.hub_viewers import OURS, THEIRS, Drain, TimedReading, TimedViewer
 from bench.processes import cpu_seconds
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
@@ -31,7 +31,7 @@ _BEFORE_SECONDS, _STALL_SECONDS = 8.0, 15.0
 _START_SECONDS = 240.0
 _SOCKET_BYTES = 4096
 
-Open = Callable[[], Viewer]
+Open = Callable[[], TimedViewer]
 
 
 @dataclass
@@ -41,14 +41,14 @@ class _Figures:
 
 
 def measure() -> dict[str, float]:
-    """Of 8 topics of 100 samples a second: CPU of the serving process in ms per 1,000 delivered samples, and
-    ms from a sample to a viewer that has it.
+    """Measure 8 topics of 100 samples a second: CPU of the serving process in ms per 1,000 delivered samples,
+    and ms from a sample to a viewer that has it.
 
     foxglove-sdk logs each sample as it is made, in the process that makes them; the server gets them from
     another process, as it does from the runtime. Both serve as many viewers at the same time, and their
     ratio is the median of those of several short times.
     """
-    found = {(who, many): _Figures() for who in ("hub", "foxglove") for many in _VIEWERS}
+    figures = {(who, many): _Figures() for who in ("hub", "foxglove") for many in _VIEWERS}
     with tempfile.TemporaryDirectory() as folder:
         data, port, other = Path(folder), free_port(), free_port()
         DataFolder(data).run.mkdir()
@@ -62,8 +62,8 @@ def measure() -> dict[str, float]:
             wait_for_samples(theirs)
             for many in _VIEWERS:
                 with (
-                    _Look(found["hub", many], server, ours, many) as hub,
-                    _Look(found["foxglove", many], foxglove, theirs, many) as peer,
+                    _Look(figures["hub", many], server, ours, many) as hub,
+                    _Look(figures["foxglove", many], foxglove, theirs, many) as peer,
                 ):
                     sleep(_SETTLE)
                     for _ in range(_ROUNDS):
@@ -73,35 +73,35 @@ def measure() -> dict[str, float]:
                         hub.end()
                         peer.end()
             stalled = _stall(data, port, server)
-    return _summary(found) | stalled
+    return _summary(figures) | stalled
 
 
-def _summary(found: dict[tuple[str, int], _Figures]) -> dict[str, float]:
+def _summary(measured: dict[tuple[str, int], _Figures]) -> dict[str, float]:
     figures = {}
-    for (who, many), one in found.items():
-        percentiles = quantiles(one.latencies, n=100)
-        figures[f"{who}.cpu_ms_per_1000_delivered.{many}"] = median(one.cpu_ms_per_1000)
+    for (who, many), entry in measured.items():
+        percentiles = quantiles(entry.latencies, n=100)
+        figures[f"{who}.cpu_ms_per_1000_delivered.{many}"] = median(entry.cpu_ms_per_1000)
         figures[f"{who}.latency_ms_p50.{many}"] = percentiles[49] * 1000
         figures[f"{who}.latency_ms_p99.{many}"] = percentiles[98] * 1000
     for many in _VIEWERS:
-        ours, theirs = (found[who, many].cpu_ms_per_1000 for who in ("hub", "foxglove"))
+        ours, theirs = (measured[who, many].cpu_ms_per_1000 for who in ("hub", "foxglove"))
         figures[f"hub.ratio_to_foxglove.{many}"] = median(
-            one / other for one, other in zip(ours, theirs, strict=True)
+            own / other for own, other in zip(ours, theirs, strict=True)
         )
     return figures
 
 
 class _Look:
-    """So many viewers of a server: the first is timed, the bytes of the others are counted."""
+    """The viewers of a server: the first is timed, the bytes of the others are counted."""
 
-    def __init__(self, found: _Figures, server: psutil.Process, open_one: Open, many: int) -> None:
-        self._found, self._server = found, server
+    def __init__(self, figures: _Figures, server: psutil.Process, open_one: Open, many: int) -> None:
+        self._figures, self._server = figures, server
         self._open_one, self._many = open_one, many
         self._before = (0, 0.0)
 
     def __enter__(self) -> Self:
         with ExitStack() as opened:
-            self._watch = opened.enter_context(HealthMonitor(self._open_one()))
+            self._watch = opened.enter_context(TimedReading(self._open_one()))
             self._drain = opened.enter_context(Drain(self._open_one, self._many - 1))
             self._opened = opened.pop_all()
         return self
@@ -116,20 +116,20 @@ class _Look:
         self._before = self._drain.bytes, cpu_seconds(self._server)
 
     def end(self) -> None:
-        """Note what was spent since `begin`, and how late each sample was."""
+        """Record the CPU time since `begin`, and the delay of each sample."""
         spent, drained = cpu_seconds(self._server) - self._before[1], self._drain.bytes - self._before[0]
         self._drain.check()
         samples, size, latencies = self._watch.end()
-        self._found.cpu_ms_per_1000.append(spent * 1e6 / (samples * (1 + drained / size)))
-        self._found.latencies += latencies
+        self._figures.cpu_ms_per_1000.append(spent * 1e6 / (samples * (1 + drained / size)))
+        self._figures.latencies += latencies
 
 
 def _stall(data: Path, port: int, server: psutil.Process) -> dict[str, float]:
-    """Ten viewers, then one more that never reads: what that changes for the ten, and in memory."""
+    """Measure ten viewers, then an eleventh that never reads: its effect on the ten, and on memory."""
     figures = {}
-    with HealthMonitor(open_viewer(data, port)) as watch, Drain(lambda: open_viewer(data, port), 9):
+    with TimedReading(open_viewer(data, port)) as watch, Drain(lambda: open_viewer(data, port), 9):
         sleep(_SETTLE)
-        stalled: list[Viewer] = []
+        stalled: list[TimedViewer] = []
         for name in ("before", "stalled"):
             if name == "stalled":
                 stalled.append(open_viewer(data, port, receive_bytes=_SOCKET_BYTES))
@@ -138,31 +138,33 @@ def _stall(data: Path, port: int, server: psutil.Process) -> dict[str, float]:
             sleep(_BEFORE_SECONDS if name == "before" else _STALL_SECONDS)
             figures[f"hub.{name}_latency_ms_p50"] = quantiles(watch.end()[2], n=100)[49] * 1000
             figures[f"hub.{name}_growth_mb"] = (server.memory_info().rss - memory) / 1e6
-        for one in stalled:
-            one.close()
+        for viewer in stalled:
+            viewer.close()
     return figures
 
 
-def open_viewer(data: Path, port: int, receive_bytes: int | None = None) -> Viewer:
+def open_viewer(data: Path, port: int, receive_bytes: int | None = None) -> TimedViewer:
     headers = shell_headers(DataFolder(data)) | {"origin": f"http://127.0.0.1:{port}"}
-    return Viewer(f"ws://127.0.0.1:{port}/api/live", OURS, headers, receive_bytes)
+    return TimedViewer(f"ws://127.0.0.1:{port}/api/live", OURS, headers, receive_bytes)
 
 
-def _theirs(port: int) -> Viewer:
-    viewer = Viewer(f"ws://127.0.0.1:{port}", THEIRS, {"sec-websocket-protocol": "foxglove.sdk.v1"})
+def _theirs(port: int) -> TimedViewer:
+    viewer = TimedViewer(f"ws://127.0.0.1:{port}", THEIRS, {"sec-websocket-protocol": "foxglove.sdk.v1"})
     channels: list[int] = []
     for message in viewer.messages():
-        if isinstance(message, str) and (said := json.loads(message))["op"] == "advertise":
-            channels += [one["id"] for one in said["channels"] if one["encoding"] == "row"]
+        if isinstance(message, str) and (advertisement := json.loads(message))["op"] == "advertise":
+            channels += [
+                channel["id"] for channel in advertisement["channels"] if channel["encoding"] == "row"
+            ]
         if len(channels) == len(TOPICS):
             break
-    wanted = [{"id": place, "channelId": channel} for place, channel in enumerate(channels)]
-    viewer.send(json.dumps({"op": "subscribe", "subscriptions": wanted}))
+    subscriptions = [{"id": number, "channelId": channel} for number, channel in enumerate(channels)]
+    viewer.send(json.dumps({"op": "subscribe", "subscriptions": subscriptions}))
     return viewer
 
 
 def wait_for_samples(open_one: Open) -> None:
-    """Wait until a viewer gets samples. Raises OSError where none does."""
+    """Wait until a viewer gets samples. Raise OSError where none does."""
     end = monotonic() + _START_SECONDS
     while True:
         try:

@@ -26,6 +26,7 @@ from server.features.doors.config import DoorsConfig
 from server.http.listener import open_socket
 from server.http.serving import make_server
 from server.platform.schema import prepare
+from server.platform.server_config import ServerConfig
 from server.platform.settings import DataFolder, Settings
 
 TOPICS = ("imu", "depth", "beacon", "motor", "status", "navigation", "control", "link")
@@ -37,7 +38,7 @@ _VARIANTS = 997
 
 
 def _records(name: str) -> list[bytes]:
-    """The records of a topic, one after the other: of IMU and fins noise, with a spike now and then."""
+    """Return the records of a topic, one after the other: IMU and fins have noise and a few spikes."""
     size = BY_NAME[name].row_bytes - TIME.size
     if name not in ("imu", "motor"):
         return [bytes(size)]
@@ -45,7 +46,7 @@ def _records(name: str) -> list[bytes]:
     values = [[chance.gauss(0, 1500) for _ in range(8)] for _ in range(_VARIANTS)]
     values[_VARIANTS // 2] = [30_000.0] * 8
     stamp, rest = Struct("<I"), Struct("<8h")
-    return [(stamp.pack(0) + rest.pack(*map(int, one))).ljust(size, b"\0") for one in values]
+    return [(stamp.pack(0) + rest.pack(*map(int, value))).ljust(size, b"\0") for value in values]
 
 
 _RECORDS = {name: _records(name) for name in TOPICS}
@@ -62,7 +63,8 @@ def _every_tick(do: Callable[[float], None], ended: threading.Event) -> None:
 async def _serve(
     data: Path, port: int, page: Path, ended: threading.Event, doors: DoorsConfig | None = None
 ) -> None:
-    settings = Settings(data=DataFolder(data), config=Path("robot.toml"), port=port, page=page)
+    settings = Settings(data=DataFolder(data), config=Path("robot.toml"), page=page)
+    settings = settings.with_section(ServerConfig(port=port))
     if doors is not None:
         settings = settings.with_section(doors)
     prepare(settings.data)

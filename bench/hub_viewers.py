@@ -26,7 +26,7 @@ Times = Callable[[str | bytes], list[float]]
 
 
 def OURS(message: str | bytes) -> list[float]:  # noqa: N802 - one of two
-    """Blocks, one after the other."""
+    """Yield each sample of blocks, one after the other."""
     times: list[float] = []
     if isinstance(message, str):
         return times
@@ -42,13 +42,13 @@ def OURS(message: str | bytes) -> list[float]:  # noqa: N802 - one of two
 
 
 def THEIRS(message: str | bytes) -> list[float]:  # noqa: N802 - one of two
-    """foxglove.sdk.v1: an opcode, the subscription (u32), the time of logging (u64), the payload."""
+    """Yield a sample of foxglove.sdk.v1: opcode, subscription (u32), time of logging (u64), payload."""
     if isinstance(message, str) or message[0] != 1:
         return []
     return [TIME.unpack_from(message, 13)[0]]
 
 
-class Viewer:
+class TimedViewer:
     """One WebSocket. Raises OSError where it cannot be opened."""
 
     def __init__(
@@ -74,7 +74,7 @@ class Viewer:
                 raise OSError(f"{url} cannot be opened: {self._protocol.handshake_exc}")
 
     def messages(self) -> Iterator[str | bytes]:
-        """The messages until none comes any more."""
+        """Yield the messages until none comes any more."""
         while True:
             while self._ready:
                 yield self._ready.pop(0)
@@ -90,7 +90,7 @@ class Viewer:
         self._flush()
 
     def close(self) -> None:
-        """End it; whoever waits for its messages gets no more."""
+        """Close the viewer; whoever waits for its messages gets no more."""
         self.socket.close()
 
     def _receive(self) -> bool:
@@ -114,10 +114,10 @@ class Viewer:
             self.socket.sendall(data)
 
 
-class HealthMonitor:
+class TimedReading:
     """A viewer that is timed."""
 
-    def __init__(self, viewer: Viewer) -> None:
+    def __init__(self, viewer: TimedViewer) -> None:
         self._viewer = viewer
         self._samples = self._bytes = 0
         self._latencies: list[float] = []
@@ -139,7 +139,7 @@ class HealthMonitor:
         self._samples, self._bytes, self._latencies = 0, 0, []
 
     def end(self) -> tuple[int, int, list[float]]:
-        """Samples since `begin`, their bytes, and how late each was, s."""
+        """Return the samples since `begin`, their bytes, and each one's delay, s."""
         return self._samples, self._bytes, self._latencies
 
     def _run(self) -> None:
@@ -154,16 +154,16 @@ class HealthMonitor:
 
 
 class Drain:
-    """Viewers that are read now and then, all that there is at once; only the bytes are counted.
+    """Viewers that are read now and then, each time to the end; only the bytes are counted.
 
     Who is not read from the beginning is sent away: each is read while the next are opened.
     """
 
-    def __init__(self, open_one: Callable[[], Viewer], many: int) -> None:
+    def __init__(self, open_one: Callable[[], TimedViewer], many: int) -> None:
         self.bytes = 0
         self._sent_away = False
         self._open_one, self._many = open_one, many
-        self._viewers: list[Viewer] = []
+        self._viewers: list[TimedViewer] = []
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
 
@@ -182,16 +182,16 @@ class Drain:
             viewer.close()
 
     def check(self) -> None:
-        """Raise ConnectionError where one of them was sent away."""
+        """Raise ConnectionError where a viewer was disconnected."""
         if self._sent_away:
             raise ConnectionError("a viewer was sent away; is the computer too busy?")
 
     def _run(self) -> None:
         while not self._ended.wait(_DRAIN_EVERY):
             sockets = [viewer.socket for viewer in self._viewers]
-            for one in select.select(sockets, [], [], 0)[0]:
+            for ready in select.select(sockets, [], [], 0)[0]:
                 try:
-                    data = one.recv(1 << 20)
+                    data = ready.recv(1 << 20)
                 except ConnectionError:
                     data = b""
                 if not data:

@@ -46,7 +46,7 @@ class _Found:
 
 
 def _record(craft: Craft, first_seed: int) -> list[SessionStreams]:
-    """The streams of the sea trials of this craft."""
+    """Return the streams of the sea trials of this craft."""
     trial = (files(scenario) / "shipped" / "sea_trial.toml").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory(prefix="mucat-") as name:
         folder, data = Path(name), DataFolder(Path(name) / "data")
@@ -61,35 +61,35 @@ def _record(craft: Craft, first_seed: int) -> list[SessionStreams]:
             if status:
                 raise MeasurementError(f"sea trial {seed} ended with {status}")
         store = Reader(data.database)
-        return [read_streams(store, one) for one in range(1, _TRIALS + 2)]
+        return [read_streams(store, session) for session in range(1, _TRIALS + 2)]
 
 
 def _identify(number: int) -> _Found:
     true = random_craft(number)
     trials = _record(true, 100 * number)
     began = time.process_time()
-    found = identify(trials[:-1], trials[-1], Craft())
+    identification = identify(trials[:-1], trials[-1], Craft())
     seconds = time.process_time() - began
     errors: dict[str, list[float]] = {"well": [], "weakly": [], "no": []}
     distances = []
-    for one in found.results:
-        value = one.quantity.value(true)
-        size = abs(value - 1) if one.quantity.name == "buoyancy" else abs(value)
-        errors[one.seen].append(abs(one.value - value) / size)
-        if one.deviation is not None:
-            distances.append(abs(one.value - value) / one.deviation)
-    assert found.prediction is not None
-    gain = found.prediction.improvement
+    for result in identification.results:
+        value = result.quantity.value(true)
+        size = abs(value - 1) if result.quantity.name == "buoyancy" else abs(value)
+        errors[result.seen].append(abs(result.value - value) / size)
+        if result.deviation is not None:
+            distances.append(abs(result.value - value) / result.deviation)
+    assert identification.prediction is not None
+    gain = identification.prediction.improvement
     return _Found(errors["well"], errors["weakly"], distances, len(errors["no"]), gain, seconds)
 
 
 def measure() -> dict[str, float]:
-    """The worst of several crafts, and the medians of their numbers."""
+    """Return the worst figures of several crafts, and the medians of their numbers."""
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         runs = list(pool.map(_identify, range(1, _CRAFTS + 1)))
     well = [error for run in runs for error in run.errors]
     weak = [error for run in runs for error in run.weak]
-    distances = [one for run in runs for one in run.distances]
+    distances = [distance for run in runs for distance in run.distances]
     return {
         "identify.error_percent_max": 100 * max(well),
         "identify.error_percent_median": 100 * float(np.median(well)),

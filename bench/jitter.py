@@ -1,4 +1,4 @@
-"""Jitter of the control loop: how its times are read, and what makes the computer busy meanwhile."""
+"""Jitter of the control loop: the reading of its times, and the load of the computer meanwhile."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
@@ -8,10 +8,10 @@ from statistics import quantiles
 
 from playwright.sync_api import sync_playwright
 
-from server.features.sessions.recording import Recording
-from server.features.sessions.session import find_row
+from server.library.content import Recording
 from server.platform.settings import DataFolder
 from server.platform.store import Reader
+from server.recording.session import find_row
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
@@ -22,7 +22,7 @@ _PERIOD = 0.1
 
 @contextmanager
 def busy(stack: Stack, hour: int) -> Iterator[None]:
-    """Exports the session `hour` and renders the scene. Raises RuntimeError where that ends too soon."""
+    """Export the session `hour` and render the scene. Raise RuntimeError where that ends too soon."""
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
         page = browser.new_page(viewport={"width": 1440, "height": 900})
@@ -30,8 +30,8 @@ def busy(stack: Stack, hour: int) -> Iterator[None]:
         page.goto(stack.url)
         page.get_by_role("button", name="bystander").click()
         for kind in ("mcap", "csv", "csv-grid") * _ROUNDS:
-            wanted = {"session": hour, "format": kind}
-            stack.api.post("/exports", json=wanted).raise_for_status()
+            request = {"session": hour, "format": kind}
+            stack.api.post("/exports", json=request).raise_for_status()
         yield
         unfinished = [job for job in stack.api.get("/exports").json() if job["state"] != "done"]
         browser.close()
@@ -40,15 +40,15 @@ def busy(stack: Stack, hour: int) -> Iterator[None]:
 
 
 def figures(data: Path, session: int, phases: Mapping[str, tuple[float, float]]) -> dict[str, float]:
-    """ms by which the time between two ticks differs from their period, p50 and p999 of each phase."""
+    """Return the ms by which the time between ticks differs from its period, p50 and p999 of each phase."""
     with closing(Reader(DataFolder(data).database)) as store:
         row = find_row(store, session)
         assert row is not None
         times, _ = Recording(store, row).columns("control", [])
-    found = {}
+    figures = {}
     for name, (start, end) in phases.items():
-        ticks = [float(one) for one in times if start <= one <= end]
+        ticks = [float(moment) for moment in times if start <= moment <= end]
         errors = [1000 * abs(b - a - _PERIOD) for a, b in pairwise(ticks)]
-        found[f"jitter.control_ms_p50.{name}"] = quantiles(errors, n=1000)[499]
-        found[f"jitter.control_ms_p999.{name}"] = quantiles(errors, n=1000)[998]
-    return found
+        figures[f"jitter.control_ms_p50.{name}"] = quantiles(errors, n=1000)[499]
+        figures[f"jitter.control_ms_p999.{name}"] = quantiles(errors, n=1000)[998]
+    return figures

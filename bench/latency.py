@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect, sync_playwright
 from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient
-from tests.board.host import Robot, start
+from tests.board.host import EmulatedRobot, start
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
@@ -91,10 +91,10 @@ _KEYS_DOWN = """
 
 
 def measure() -> dict[str, float]:
-    """ms from the chip's stamp of a depth until the chart with it is drawn (`sample_to_page`), and until the
-    digits that show it are (`sample_to_digits`, which change eight times a second at most); the first without
-    the median time that the sample takes to leave the chip's UART (`uart_to_page`), which is measured in
-    emulated time; and from a key to the H-bridges' commands.
+    """Return the ms from the chip's stamp of a depth until the chart with it is drawn (`sample_to_page`), and
+    until the digits that show it are (`sample_to_digits`, which change eight times a second at most); the
+    first without the median time that the sample takes to leave the chip's UART (`uart_to_page`), which is
+    measured in emulated time; and from a key to the H-bridges' commands.
     """
     topic = {"id": BY_NAME["depth"].id, "bytes": BY_NAME["depth"].row_bytes, "chart": _CHART}
     with (
@@ -111,8 +111,8 @@ def measure() -> dict[str, float]:
         with EmulatorClient(Path(folder) / "run/board.sock") as board:
             page.evaluate("() => { globalThis.charted.length = 0; globalThis.printed.length = 0; }")
             before = _started(board)
-            wanted = _ROWS_PER_SECOND * _SECONDS
-            page.wait_for_function(f"() => globalThis.charted.length > {wanted}", timeout=2000 * _SECONDS)
+            count = _ROWS_PER_SECOND * _SECONDS
+            page.wait_for_function(f"() => globalThis.charted.length > {count}", timeout=2000 * _SECONDS)
             charted, printed = page.evaluate("() => [globalThis.charted, globalThis.printed]")
             after = _started(board)
             keys = _press_keys(page, board)
@@ -132,7 +132,7 @@ def measure() -> dict[str, float]:
 
 
 def _ages(drawn: list[list[float]], started: float) -> list[float]:
-    """ms from each stamp (s of the board's clock) until it was drawn (s since 1970)."""
+    """Return the ms from each stamp (s of the board's clock) until it was drawn (s since 1970)."""
     return [(when - started - stamp) * 1000 for stamp, when in drawn]
 
 
@@ -141,21 +141,21 @@ def _percentiles(name: str, values: list[float]) -> dict[str, float]:
 
 
 def _line_ms() -> float:
-    """Median ms from a depth's stamp until its frame's last byte has left the UART, of a swimming robot."""
+    """Return the median ms from a depth's stamp until its frame has left the UART of a swimming robot."""
     delays = []
     with tempfile.TemporaryDirectory() as folder, start("robot", Path(folder)) as rig:
-        robot = Robot(rig)
+        robot = EmulatedRobot(rig)
         robot.listen(0.3)
         robot.arm()
         for _ in range(round(_LINE_SECONDS / _LINE_STEP)):
             heard = robot.listen(_LINE_STEP)
             now = rig.board.stats()["time"]
-            delays += [(now - one.time / 1e6) * 1000 for one in heard if isinstance(one, Depth)]
+            delays += [(now - packet.time / 1e6) * 1000 for packet in heard if isinstance(packet, Depth)]
     return median(delays)
 
 
 def _press_keys(page: Page, board: EmulatorClient) -> list[float]:
-    """ms from each press, at a random moment of the control loop's and the chip's ticks, to a fin's drive."""
+    """Return the ms from each press, at a random moment of both loops' ticks, to a fin's drive."""
     chance = random.Random(1)
     page.get_by_role("button", name="Manual", exact=True).click()
     page.get_by_role("button", name="Hold to arm").hover()
@@ -163,7 +163,7 @@ def _press_keys(page: Page, board: EmulatorClient) -> list[float]:
     expect(page.get_by_role("region", name="Drive")).to_be_visible(timeout=10_000)
     page.mouse.up()
     page.evaluate(_KEYS_DOWN)
-    found = []
+    delays = []
     for press in range(_PRESSES):
         _wait_for_rest(board)
         time.sleep(chance.uniform(0.0, 0.1))
@@ -171,9 +171,9 @@ def _press_keys(page: Page, board: EmulatorClient) -> list[float]:
         page.keyboard.down(key)
         moved = _wait_for_drive(board)
         page.keyboard.up(key)
-        found.append((moved - page.evaluate("() => globalThis.keys.at(-1)")) * 1000)
+        delays.append((moved - page.evaluate("() => globalThis.keys.at(-1)")) * 1000)
     page.keyboard.press("Escape")
-    return found
+    return delays
 
 
 def _wait_for_rest(board: EmulatorClient) -> None:
@@ -185,7 +185,7 @@ def _wait_for_rest(board: EmulatorClient) -> None:
 
 
 def _wait_for_drive(board: EmulatorClient) -> float:
-    """Time of the first fin's movement, s since 1970."""
+    """Return the time of the first fin's movement, s since 1970."""
     end = time.monotonic() + _LATE
     while not any(board.fins().drives):
         if time.monotonic() > end:
@@ -195,5 +195,5 @@ def _wait_for_drive(board: EmulatorClient) -> float:
 
 
 def _started(board: EmulatorClient) -> float:
-    """Time at which the board's clock stood at zero, s since 1970; at most a millisecond late."""
+    """Return the time at which the board's clock stood at zero, s since 1970; at most a millisecond late."""
     return min(time.time() - board.stats()["time"] for _ in range(50))

@@ -8,7 +8,7 @@ _NOISY_BAUD = 115_200
 
 
 def measure() -> dict[str, float]:
-    """Payload bytes of the slower direction as a share of baud/10; nothing lost, doubled or out of order."""
+    """Return the slower direction's payload bytes as a share of baud/10; nothing is lost or doubled."""
     figures = {f"link.goodput.{baud}.{size}": goodput(baud, size) for baud in _BAUDS for size in _PAYLOADS}
     figures["link.goodput_ber_1e-4"] = goodput(_NOISY_BAUD, 18, 1e-4)
     figures["link.goodput_ber_1e-3"] = goodput(_NOISY_BAUD, 18, 1e-3)

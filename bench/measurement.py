@@ -11,13 +11,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from bench.calibration import Slowness, mean, measure_slowness
-from bench.parts import PARTS, Part
+from bench.parts import PARTS, BenchPart
 
 _LOGS = Path("build/bench_logs")
 
 
 class MeasurementError(Exception):
-    """The part could not be measured; the text says why, and where all is that its process said."""
+    """The part could not be measured; the text has the reason, and the path of its process's output."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +29,8 @@ class Measurement:
     took: float
 
 
-def measure(part: Part) -> Measurement:
-    """Measures in another process, which leaves nothing to the next. Raises MeasurementError."""
+def measure(part: BenchPart) -> Measurement:
+    """Measure in another process, which leaves nothing to the next. Raise MeasurementError."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "figures.json"
         command = [sys.executable, "-m", "bench.measurement", part.name, str(file)]
@@ -44,7 +44,7 @@ def measure(part: Part) -> Measurement:
         return Measurement(**json.loads(file.read_text()))
 
 
-def _measure_here(part: Part) -> Measurement:
+def _measure_here(part: BenchPart) -> Measurement:
     began = time.monotonic()
     before = {} if part.is_emulated else measure_slowness(part.draws)
     values = importlib.import_module(f"bench.{part.name}").measure()

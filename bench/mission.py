@@ -12,6 +12,7 @@ import sys
 import time
 import tracemalloc
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -24,6 +25,7 @@ from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.missions.library import shipped_missions
 from robot_runtime.missions.node import MissionRunner
 from robot_runtime.transport.outbox import Outbox
+from robot_runtime.vision.node import VisionNode
 
 STEPS = 30
 TICK = 0.1
@@ -40,7 +42,7 @@ TEXT = (
 
 
 def measure() -> dict[str, float]:
-    """µs of a tick, kB of a running mission, ms and MB of the first load, processor s of a trial."""
+    """Return µs of a tick, kB of a running mission, ms and MB of the first load, processor s of a trial."""
     first = _ask("load")
     return {
         "mission.tick_us": _tick(),
@@ -58,17 +60,18 @@ class _Swimming:
         self.clock, config = SimulatedClock(), Config()
         line = LinkDriver("", config.link.baud, self.clock, 1, lambda _: None, lambda: None)
         outbox = Outbox(lambda *_: None, lambda _: False)
+        open_vision = partial(VisionNode, config.vision, self.clock)
         self.runner: MissionRunner = Core(
-            config, self.clock, "", line, outbox, watched=lambda _: False
+            config, self.clock, "", line, outbox, watched=lambda _: False, open_vision=open_vision
         ).missions
 
     def begin(self) -> None:
-        """Loads and begins it."""
+        """Load and begin the mission."""
         self.runner.prepare(self.runner.load(TEXT, {}))
         self.tick(20)
 
     def tick(self, count: int) -> None:
-        """So many ticks in automatic."""
+        """Run so many ticks in automatic."""
         for _ in range(count):
             self.runner.tick("automatic")
             self.clock.forward(TICK)
@@ -77,15 +80,15 @@ class _Swimming:
 def _tick() -> float:
     swimming = _Swimming()
     swimming.begin()
-    found = []
+    durations = []
     for _ in range(ROUNDS):
         began = time.process_time()
         swimming.tick(TICKS)
-        found.append((time.process_time() - began) / TICKS * 1e6)
+        durations.append((time.process_time() - began) / TICKS * 1e6)
     assert swimming.runner.active
     assert swimming.runner._run is not None
     assert len(list(swimming.runner._run.document.root.walk())) == STEPS
-    return median(found)
+    return median(durations)
 
 
 def _try() -> float:
@@ -95,12 +98,12 @@ def _try() -> float:
     done = subprocess.run(command, input=json.dumps(asked), capture_output=True, text=True, check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     results = [json.loads(line) for line in done.stdout.splitlines()]
-    assert [one["phase"] for one in results] == ["succeeded"] * SEEDS
+    assert [result["phase"] for result in results] == ["succeeded"] * SEEDS
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def _ask(what: str) -> dict[str, Any]:
-    """Measured in a process of its own, which has loaded nothing yet."""
+    """Measure the first load in a process of its own, which has loaded nothing yet."""
     done = subprocess.run(
         [sys.executable, "-m", "bench.mission", what], capture_output=True, text=True, check=True
     )
@@ -116,7 +119,7 @@ def _load() -> dict[str, float]:
 
 
 def _memory() -> dict[str, float]:
-    """A second mission, as the first brings the library."""
+    """Return the memory of a second mission, since the first one loads the library."""
     _Swimming().begin()
     swimming = _Swimming()
     gc.collect()

@@ -7,5 +7,5 @@ _TIMES = 2
 
 
 def measure() -> dict[str, float]:
-    """Some outages of each; `make faults` causes a hundred."""
+    """Measure some outages of each process; `make faults` causes a hundred."""
     return injections.figures({}, outages.measure(_TIMES, seed=1))

@@ -47,7 +47,7 @@ _WINDOWS = {"": "", ".10s": "?seconds=10"}
 
 
 def measure() -> dict[str, float]:
-    """Of four charts of three traces: how often they are all drawn anew in a second, ms of the main thread's
+    """Measure four charts of three traces: redraws of all of them in a second, ms of the main thread's
     own processor time for each redraw, all else included; kB of the first view, compressed.
     """
     figures: dict[str, float] = {}
@@ -63,7 +63,7 @@ def measure() -> dict[str, float]:
 
 @contextmanager
 def serve_charts(built: Path) -> Iterator[tuple[str, Path, Browser]]:
-    """Serves the charts, built into this folder, with samples: their address, its data folder, a browser."""
+    """Serve the charts, built into this folder, with samples; yield address, data folder and browser."""
     build = ["npx", "vite", "build", "--config", "bench/vite.config.ts", "--logLevel", "error"]
     build += ["--outDir", str(built.absolute())]
     subprocess.run(build, cwd="frontend", check=True)
@@ -83,7 +83,7 @@ def serve_charts(built: Path) -> Iterator[tuple[str, Path, Browser]]:
 
 
 def _first_view() -> dict[str, float]:
-    """kB, compressed, of what the first view asks for: the page with what it links, and with its font."""
+    """Return kB, compressed, of the first view: the page, the files that it links, and its font."""
     index = (_PAGE / "index.html").read_text()
     code = [_PAGE / name for name in re.findall(r"(?:src|href)=\"/(assets/[^\"]+)\"", index)]
     bundle = sum(map(_sent, [_PAGE / "index.html", *code]))
@@ -97,7 +97,7 @@ def _sent(file: Path) -> int:
 
 
 def open_charts(browser: Browser, url: str, data: Path, address: str) -> tuple[Page, CDPSession]:
-    """A page with drawn charts, and the developer's tools of it."""
+    """Return a page with drawn charts, and the developer's tools of it."""
     page = browser.new_page(viewport=_SIZE)  # type: ignore[arg-type]
     sign_in(page.context, url, data)
     page.add_init_script(_COUNT)
@@ -118,5 +118,7 @@ def _draw(page: Page, devtools: CDPSession) -> dict[str, float]:
 
 
 def _busy(devtools: CDPSession) -> float:
-    metrics = {one["name"]: one["value"] for one in devtools.send("Performance.getMetrics")["metrics"]}
+    metrics = {
+        metric["name"]: metric["value"] for metric in devtools.send("Performance.getMetrics")["metrics"]
+    }
     return float(metrics["TaskDuration"])

@@ -12,7 +12,7 @@ _FLAP = 2 * pi * 1.3
 
 
 def measure() -> dict[str, float]:
-    """Four flapping fins, sensors read every 5 ms, as the emulated board asks for it."""
+    """Measure four flapping fins, with sensors read every 5 ms as by the emulated board."""
     simulator = Simulator(SimulationParameters(), seed=1)
     began = time.monotonic()
     for step in range(_STEPS):

@@ -8,13 +8,13 @@ import psutil
 
 
 def cpu_seconds(process: psutil.Process) -> float:
-    """s on a processor. The scheduler's own count: the usual one sees only who runs when the clock ticks."""
+    """Return s on a processor by the scheduler's count: the usual one only samples at clock ticks."""
     tasks = Path(f"/proc/{process.pid}/task").iterdir()
     return sum(int((task / "schedstat").read_text().split()[0]) for task in tasks) * 1e-9
 
 
 def core_percent(processes: Mapping[str, psutil.Process], seconds: float) -> dict[str, float]:
-    """Waits that long. Returns the processor time that each process used meanwhile, in % of a core."""
+    """Wait that long. Return the processor time that each process used meanwhile, in % of a core."""
     before = {name: cpu_seconds(process) for name, process in processes.items()}
     time.sleep(seconds)
     return {
@@ -23,7 +23,7 @@ def core_percent(processes: Mapping[str, psutil.Process], seconds: float) -> dic
 
 
 def anonymous_mb(process: psutil.Process) -> float:
-    """MB that cannot be dropped for want of memory; of a page that processes share, each has its part."""
+    """Return the MB that cannot be dropped for want of memory; processes share a page's MB evenly."""
     for line in Path(f"/proc/{process.pid}/smaps_rollup").read_text().splitlines():
         name, _, rest = line.partition(":")
         if name == "Pss_Anon":

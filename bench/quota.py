@@ -18,11 +18,11 @@ from sqlmodel import col, select
 
 from bench.processes import anonymous_mb, core_percent
 from bench.real_robot import LiveViewer, RealRobot
-from server.features.sessions.recording import Recording
-from server.features.sessions.session import find_row
+from server.library.content import Recording
 from server.platform.models import Gap
 from server.platform.settings import DataFolder
 from server.platform.store import Reader
+from server.recording.session import find_row
 
 _CPU, _MEMORY = Path("/sys/fs/cgroup/cpu"), Path("/sys/fs/cgroup/memory")
 _PERIOD_US, _QUOTA_US = 25_000, 1_000
@@ -34,7 +34,7 @@ _TICK = 0.1
 
 
 def measure() -> dict[str, float]:
-    """Of a minute with a viewer and a recording, in the lean profile: ms by which the time between two
+    """Measure a minute with a viewer and a recording, in the lean profile: ms by which the time between two
     control ticks differs from their period, ticks left out, samples missing in the recording, messages that
     told the viewer of samples left out, alarms; and % of a core, and MB of anonymous memory. `natively` is
     the same without a quota.
@@ -45,12 +45,12 @@ def measure() -> dict[str, float]:
             session = robot.api.post("/sessions", json={"name": "bench"}).raise_for_status().json()["id"]
             robot.arm()
             with _groups(robot, limited=name == "quota"):
-                found = _dive(robot)
+                dive = _dive(robot)
             robot.api.post("/robot/stop").raise_for_status()
             # The disarmed robot's recording is complete before it is read.
             robot.api.post(f"/sessions/{session}/stop")
-            found |= _recorded(robot.data, session, found.pop("began"))
-        figures |= {f"quota.{figure}.{name}": value for figure, value in found.items()}
+            dive |= _recorded(robot.data, session, dive.pop("began"))
+        figures |= {f"quota.{figure}.{name}": value for figure, value in dive.items()}
     return figures
 
 
@@ -81,7 +81,7 @@ def _recorded(data: Path, session: int, began: float) -> dict[str, float]:
             for event in Recording(store, row).documents("event", began, began + _SECONDS)
             if event["severity"] == "alarm"
         ]
-    ticks = [float(one) for one in times if began <= one <= began + _SECONDS]
+    ticks = [float(moment) for moment in times if began <= moment <= began + _SECONDS]
     percentiles = quantiles([1000 * abs(b - a - _TICK) for a, b in pairwise(ticks)], n=100)
     return {
         "jitter_ms_p50": percentiles[49],
@@ -94,7 +94,7 @@ def _recorded(data: Path, session: int, began: float) -> dict[str, float]:
 
 @contextmanager
 def _groups(robot: RealRobot, *, limited: bool) -> Iterator[None]:
-    """Puts the robot's processes into control groups. Raises OSError where they cannot be made."""
+    """Put the robot's processes into control groups. Raise OSError where they cannot be made."""
     if not limited:
         yield
         return
@@ -108,8 +108,8 @@ def _groups(robot: RealRobot, *, limited: bool) -> Iterator[None]:
         for home, names in homes.items():
             (parent / home).mkdir()
             (parent / home / "cpu.shares").write_text(str(_SHARES[home]))
-            for one in names:
-                pid = str(robot.robot_processes[one].pid)
+            for name in names:
+                pid = str(robot.robot_processes[name].pid)
                 (parent / home / "cgroup.procs").write_text(pid)
                 (memory / "cgroup.procs").write_text(pid)
         (parent / "cpu.cfs_period_us").write_text(str(_PERIOD_US))
@@ -120,7 +120,7 @@ def _groups(robot: RealRobot, *, limited: bool) -> Iterator[None]:
 
 
 def _release(parent: Path, memory: Path) -> None:
-    """Gives the processes back, and removes the groups."""
+    """Return the processes to their groups, and remove these groups."""
     for group, root in ((parent / "runtime", _CPU), (parent / "server", _CPU), (memory, _MEMORY)):
         if group.exists():
             for pid in (group / "cgroup.procs").read_text().split():

@@ -1,4 +1,4 @@
-"""Runs the software as on a robot: mode robot, its serial port the line of an emulated board beside it."""
+"""The software as on a robot: in mode robot, with an emulated board at its serial port."""
 
 import subprocess
 import sys
@@ -71,14 +71,14 @@ class RealRobot(Stack):
 
     @property
     def robot_processes(self) -> dict[str, psutil.Process]:
-        """The processes that a robot has, by name."""
+        """The processes of a robot, by name."""
         parts = {name: self.part(name) for name in ("runtime", "vision")}
         return {"runner": self.process, "server": self.server, **parts}
 
 
 @contextmanager
 def board_outside(folder: Path, baud: int) -> Iterator[tuple[str, dict[str, psutil.Process]]]:
-    """An emulated board and its water; yields the serial port, and the processes by name."""
+    """Run an emulated board and its water; yield the serial port, and the processes by name."""
     build_firmware(BUILD, baud)
     elf = firmware_path(BUILD, baud, ".elf")
     tty, socket = folder / "tty", folder / "board.sock"
@@ -95,7 +95,7 @@ def board_outside(folder: Path, baud: int) -> Iterator[tuple[str, dict[str, psut
 
 
 def store_picture(file: Path) -> None:
-    """Writes the picture of a yellow card."""
+    """Write the picture of a yellow card."""
     camera = CardCamera(320, 240, SteadyClock(), lambda: None)
     cv2.imwrite(str(file), camera.draw(0.0, make_card("yellow", {})))
 
@@ -118,7 +118,7 @@ class LiveViewer:
         self._thread.start()
 
     def close(self) -> None:
-        """Leave."""
+        """Disconnect."""
         self._socket.close()
         self._thread.join()
 

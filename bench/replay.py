@@ -22,8 +22,8 @@ _SLIDER = "Time since the start of the session"
 
 
 def measure() -> dict[str, float]:
-    """ms from a seek to a random moment until all of its answer is there, by HTTP; and until the page shows
-    the depth of that moment, with the whole robot running beside."""
+    """Return ms from a seek to a random moment until all of its answer is there, by HTTP; and until the page
+    shows the depth of that moment, with the whole robot running beside."""
     with tempfile.TemporaryDirectory() as folder:
         data = Path(folder)
         (session,) = copy_hours(data)
@@ -58,7 +58,7 @@ def _seek(api: httpx.Client, session: int) -> list[float]:
 
 
 def _seek_in(page: Page) -> list[float]:
-    """The dive's console says a line every five seconds: its newest one tells which moment is shown."""
+    """Return the ms of a seek; the dive's console has a line every five seconds, which shows the moment."""
     chance = random.Random(2)
     page.get_by_label(_SLIDER).wait_for()
     delays = []

@@ -17,7 +17,7 @@ PROOFS = Path("docs/develop/proofs")
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class MeasuredFigure:
     """A measured value."""
 
     value: float
@@ -43,59 +43,59 @@ class Results:
     """All figures that were measured last, and the parts without any; each change is written at once."""
 
     def __init__(self, file: Path = FILE) -> None:
-        """Reads the file. One of another form counts as empty."""
+        """Read the file. One of another form counts as empty."""
         stored = json.loads(file.read_text()) if file.exists() else {}
         self._file = file
         self._commit, self._machine = commit(), machine()
-        self.figures: dict[str, Figure] = {}
+        self.figures: dict[str, MeasuredFigure] = {}
         self.failures: dict[str, Failure] = {}
         if {"figures", "failures"} <= stored.keys():
-            self.figures = {name: Figure(**one) for name, one in stored["figures"].items()}
-            self.failures = {part: Failure(**one) for part, one in stored["failures"].items()}
+            self.figures = {name: MeasuredFigure(**values) for name, values in stored["figures"].items()}
+            self.failures = {part: Failure(**values) for part, values in stored["failures"].items()}
 
     def add(self, part: str, values: Mapping[str, float], slowness: Slowness) -> None:
-        """Replaces the figures of this part."""
+        """Replace the figures of this part."""
         self._forget(part)
         now = _now()
         self.figures |= {
-            name: Figure(value, part, now, self._commit, self._machine, slowness)
+            name: MeasuredFigure(value, part, now, self._commit, self._machine, slowness)
             for name, value in values.items()
         }
         self._write()
 
     def fail(self, part: str, reason: str) -> None:
-        """Removes the figures of this part, which has none now."""
+        """Remove the figures of this part, which has none now."""
         self._forget(part)
         self.failures[part] = Failure(reason, _now(), self._commit)
         self._write()
 
     def _forget(self, part: str) -> None:
         self.failures.pop(part, None)
-        self.figures = {name: one for name, one in self.figures.items() if one.part != part}
+        self.figures = {name: figure for name, figure in self.figures.items() if figure.part != part}
 
     def _write(self) -> None:
         whole: dict[str, Any] = {
-            "figures": {name: asdict(one) for name, one in sorted(self.figures.items())},
-            "failures": {part: asdict(one) for part, one in sorted(self.failures.items())},
+            "figures": {name: asdict(figure) for name, figure in sorted(self.figures.items())},
+            "failures": {part: asdict(failure) for part, failure in sorted(self.failures.items())},
         }
         self._file.parent.mkdir(parents=True, exist_ok=True)
         self._file.write_text(json.dumps(whole, indent=2) + "\n")
 
 
 def commit() -> str:
-    """Returns the commit of the working tree, with a `+` where a file other than a proof's table differs."""
+    """Return the commit of the working tree, with a `+` where a file other than a proof's table differs."""
     head = _git("rev-parse", "--short=10", "HEAD").stdout.strip()
     # A proof that stores its table would make all that was proven before it count as proven of other code.
     changed = head and _git("diff", "--quiet", "HEAD", "--", ".", f":(exclude){PROOFS}").returncode
     return (head or "unknown") + ("+" if changed else "")
 
 
-def _git(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(["git", *words], capture_output=True, text=True, check=False)
+def _git(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["git", *arguments], capture_output=True, text=True, check=False)
 
 
 def machine() -> str:
-    """Returns the processor's name and the number of cores."""
+    """Return the processor's name and the number of cores."""
     model = next(
         (line.partition(":")[2].strip() for line in _processor_lines() if line.startswith("model name")),
         platform.machine(),

@@ -19,7 +19,7 @@ from server.features.doors.config import DoorsConfig
 from server.http.sign_in.tokens import digest
 from server.platform.authority import Authority
 from server.platform.settings import Settings
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 
 _TOPICS = ("imu/data", "pressure")
 """Those whose messages begin with the time of their sample."""
@@ -31,9 +31,9 @@ _SECONDS = 30.0
 
 
 def issue(settings: Settings, name: str) -> Path:
-    """The folder of a new certificate for a program that reads, from the server that runs with `settings`."""
+    """Return the folder of a new certificate for a reading program, from the server with `settings`."""
     with httpx.Client(
-        base_url=f"http://127.0.0.1:{settings.port}/api", auth=ShellToken(settings.data)
+        base_url=f"http://127.0.0.1:{settings.server.port}/api", auth=ShellAuth(settings.data)
     ) as api:
         answer = api.post("/access/tokens", json={"name": name, "scope": "read"})
     folder = settings.data.path / name
@@ -41,7 +41,7 @@ def issue(settings: Settings, name: str) -> Path:
     return folder
 
 
-class Ros2Door:
+class ZenohDoor:
     """The door of a server: opens programs, each of which subscribes to attitude and pressure."""
 
     def __init__(self, settings: Settings) -> None:
@@ -55,7 +55,7 @@ class Ros2Door:
         topics: Sequence[str] = _TOPICS,
         address: tuple[str, int] | None = None,
     ) -> "zenoh.Session":
-        """Open a session, at another address perhaps. Raises OSError."""
+        """Open a session, at another address perhaps. Raise OSError."""
         while len(self._certificates) <= number // _PROGRAMS_OF_CERTIFICATE:
             self._certificates.append(issue(self._settings, f"program-{len(self._certificates)}"))
         host, port = address or self._settings.section(DoorsConfig).ros2_address
@@ -70,7 +70,7 @@ class Ros2Door:
 
     @contextmanager
     def programs(self, many: int) -> Iterator["Ros2Programs"]:
-        """So many programs, once each of them gets samples."""
+        """Yield so many programs, once each of them gets samples."""
         programs = Ros2Programs(many)
         with ExitStack() as opened:
             for number in range(many):
@@ -81,9 +81,9 @@ class Ros2Door:
 
     @contextmanager
     def stalled(self) -> Iterator[None]:
-        """One more program, which subscribes to more and whose connection nobody reads.
+        """Run another program, which subscribes to more and whose connection nobody reads.
 
-        Raises ConnectionError where it is not disconnected.
+        Raise ConnectionError where it is not disconnected.
         """
         came = threading.Event()
         with _Relay(self._settings.section(DoorsConfig).ros2_address) as relay:
@@ -101,7 +101,7 @@ class Ros2Door:
 
 
 class Ros2Programs:
-    """Counts the messages of programs; those of the first are timed."""
+    """The messages of programs, counted; those of the first are timed."""
 
     def __init__(self, many: int) -> None:
         self._counts = [0] * many
@@ -109,7 +109,7 @@ class Ros2Programs:
         self._latencies: list[float] = []
 
     def receiver(self, number: int) -> Callable[[zenoh.Sample], None]:
-        """Takes the messages of a program, in Zenoh's thread."""
+        """Take the messages of a program, in Zenoh's thread."""
 
         def count(_: zenoh.Sample) -> None:
             self._counts[number] += 1
@@ -123,7 +123,7 @@ class Ros2Programs:
         return count if number else look
 
     def wait(self) -> None:
-        """Wait until each has a message. Raises ConnectionError."""
+        """Wait until each has a message. Raise ConnectionError."""
         end = monotonic() + _SECONDS
         while not all(self._counts):
             if monotonic() > end:
@@ -135,12 +135,12 @@ class Ros2Programs:
         self._begun, self._latencies = sum(self._counts), []
 
     def end(self) -> tuple[list[float], float]:
-        """The delay of each message of the first program since `begin`, s, and the number of all."""
+        """Return the delay of each message of the first program since `begin`, s, and the number of all."""
         return self._latencies, sum(self._counts) - self._begun
 
 
 class _Relay:
-    """Passes the bytes of one connection on; to the program only while `reading` is set."""
+    """A relay of the bytes of one connection; to the program only while `reading` is set."""
 
     def __init__(self, door: tuple[str, int]) -> None:
         self.reading = threading.Event()
@@ -162,7 +162,7 @@ class _Relay:
         self._listener.close()
 
     def require_end(self) -> None:
-        """Read what is left. Raises ConnectionError where the door has not ended the connection."""
+        """Read to the end. Raise ConnectionError where the door has not ended the connection."""
         self.reading.set()
         if not self._ended.wait(END_SECONDS):
             raise ConnectionError("a program that reads nothing is still connected")
@@ -173,14 +173,14 @@ class _Relay:
             there = [program]
             while not self._closed.is_set():
                 sources = [*there, door] if self.reading.is_set() else there
-                for one in select.select(sources, [], [], 0.05)[0]:
+                for ready in select.select(sources, [], [], 0.05)[0]:
                     try:
-                        data = one.recv(65_536)
+                        data = ready.recv(65_536)
                     except OSError:
                         data = b""
-                    if data and (one is program or there):
-                        (door if one is program else program).sendall(data)
-                    elif not data and one is program:
+                    if data and (ready is program or there):
+                        (door if ready is program else program).sendall(data)
+                    elif not data and ready is program:
                         there = []  # Zenoh leaves after 10 s without a message; the connection stays
                     elif not data:
                         self._ended.set()

@@ -32,7 +32,7 @@ SAMPLES: dict[str, tuple[FramingName, Direction, str]] = {
 
 
 def main() -> int:
-    """Exit status 0 once all that was asked for is written."""
+    """Run the tests. Return the exit status 0 once all requested runs are written."""
     parser = argparse.ArgumentParser(prog="python -m bench.samples", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"one of {', '.join(SAMPLES)}; all without")
     names = parser.parse_args().names
@@ -81,7 +81,7 @@ def _run(name: str, lab: EmulatedLab) -> dict[str, Any]:
 
 
 def _write(path: Path, run: dict[str, Any]) -> None:
-    """A line a cell: they are compared by people."""
+    """Write a line for each cell, since people compare them."""
     cells = ",\n".join("  " + json.dumps(cell, ensure_ascii=False) for cell in run["cells"])
     head = json.dumps({**run, "cells": []}, indent=1, ensure_ascii=False)
     path.write_text(head.replace('"cells": []', f'"cells": [\n{cells}\n ]') + "\n", encoding="utf-8")

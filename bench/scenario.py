@@ -20,14 +20,14 @@ _SCENARIO = Path(robot_runtime.experiments.scenario.__file__).parent / "shipped/
 
 class _Deaf:
     def blocks(self, data: bytes) -> None:
-        """Nothing is made of it."""
+        """Ignore the blocks."""
 
     def event(self, event: str, **more: Any) -> None:
-        """Nor of this."""
+        """Ignore the event."""
 
 
 def measure() -> dict[str, float]:
-    """Physics, firmware and control, no camera: depth is held in a current, and later in waves."""
+    """Measure physics, firmware and control, no camera: depth is held in a current, and later in waves."""
     host, host_wall = _speeds("host", 60.0)
     board, board_wall = _speeds("emulated", 20.0)
     return {
@@ -39,7 +39,7 @@ def measure() -> dict[str, float]:
 
 
 def _speeds(board: str, duration: float) -> tuple[float, float]:
-    """By the processor's time, and by the wall's."""
+    """Return the speeds by the processor's time, and by the wall's."""
     whole = read_scenario(_SCENARIO.read_text())
     events = tuple(event for event in whole.events if event.at <= duration)
     run = ScenarioRun(replace(whole, duration=duration, events=events), boards()[board], _Deaf())
@@ -50,5 +50,5 @@ def _speeds(board: str, duration: float) -> tuple[float, float]:
 
 
 def _processor_time() -> float:
-    """s of this process and of its children that have ended."""
+    """Return the processor s of this process and of its children that have ended."""
     return sum(os.times()[:4])

@@ -6,7 +6,7 @@ from pathlib import Path
 from statistics import quantiles
 
 from robot_runtime.contract.packets import Navigation
-from tests.board.host import TICK, Robot, start
+from tests.board.host import TICK, EmulatedRobot, start
 
 _SAMPLES = 400
 _STEP = 0.0001
@@ -16,7 +16,7 @@ _STILL_WITHIN = 300
 
 
 def measure() -> dict[str, float]:
-    """ms from handing NAVIGATION to the port until an H-bridge is written another drive; 250000 baud.
+    """Return ms from handing NAVIGATION to the port until an H-bridge is written another drive; 250000 baud.
 
     The robot is armed and sends its telemetry; its fins rest, with all drives zero. The command is full down
     or full up in turn, which turns all fins round: their wanted angles move by more than the dead zone of
@@ -26,7 +26,7 @@ def measure() -> dict[str, float]:
     """
     chance = random.Random(1)
     with tempfile.TemporaryDirectory() as folder, start("robot", Path(folder)) as rig:
-        robot = Robot(rig)
+        robot = EmulatedRobot(rig)
         robot.listen(0.3)
         robot.arm()
         delays = []
@@ -46,7 +46,7 @@ def _navigation(z: float) -> Navigation:
     return Navigation(x=0.0, y=0.0, z=z, roll=0.0, pitch=0.0, yaw=0.0)
 
 
-def _rest(robot: Robot) -> None:
+def _rest(robot: EmulatedRobot) -> None:
     """Command nothing until the fins rest where they point, and no motor has been driven for some ticks."""
     still = 0
     for _ in range(_STILL_WITHIN):
@@ -57,7 +57,7 @@ def _rest(robot: Robot) -> None:
     raise RuntimeError("the fins do not come to rest")
 
 
-def _until_driven(robot: Robot) -> float:
+def _until_driven(robot: EmulatedRobot) -> float:
     passed = 0.0
     while not any(robot.board.fins().drives):
         if passed > _LIMIT:

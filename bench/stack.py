@@ -17,9 +17,9 @@ _JITTER_SECONDS = 100.0
 
 
 def measure() -> dict[str, float]:
-    """As on a robot: CPU in percent of one core over half a minute, and at its end MB of memory, resident and
-    anonymous. With the emulated board: ms by which the time between two control ticks differs from their
-    period, idle and while exporting and rendering.
+    """Measure as on a robot: CPU in percent of one core over half a minute, and at its end MB of memory,
+    resident and anonymous. With the emulated board: ms by which the time between two control ticks differs
+    from their period, idle and while exporting and rendering.
     """
     return _load() | _jitter()
 
@@ -67,7 +67,7 @@ def _jitter() -> dict[str, float]:
 
 
 def _phase(began: float) -> tuple[float, float]:
-    """Waits for the end of a phase that began then; returns its times."""
+    """Wait for the end of a phase that began at `begin`; return its times."""
     end = began + _JITTER_SECONDS
     time.sleep(max(end - time.monotonic(), 0.0))
     return began, end

@@ -18,7 +18,7 @@ from robot_runtime.places import BUILD
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
 from server.platform.settings import DataFolder
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 from tests.stack import Stack, free_port
 
 _ROUNDS = 3
@@ -32,8 +32,8 @@ _CONFIG = '[robot]\nmode = "robot"\n[link]\nport = "{port}"\nbaud = {baud}\n[vis
 
 
 def measure() -> dict[str, float]:
-    """s from the command until every part is well, the median of some starts; s of a robot's services, as
-    systemd starts them, to the page and to the linked board, and of processor time until both are there.
+    """Return s from the command until every part is well, the median of some starts; s of a robot's services,
+    as systemd starts them, to the page and to the linked board, and of processor time until both are there.
 
     The figures of `quota` are of the same start with 1/25 of a core, where a control group can be made.
     """
@@ -55,24 +55,24 @@ def _start_services(name: str, enter: Callable[[], None]) -> dict[str, float]:
     """Start runtime and server, whose processes call `enter` first; the board is outside."""
     build_firmware(BUILD, _BAUD)
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
-        place = Path(folder)
-        tty, data = place / "tty", place / "data"
-        config, port = place / "robot.toml", free_port()
-        with EmulatorProcess(BUILD / "board", firmware_path(BUILD, _BAUD, ".elf"), tty, place / "socket"):
+        path = Path(folder)
+        tty, data = path / "tty", path / "data"
+        config, port = path / "robot.toml", free_port()
+        with EmulatorProcess(BUILD / "board", firmware_path(BUILD, _BAUD, ".elf"), tty, path / "socket"):
             config.write_text(_CONFIG.format(port=tty, baud=_BAUD))
             where = ["--config", str(config), "--data", str(data)]
             began = time.monotonic()
-            runtime = _run(["runtime", *where], enter, place / "runtime.log")
-            server = _run(["run", "--external-runtime", "--port", str(port), *where], enter, place / "log")
+            runtime = _run(["runtime", *where], enter, path / "runtime.log")
+            server = _run(["run", "--external-runtime", "--port", str(port), *where], enter, path / "log")
             try:
                 page = _wait(lambda: _has_page(port)) - began
                 linked = _wait(lambda: _is_linked(port, DataFolder(data))) - began
-                spent = sum(_spent(one) for one in (server, runtime))
+                spent = sum(_spent(process) for process in (server, runtime))
             finally:
-                for one in (server, runtime):
-                    one.terminate()
-                for one in (server, runtime):
-                    one.wait(_PATIENCE)
+                for process in (server, runtime):
+                    process.terminate()
+                for process in (server, runtime):
+                    process.wait(_PATIENCE)
     return {
         f"start.{name}_page_s": page,
         f"start.{name}_linked_s": linked,
@@ -82,13 +82,13 @@ def _start_services(name: str, enter: Callable[[], None]) -> dict[str, float]:
 
 def _spent(service: subprocess.Popen[bytes]) -> float:
     process = psutil.Process(service.pid)
-    return sum(cpu_seconds(one) for one in (process, *process.children(recursive=True)))
+    return sum(cpu_seconds(member) for member in (process, *process.children(recursive=True)))
 
 
-def _run(words: list[str], enter: Callable[[], None], log: Path) -> subprocess.Popen[bytes]:
+def _run(arguments: list[str], enter: Callable[[], None], log: Path) -> subprocess.Popen[bytes]:
     program = str(Path(sys.executable).with_name("mucat"))
     with log.open("wb") as file:
-        return subprocess.Popen([program, *words], stdout=file, stderr=file, preexec_fn=enter)
+        return subprocess.Popen([program, *arguments], stdout=file, stderr=file, preexec_fn=enter)
 
 
 def _wait(condition: Callable[[], bool]) -> float:
@@ -106,13 +106,13 @@ def _has_page(port: int) -> bool:
 
 
 def _is_linked(port: int, data: DataFolder) -> bool:
-    health = httpx.get(f"http://127.0.0.1:{port}/api/health", timeout=_PATIENCE, auth=ShellToken(data)).json()
+    health = httpx.get(f"http://127.0.0.1:{port}/api/health", timeout=_PATIENCE, auth=ShellAuth(data)).json()
     return any(part["name"] == "link" and part["state"] == "ok" for part in health["parts"])
 
 
 @contextmanager
 def _quota() -> Iterator[Callable[[], None]]:
-    """Yields what puts the process that calls it into the control group. Raises OSError."""
+    """Yield the function that puts its process into the control group. Raise OSError."""
     _GROUP.mkdir(exist_ok=True)
     try:
         (_GROUP / "cpu.cfs_period_us").write_text(str(_PERIOD_US))

@@ -9,18 +9,18 @@ from bench.dive import Dive
 from bench.hour import CONFIG, STARTED_STEADY
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import Block
-from server.features.sessions.recorder import PERIOD, Recorder
-from server.features.sessions.session import new_row
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
+from server.recording.recorder import PERIOD, Recorder
+from server.recording.session import new_row
 
 SECONDS = 300.0
 
 
 def measure() -> dict[str, float]:
-    """Everything that the robot sends in five minutes at full rate, as fast as it is taken."""
+    """Record everything that the robot sends in five minutes at full rate, as fast as possible."""
     dive = Dive(STARTED_STEADY, SECONDS, 1)
     steps = round(SECONDS / PERIOD)
     batches = [list(dive.until(STARTED_STEADY + (step + 1) * PERIOD)) for step in range(steps)]

@@ -10,7 +10,7 @@ from robot_runtime.control.controllers import CONTROLLERS
 from server.features.tuning.rules import propose
 from server.features.tuning.schemas import MeasuredLimitCycle
 from tests.runtime.control.flight import Flight
-from tests.server.features.tuning.rig import Rig
+from tests.server.features.tuning.rig import TuningRig
 
 BOARD = "host"
 AMPLITUDES = (0.3, 0.5, 0.8)
@@ -21,9 +21,9 @@ SHOWN = ("overshoot", "settling_near", "rise_time", "steady_swing", "steady_erro
 
 
 def measure() -> dict[str, float]:
-    """Figures of the depth's PID by one rule, from a relay experiment on the emulated robot."""
+    """Return figures of the depth's PID by one rule, from a relay experiment on the emulated robot."""
     cycle = _relay(AMPLITUDE)
-    gains = {one.rule: one.gains for one in propose("depth", cycle, {})}[RULE]
+    gains = {proposal.rule: proposal.gains for proposal in propose("depth", cycle, {})}[RULE]
     figures = _step("pid", gains)
     return {
         "tuning.ultimate_gain": cycle.ultimate_gain,
@@ -37,10 +37,10 @@ def measure() -> dict[str, float]:
 def main() -> None:
     """Print both tables."""
     cycles = {amplitude: _relay(amplitude) for amplitude in AMPLITUDES}
-    for amplitude, one in cycles.items():
+    for amplitude, cycle in cycles.items():
         print(
-            f"| ±{100 * amplitude:.0f} % | {one.period:.2f} s | ±{100 * one.swing:.1f} cm | "
-            f"{100 * one.bias:.0f} % | {100 * one.asymmetry:.0f} % | {one.ultimate_gain:.1f} 1/m |"
+            f"| ±{100 * amplitude:.0f} % | {cycle.period:.2f} s | ±{100 * cycle.swing:.1f} cm | "
+            f"{100 * cycle.bias:.0f} % | {100 * cycle.asymmetry:.0f} % | {cycle.ultimate_gain:.1f} 1/m |"
         )
     for kind in CONTROLLERS["depth"]:
         _print_row(kind.title, kind.name, {})
@@ -50,12 +50,12 @@ def main() -> None:
 
 def _relay(amplitude: float) -> MeasuredLimitCycle:
     with Flight(BOARD) as flight:
-        return Rig(flight).relay(amplitude)
+        return TuningRig(flight).relay(amplitude)
 
 
 def _step(controller: str, gains: Mapping[str, float]) -> dict[str, float | None]:
     with Flight(BOARD) as flight:
-        rig = Rig(flight)
+        rig = TuningRig(flight)
         rig.use(controller, dict(gains))
         return rig.step(FROM, TO, SECONDS)
 
@@ -63,8 +63,8 @@ def _step(controller: str, gains: Mapping[str, float]) -> dict[str, float | None
 def _print_row(title: str, controller: str, gains: Mapping[str, float]) -> None:
     figures = _step(controller, gains)
     shown = ["–" if (value := figures[name]) is None else f"{value:.3g}" for name in SHOWN]
-    said = ", ".join(f"{name} {value:.3g}" for name, value in gains.items())
-    print(f"| {title} | {said} | {' | '.join(shown)} |", flush=True)
+    text = ", ".join(f"{name} {value:.3g}" for name, value in gains.items())
+    print(f"| {title} | {text} | {' | '.join(shown)} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -85,17 +85,17 @@ class _Attitudes:
         self._sensor = sensor
 
     def blocks(self, data: bytes) -> None:
-        """Stores heading, pitch and roll, and the sensor's depth."""
+        """Store heading, pitch and roll, and the sensor's depth."""
         for time, truth, depth in read_truth(data, self._sensor):
             self.samples.append((time, euler_angles(truth.attitude), depth))
 
     def event(self, event: str, **more: Any) -> None:
-        """Checks that no command was refused."""
+        """Check that no command was refused."""
         assert event != "ended" or more["problem"] is None
 
 
 def perform(setup: Setup, robot: SimulationParameters, seed: int) -> list[Turn]:
-    """Runs both steps of the loop."""
+    """Run both steps of the loop."""
     gains = "".join(f"{name} = {value}\n" for name, value in setup.gains.items())
     events = [
         f'at = {ARMED}\ndo = "arm"\n',
@@ -106,7 +106,7 @@ def perform(setup: Setup, robot: SimulationParameters, seed: int) -> list[Turn]:
         f'name = "turns"\ntitle = "Turns"\nduration = {FIRST + STEP * len(setup.steps)}\nseed = {seed}\n'
         f'[scene]\nkind = "natural"\ndepth = 5\n'
         f'[control]\ncontroller = "{setup.depth}"\nset_point = {DEPTH}\n'
-    ) + "".join(f"[[events]]\n{one}" for one in events)
+    ) + "".join(f"[[events]]\n{event}" for event in events)
     taken = _Attitudes(robot.pressure_position)
     scenario = replace(read_scenario(text), robot=robot)
     ScenarioRun(scenario, boards()["host"], taken).perform(lambda _: {})
@@ -142,7 +142,7 @@ def _judge(part: list[tuple[float, float, float]]) -> Turn:
 
 
 def main() -> None:
-    """Prints both tables."""
+    """Print both tables."""
     robots = variants()
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         nominal = {
@@ -158,17 +158,17 @@ def main() -> None:
         for name, run in nominal.items():
             turns = run.result()
             columns = (
-                [f"{one.near:.1f}" if one.near < STEP - 0.5 else "never" for one in turns],
-                [f"{one.crossing:.1f}" for one in turns],
-                [f"{one.oscillation:.1f}" for one in turns],
-                [f"{100 * one.depth:.1f}" for one in turns],
+                [f"{turn.near:.1f}" if turn.near < STEP - 0.5 else "never" for turn in turns],
+                [f"{turn.crossing:.1f}" for turn in turns],
+                [f"{turn.oscillation:.1f}" for turn in turns],
+                [f"{100 * turn.depth:.1f}" for turn in turns],
             )
-            print(f"| {name} | " + " | ".join(", ".join(one) for one in columns) + " |", flush=True)
-        turns = [one for run in tilted for one in run.result()]
-    times = sorted(one.near for one in turns)
+            print(f"| {name} | " + " | ".join(", ".join(column) for column in columns) + " |", flush=True)
+        turns = [turn for run in tilted for turn in run.result()]
+    times = sorted(turn.near for turn in turns)
     print(f"\n{len(turns)} turns by tilted fins: half within 10° after {median(times):.1f} s")
     print("the longest: " + ", ".join(f"{time:.1f}" for time in times[-6:]) + " s")
-    print(f"depth within {100 * max(one.depth for one in turns):.1f} cm")
+    print(f"depth within {100 * max(turn.depth for turn in turns):.1f} cm")
 
 
 if __name__ == "__main__":

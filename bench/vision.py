@@ -37,7 +37,7 @@ _SETTINGS: dict[str, dict[str, Any]] = {
 
 
 def measure() -> dict[str, float]:
-    """Median ms of a core for a search with default settings, with more of them, and with nothing in sight.
+    """Return the median ms of a core for a search with default settings, more settings, and nothing in sight.
 
     Latency is from the moment when a picture was taken to the control tick with another set point, over the
     running robot at 30 Hz with the card camera at 640 × 480, whose drawing counts as the exposure does.
@@ -74,12 +74,12 @@ def _latencies() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         config = Path(folder) / "robot.toml"
         text = Path("robot.toml").read_text().replace('camera = "scene"', 'camera = "card"')
-        for name, before, wanted in (
+        for name, before, value in (
             ("width", 320, _SIZE[0]),
             ("height", 240, _SIZE[1]),
             ("rate", 4.0, _RATE),
         ):
-            text = text.replace(f"{name} = {before}", f"{name} = {wanted}")
+            text = text.replace(f"{name} = {before}", f"{name} = {value}")
         config.write_text(text)
         data = Path(folder) / "data"
         runtime = f"unixsock-stream/{data}/run/runtime.sock"
@@ -109,7 +109,7 @@ def _figures(ticks: list[Block], looks: list[Block]) -> dict[str, float]:
     ]
     ages = []
     for (_, before), (when, after) in pairwise(rows):
-        causes = [taken for told, taken, there in turns if told <= when and there == (after > before)]
+        causes = [taken for reported, taken, there in turns if reported <= when and there == (after > before)]
         if after != before and causes:
             ages.append(1000 * (when - causes[-1]))
     if len(ages) < _CHANGES / 2:

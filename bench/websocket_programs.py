@@ -8,7 +8,7 @@ from time import monotonic, sleep
 
 from bench.connected_programs import END_SECONDS, steady_time
 from bench.hub_ends import TOPICS
-from bench.hub_viewers import Drain, HealthMonitor, Viewer
+from bench.hub_viewers import Drain, TimedReading, TimedViewer
 from server.platform.settings import Settings
 from tests.shell import shell_headers
 
@@ -16,7 +16,7 @@ _START_SECONDS = 240.0
 _FOXGLOVE = Struct("<BIQ")
 """Before a message: an opcode, the subscription, the time (ns)."""
 
-Open = Callable[[bool], Viewer]
+Open = Callable[[bool], TimedViewer]
 """Opens a program that subscribes to attitude and depth, or with True to all topics."""
 
 
@@ -27,7 +27,7 @@ class WebSocketDoor:
         self._open_one = open_one
 
     def wait(self) -> None:
-        """Wait until a program gets samples. Raises OSError where none does."""
+        """Wait until a program gets samples. Raise OSError where none does."""
         end = monotonic() + _START_SECONDS
         while True:
             try:
@@ -41,18 +41,18 @@ class WebSocketDoor:
 
     @contextmanager
     def programs(self, many: int) -> Iterator["WebSocketPrograms"]:
-        """So many programs."""
+        """Return so many programs."""
         with (
-            HealthMonitor(self._open_one(False)) as timed,
+            TimedReading(self._open_one(False)) as timed,
             Drain(lambda: self._open_one(False), many - 1) as drain,
         ):
             yield WebSocketPrograms(timed, drain)
 
     @contextmanager
     def stalled(self) -> Iterator[None]:
-        """One more program, which subscribes to more and reads nothing.
+        """Run another program, which subscribes to more and reads nothing.
 
-        Raises ConnectionError where it is not disconnected.
+        Raise ConnectionError where it is not disconnected.
         """
         stalled = self._open_one(True)
         yield
@@ -64,9 +64,9 @@ class WebSocketDoor:
 
 
 class WebSocketPrograms:
-    """Counts the messages of programs; those of the first are timed, and the bytes of the others counted."""
+    """The messages of programs: those of the first are timed, the bytes of the others counted."""
 
-    def __init__(self, timed: HealthMonitor, drain: Drain) -> None:
+    def __init__(self, timed: TimedReading, drain: Drain) -> None:
         self._timed, self._drain = timed, drain
         self._drained = 0
 
@@ -76,9 +76,9 @@ class WebSocketPrograms:
         self._drained = self._drain.bytes
 
     def end(self) -> tuple[list[float], float]:
-        """The delay of each message of the first since `begin`, s, and the number of all.
+        """Return the delay of each message of the first since `begin`, s, and the number of all.
 
-        Raises ConnectionError where one was disconnected.
+        Raise ConnectionError where one was disconnected.
         """
         samples, size, latencies = self._timed.end()
         drained = self._drain.bytes - self._drained
@@ -87,10 +87,10 @@ class WebSocketPrograms:
 
 
 def rosbridge_door(settings: Settings) -> WebSocketDoor:
-    """The door of rosbridge."""
+    """Return the door of rosbridge."""
 
-    def open_one(all_topics: bool) -> Viewer:
-        viewer = Viewer(_address(settings, "rosbridge"), _stamps, shell_headers(settings.data))
+    def open_one(all_topics: bool) -> TimedViewer:
+        viewer = TimedViewer(_address(settings, "rosbridge"), _stamps, shell_headers(settings.data))
         more = [f"/mucat/{topic}" for topic in TOPICS if topic != "depth"] if all_topics else []
         for topic in ("/imu/data", "/mucat/depth", *more):
             viewer.send(json.dumps({"op": "subscribe", "topic": topic}))
@@ -100,14 +100,14 @@ def rosbridge_door(settings: Settings) -> WebSocketDoor:
 
 
 def foxglove_door(settings: Settings) -> WebSocketDoor:
-    """The door of Foxglove."""
+    """Return the door of Foxglove."""
 
-    def open_one(all_topics: bool) -> Viewer:
+    def open_one(all_topics: bool) -> TimedViewer:
         headers = shell_headers(settings.data) | {"sec-websocket-protocol": "foxglove.websocket.v1"}
-        viewer = Viewer(_address(settings, "foxglove"), _times, headers)
+        viewer = TimedViewer(_address(settings, "foxglove"), _times, headers)
         topics = TOPICS if all_topics else ("imu", "depth")
         channels = _channels(viewer)
-        asked = [{"id": place, "channelId": channels[f"/{one}"]} for place, one in enumerate(topics)]
+        asked = [{"id": number, "channelId": channels[f"/{topic}"]} for number, topic in enumerate(topics)]
         viewer.send(json.dumps({"op": "subscribe", "subscriptions": asked}))
         return viewer
 
@@ -115,22 +115,22 @@ def foxglove_door(settings: Settings) -> WebSocketDoor:
 
 
 def _address(settings: Settings, door: str) -> str:
-    return f"ws://127.0.0.1:{settings.port}/{door}"
+    return f"ws://127.0.0.1:{settings.server.port}/{door}"
 
 
-def _channels(viewer: Viewer) -> dict[str, int]:
-    """The numbers of the channels. Raises OSError where the connection ends before."""
+def _channels(viewer: TimedViewer) -> dict[str, int]:
+    """Return the numbers of the channels. Raise OSError where the connection ends before."""
     for message in viewer.messages():
-        if isinstance(message, str) and (said := json.loads(message))["op"] == "advertise":
-            return {one["topic"]: one["id"] for one in said["channels"]}
+        if isinstance(message, str) and (advertisement := json.loads(message))["op"] == "advertise":
+            return {channel["topic"]: channel["id"] for channel in advertisement["channels"]}
     raise ConnectionError("the door was closed before it listed its channels")
 
 
 def _stamps(message: str | bytes) -> list[float]:
-    said = json.loads(message)
-    if said["op"] != "publish":
+    document = json.loads(message)
+    if document["op"] != "publish":
         return []
-    stamp = said["msg"].get("stamp") or said["msg"]["header"]["stamp"]
+    stamp = document["msg"].get("stamp") or document["msg"]["header"]["stamp"]
     return [steady_time(stamp["sec"] + stamp["nanosec"] / 1e9)]
 
 

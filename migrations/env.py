@@ -4,7 +4,7 @@ from alembic import context
 
 
 def migrate() -> None:
-    """Run the migrations in one transaction. Raises KeyError where no connection was handed over."""
+    """Run the migrations in one transaction. Raise KeyError where no connection was handed over."""
     connection = context.config.attributes["connection"]
     context.configure(connection=connection, render_as_batch=True)
     with context.begin_transaction():

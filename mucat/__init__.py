@@ -2,8 +2,10 @@
 
 from mucat.errors import RobotError as RobotError
 from mucat.live import LiveSample as LiveSample
-from mucat.robot import Control as Control
 from mucat.robot import Robot as Robot
+from mucat.robot import RobotControl
 from mucat.sessions import FolderSessions as FolderSessions
 from mucat.sessions import Sessions as Sessions
 from mucat.tables import SessionTables as SessionTables
+
+Control = RobotControl

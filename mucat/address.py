@@ -26,12 +26,15 @@ class RobotAddress:
         return f"{self.url.replace('http', 'ws', 1)}/api/live"
 
     def ask(self, method: str, path: str, body: object = None, client: str = "") -> Any:
-        """The JSON that the server answers at /api/PATH; None where it says nothing. Raises RobotError."""
+        """Return the server's JSON answer at /api/PATH; None where it is empty.
+
+        Raise RobotError.
+        """
         text = self.fetch(method, path, body, client)
         return json.loads(text) if text else None
 
     def fetch(self, method: str, path: str, body: object = None, client: str = "") -> bytes:
-        """The bytes that the server answers. Raises RobotError."""
+        """Return the bytes of the server's answer. Raise RobotError."""
         headers = self.headers | ({"X-Mucat-Client": client} if client else {})
         data = None
         if body is not None:
@@ -41,12 +44,12 @@ class RobotAddress:
         request = Request(f"{self.url}/api{path}", data, headers, method=method)
         try:
             with urlopen(request, timeout=SECONDS) as answer:
-                found: bytes = answer.read()
+                content: bytes = answer.read()
         except HTTPError as problem:
             raise RobotError(_reason(problem)) from problem
         except (URLError, OSError) as problem:
             raise RobotError(f"{self.url} does not answer: {problem}.") from problem
-        return found
+        return content
 
 
 def _reason(problem: HTTPError) -> str:

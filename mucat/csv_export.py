@@ -1,4 +1,4 @@
-"""Reads what `mucat export --format csv` and the server write: a zip file with a table for each topic."""
+"""Reads the exports of `mucat export --format csv` and the server: a zip file with a table for each topic."""
 
 import csv
 import io
@@ -22,7 +22,7 @@ HEADED = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>.*)\])?")
 
 
 def read_csv_export(source: Path | bytes) -> SessionTables:
-    """The tables of a file, or of its bytes. Raises BadZipFile, KeyError, ValueError, OSError."""
+    """Return the tables of a file, or of its bytes. Raise BadZipFile, KeyError, ValueError, OSError."""
     with _open(source) as files:
         members = find_members(files, "session.json")
         about = json.loads(files.read(members["session.json"]))
@@ -51,10 +51,10 @@ def _read_member(source: Path | bytes, name: str) -> TopicTable:
         raise RobotError(f"{name} cannot be read: {problem}.") from problem
     columns, units = {}, {}
     for head, cells in zip(heads, values, strict=True):
-        found = HEADED.fullmatch(head)
-        assert found is not None
+        match = HEADED.fullmatch(head)
+        assert match is not None
         read = _read_moments(cells) if head == "utc" else _read_cells(cells, comma)
-        name, unit, column = si_column(found["name"], found["unit"] or "", read)
+        name, unit, column = si_column(match["name"], match["unit"] or "", read)
         columns[name] = column
         if unit:
             units[name] = unit
@@ -62,13 +62,13 @@ def _read_member(source: Path | bytes, name: str) -> TopicTable:
 
 
 def _read_moments(cells: Sequence[str]) -> Sequence[str]:
-    """Times in ISO 8601; for a spreadsheet they are written without letters."""
-    return [one if one.endswith("Z") else one.replace(" ", "T").replace(",", ".") + "Z" for one in cells]
+    """Return times in ISO 8601; for a spreadsheet they are written without letters."""
+    return [cell if cell.endswith("Z") else cell.replace(" ", "T").replace(",", ".") + "Z" for cell in cells]
 
 
 def _read_cells(cells: Sequence[str], comma: bool) -> Sequence[Any]:
     if comma:
-        numbers = typed_column([one.replace(",", ".") for one in cells])
+        numbers = typed_column([cell.replace(",", ".") for cell in cells])
         if numbers and not isinstance(numbers[0], str):
             return numbers
-    return typed_column([one[1:] if ESCAPED.match(one) else one for one in cells])
+    return typed_column([cell[1:] if ESCAPED.match(cell) else cell for cell in cells])

@@ -2,4 +2,4 @@
 
 
 class RobotError(Exception):
-    """The robot refused, or did not answer; the text says why, in the server's words."""
+    """The robot refused, or did not answer; the text is the server's reason."""

@@ -30,12 +30,12 @@ class LiveSample:
     fields: Mapping[str, Any]
 
     def __getitem__(self, name: str) -> Any:
-        """A field's value."""
+        """Return a field's value."""
         return self.fields[name]
 
 
 class LiveReader:
-    """Picks the samples of some topics out of the socket's messages; `after` leaves out older ones."""
+    """Reader of the samples of some topics in the socket's messages; `after` leaves out older ones."""
 
     def __init__(self, topics: tuple[str, ...]) -> None:
         unknown = [name for name in topics if name not in BY_NAME]
@@ -48,11 +48,11 @@ class LiveReader:
 
     @property
     def pictures(self) -> list[str]:
-        """The topics of pictures among them."""
+        """The reader's topics of pictures."""
         return sorted(name for name in self._topics if BY_NAME[name].kind is Kind.PICTURE)
 
     def greet(self, message: str | bytes) -> dict[str, Any]:
-        """Read the server's first message. Raises RobotError where its definitions are others."""
+        """Read the server's first message. Raise RobotError where its definitions differ."""
         hello: dict[str, Any] = json.loads(message)
         if hello["definitions"] != f"{DEFINITIONS_HASH:08x}":
             raise RobotError("The robot runs another version of µ-CAT. Install the same version here.")
@@ -60,27 +60,31 @@ class LiveReader:
         return hello
 
     def read(self, message: str | bytes) -> list[LiveSample]:
-        """The samples of these topics in a message."""
+        """Return the samples of these topics in a message."""
         if isinstance(message, str):
             return []
-        found: list[LiveSample] = []
+        samples: list[LiveSample] = []
         for block in read_blocks(message):
             name = block.topic.name
             if name not in self._topics:
                 continue
             if block.topic.kind is Kind.ROWS:
-                found += [LiveSample(name, time, _values(record)) for time, record in read_rows(block)]
+                samples += [LiveSample(name, time, _values(record)) for time, record in read_rows(block)]
             elif block.topic.kind is Kind.DOCUMENTS:
-                found += [LiveSample(name, one["time"], one) for one in json.loads(block.payload)]
+                samples += [
+                    LiveSample(name, document["time"], document) for document in json.loads(block.payload)
+                ]
             else:
                 time = TIME.unpack_from(block.payload)[0]
-                found.append(LiveSample(name, time, {"jpeg": block.payload[TIME.size :]}))
-        return [one for one in found if one.time >= self._after or BY_NAME[one.topic].newest_only]
+                samples.append(LiveSample(name, time, {"jpeg": block.payload[TIME.size :]}))
+        return [
+            sample for sample in samples if sample.time >= self._after or BY_NAME[sample.topic].newest_only
+        ]
 
 
 @contextmanager
 def open_live(address: RobotAddress) -> Iterator[ClientConnection]:
-    """An open live socket. Raises RobotError."""
+    """Yield an open live socket. Raise RobotError."""
     try:
         with connect(
             address.live, additional_headers=address.headers, compression=None, max_size=None
@@ -93,7 +97,7 @@ def open_live(address: RobotAddress) -> Iterator[ClientConnection]:
 
 
 def read_live(address: RobotAddress, topics: tuple[str, ...]) -> Generator[LiveSample, None, None]:
-    """Samples from now on, until the caller breaks off. Raises RobotError where the connection ends."""
+    """Yield samples from now on, until the caller breaks off. Raise RobotError where the connection ends."""
     reader = LiveReader(topics)
     with open_live(address) as socket:
         reader.greet(socket.recv())
@@ -103,7 +107,7 @@ def read_live(address: RobotAddress, topics: tuple[str, ...]) -> Generator[LiveS
 
 
 async def read_live_async(address: RobotAddress, topics: tuple[str, ...]) -> AsyncIterator[LiveSample]:
-    """The same for asyncio."""
+    """Yield samples as `read_live`, for asyncio."""
     reader = LiveReader(topics)
     try:
         async with connect_async(

@@ -1,15 +1,16 @@
-"""Reads what `mucat export --format mcap` writes; needs the package mcap."""
+"""Reads the exports of `mucat export --format mcap`; needs the package mcap."""
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from mucat.errors import RobotError
-from mucat.tables import SessionTables, TopicTable, si_column, text_of_value, typed_column
+from mucat.tables import SessionTables, TopicTable, text_of_value, typed_column
+from robot_runtime.contract.chunks import si_fields
 
 MAGIC = b"\x89MCAP0\r\n"
 OWN = "mucat."
@@ -17,7 +18,7 @@ OWN = "mucat."
 
 
 def read_mcap(path: Path) -> SessionTables:
-    """The tables of a file. Raises RobotError."""
+    """Return the tables of a file. Raise RobotError."""
     try:
         from mcap.exceptions import McapError
         from mcap.reader import make_reader
@@ -27,7 +28,11 @@ def read_mcap(path: Path) -> SessionTables:
         with path.open("rb") as file:
             reader = make_reader(file, validate_crcs=True)
             summary = reader.get_summary()
-            described = [one.data for one in reader.iter_attachments() if one.name == "session.json"]
+            described = [
+                attachment.data
+                for attachment in reader.iter_attachments()
+                if attachment.name == "session.json"
+            ]
     except (McapError, ValueError) as problem:
         raise RobotError(f"{path} cannot be read: {problem}.") from problem
     if summary is None or not described:
@@ -54,31 +59,22 @@ def _read_topic(path: Path, name: str, described: Mapping[str, Any]) -> TopicTab
                 utc.append(moment.isoformat(timespec="milliseconds").replace("+00:00", "Z"))
     except (McapError, ValueError) as problem:
         raise RobotError(f"{path} cannot be read: {problem}.") from problem
-    columns: dict[str, Sequence[Any]] = {"time": [one["time"] for one in messages], "utc": utc}
+    columns: dict[str, Sequence[Any]] = {"time": [message["time"] for message in messages], "utc": utc}
     units = {"time": "s"}
-    for field in described["fields"]:
-        if described["kind"] == "rows":
-            for column, unit, values in _number_columns(field, messages):
-                columns[column] = values
-                if unit:
-                    units[column] = unit
-        elif field["name"] != "time":
-            columns[field["name"]] = typed_column([text_of_value(one.get(field["name"])) for one in messages])
+    if described["kind"] == "rows":
+        for field in si_fields(described):
+            values = [message.get(field.name) for message in messages]
+            for index, column in enumerate(field.columns):
+                numbers = values if field.count == 1 else [value and value[index] for value in values]
+                columns[column] = [*map(_number, numbers)]
+                if field.unit:
+                    units[column] = field.unit
+        return TopicTable(columns, units)
+    for name in (field["name"] for field in described["fields"] if field["name"] != "time"):
+        columns[name] = typed_column([text_of_value(message.get(name)) for message in messages])
     return TopicTable(columns, units)
 
 
-def _number_columns(
-    field: Mapping[str, Any], messages: list[dict[str, Any]]
-) -> Iterator[tuple[str, str, list[float]]]:
-    """Name, unit and values of each column of a field; NaN where JSON has null, or nothing."""
-    name, unit, _ = si_column(field["name"], field["unit"], ())
-    values = [one.get(name) for one in messages]
-    if field["count"] == 1:
-        yield name, unit, [*map(_number, values)]
-        return
-    for place in range(field["count"]):
-        yield f"{name}_{place}", unit, [math.nan if one is None else _number(one[place]) for one in values]
-
-
 def _number(value: float | None) -> float:
+    """Return a number; NaN where JSON has null, or nothing."""
     return math.nan if value is None else float(value)

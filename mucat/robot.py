@@ -14,6 +14,7 @@ from websockets.sync.client import ClientConnection
 from mucat.address import RobotAddress
 from mucat.errors import RobotError
 from mucat.live import LiveReader, LiveSample, open_live, read_live, read_live_async
+from robot_runtime.contract.topics import STATE
 
 DRIVE_SECONDS = 0.05
 """Between two commands of the sticks, each of which counts for 0.2 s."""
@@ -27,44 +28,44 @@ class Robot:
         self.address = RobotAddress(url, token)
 
     def state(self) -> dict[str, Any]:
-        """The robot's newest state: the topic `state`."""
-        found: dict[str, Any] = self.address.ask("GET", "/robot")
-        return found
+        """Return the robot's newest state: the topic `state`."""
+        state: dict[str, Any] = self.address.ask("GET", "/robot")
+        return state
 
     def health(self) -> dict[str, Any]:
-        """The health of every part."""
-        found: dict[str, Any] = self.address.ask("GET", "/health")
-        return found
+        """Return the health of every part."""
+        health: dict[str, Any] = self.address.ask("GET", "/health")
+        return health
 
     def stop(self) -> None:
-        """STOP: disarm at once. Needs no control."""
+        """Stop the robot: disarm at once. This needs no control."""
         self.address.ask("POST", "/robot/stop")
 
     def live(self, *topics: str) -> Generator[LiveSample, None, None]:
-        """The samples of these topics from now on, as they come."""
+        """Return the samples of these topics from now on, as they come."""
         return read_live(self.address, topics)
 
     def live_async(self, *topics: str) -> AsyncIterator[LiveSample]:
-        """The same for `async for`."""
+        """Return the samples of these topics, for `async for`."""
         return read_live_async(self.address, topics)
 
     @contextmanager
-    def control(self, *, over: bool = False) -> Iterator["Control"]:
-        """Take control, `over` also from somebody else; the end of the block stops and releases it."""
+    def control(self, *, over: bool = False) -> Iterator["RobotControl"]:
+        """Take control, with `over` also from somebody else; the block's end stops and releases the robot."""
         with open_live(self.address) as socket:
-            hello = LiveReader(("state",)).greet(socket.recv())
+            hello = LiveReader((STATE.name,)).greet(socket.recv())
             steady = hello["steady"] - time.monotonic()
             reader = threading.Thread(target=_read_all, args=(socket,), daemon=True)
             reader.start()
             path = f"/control/take{'?over=true' if over else ''}"
             lease = self.address.ask("POST", path, client=hello["client_key"])["epoch"]
             try:
-                yield Control(self.address, socket, hello["client_key"], lease, steady)
+                yield RobotControl(self.address, socket, hello["client_key"], lease, steady)
             finally:
                 self.stop()
 
     def run_scenario(self, text: str) -> int:
-        """Run a scenario (TOML) in simulated time on the robot's computer; returns its session's number."""
+        """Run a scenario (TOML) in simulated time on the robot's computer; return its session's number."""
         asked = {"text": text, "place": "simulated", "board": "host"}
         run = self.address.ask("POST", "/scenarios/runs", asked)["run"]
         while True:
@@ -74,7 +75,9 @@ class Robot:
                 if last["state"] != "complete":
                     raise RobotError(f"The scenario ended as {last['state']}: {last['problem']}")
                 return int(last["session"])
-            if run not in (one["run"] for one in (state["active"], *state["queued"]) if one is not None):
+            if run not in (
+                entry["run"] for entry in (state["active"], *state["queued"]) if entry is not None
+            ):
                 raise RobotError(
                     "The scenario is over, and another one or the server's restart has followed. "
                     "The newest sessions have its result."
@@ -82,7 +85,7 @@ class Robot:
             time.sleep(POLL_SECONDS)
 
     def try_mission(self, text: str, seeds: int = 20) -> list[dict[str, Any]]:
-        """Try a mission (TOML) in simulated water, once for each seed; returns the outcome of each."""
+        """Try a mission (TOML) in simulated water, once for each seed; return the outcome of each."""
         trial = self.address.ask("POST", "/missions/trial", {"text": text, "seeds": seeds})
         while trial["running"]:
             time.sleep(POLL_SECONDS)
@@ -93,8 +96,8 @@ class Robot:
         return outcomes
 
 
-class Control:
-    """The control of a robot, as long as the block of `Robot.control` lasts."""
+class RobotControl:
+    """The control of a robot within the block of `Robot.control`."""
 
     def __init__(
         self, address: RobotAddress, socket: ClientConnection, key: str, lease: int, steady: float
@@ -107,17 +110,21 @@ class Control:
         self._sequence = 0
 
     def command(self, name: str, /, **fields: Any) -> Any:
-        """Send a command of docs/reference/commands.md with its fields. Raises RobotError."""
+        """Send a command of docs/reference/commands.md with its fields. Raise RobotError."""
         return self._address.ask("POST", f"/robot/commands/{quote(name, safe='')}", fields, self._key)
 
-    def arm(self, mode: Literal["automatic", "manual"] = "automatic") -> None:
-        """Arm the robot. Raises RobotError with every reason against it."""
-        self.command("arm", mode=mode)
+    def arm(self, mode: Literal["automatic", "manual"] = "automatic", unwatched: float | None = None) -> None:
+        """Arm the robot. Raise RobotError with all reasons against it.
+
+        `unwatched`: s for which it may go on while nobody watches; 0: without an end; None: `[control]
+        unwatched` of the robot. Within the block of `Robot.control` this program watches.
+        """
+        self.command("arm", mode=mode, unwatched=unwatched)
 
     def run_mission(self, text: str) -> dict[str, Any]:
-        """Arm the robot, run a mission (TOML) and wait for its end; returns its last state.
+        """Arm the robot, run a mission (TOML) and wait for its end; return its last state.
 
-        `phase` is "succeeded", "failed" or "ended". Raises RobotError with every reason against a start.
+        `phase` is "succeeded", "failed" or "ended". Raise RobotError with all reasons against a start.
         """
         last = self._mission()
         before = float("-inf") if last is None else last["time"]
@@ -131,8 +138,8 @@ class Control:
             time.sleep(POLL_SECONDS)
 
     def _mission(self) -> dict[str, Any] | None:
-        found: dict[str, Any] | None = self._address.ask("GET", "/missions/state")
-        return found
+        state: dict[str, Any] | None = self._address.ask("GET", "/missions/state")
+        return state
 
     def drive(
         self,
@@ -145,14 +152,14 @@ class Control:
         pitch: float = 0.0,
         yaw: float = 0.0,
     ) -> None:
-        """Hold the sticks for some seconds: shares of the most, -1 to 1; forwards, to the right, down.
+        """Hold the sticks for some seconds: shares of the most, -1 to 1; forward, to the right, down.
 
-        Raises RobotError.
+        Raise RobotError.
         """
         end = time.monotonic() + seconds
         while (now := time.monotonic()) < end:
             self._sequence += 1
-            said = {
+            message = {
                 "op": "drive",
                 "lease": self._lease,
                 "sequence": self._sequence,
@@ -160,19 +167,19 @@ class Control:
                 "axes": [x, y, z, roll, pitch, yaw],
             }
             try:
-                self._socket.send(json.dumps(said))
+                self._socket.send(json.dumps(message))
             except ConnectionClosed as problem:
                 raise RobotError("The connection is lost, and control with it.") from problem
             time.sleep(min(DRIVE_SECONDS, max(0.0, end - time.monotonic())))
 
 
 def _began(mission: dict[str, Any]) -> float:
-    """Returns the time at which a mission began, s of the steady clock."""
+    """Return the time at which a mission began, s of the steady clock."""
     return float(mission["time"] - mission["elapsed"] - mission["paused"])
 
 
 def _read_all(socket: ClientConnection) -> None:
-    """Read what comes: who does not read is disconnected."""
+    """Read all messages: the server disconnects clients that do not read."""
     with suppress(ConnectionClosed):
         for _ in socket:
             pass

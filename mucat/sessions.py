@@ -12,8 +12,9 @@ from mucat.address import RobotAddress
 from mucat.csv_export import read_csv_export
 from mucat.errors import RobotError
 from mucat.mcap_export import MAGIC, read_mcap
-from mucat.recorded import ARCHIVE_FORMAT, list_folder, read_archive, read_folder
+from mucat.recorded import list_folder, read_archive, read_folder
 from mucat.tables import SessionTables
+from robot_runtime.contract.archive import FORMAT
 from robot_runtime.zip_members import find_members
 
 POLL_SECONDS = 0.2
@@ -28,21 +29,24 @@ class Sessions:
         self._address = RobotAddress(url, token)
 
     def list(self, search: str = "") -> "list[dict[str, Any]]":
-        """All sessions, newest first, as the server lists them.
+        """Return all sessions, newest first, as the server lists them.
 
-        With `search` those that have each of its words in name, note, tags or scenario.
+        With `search`, return those that have each of its words in name, note, tags or scenario.
         """
-        found: list[dict[str, Any]] = []
+        sessions: list[dict[str, Any]] = []
         query = {"search": search, "limit": PAGE}
         while True:
             page = self._address.ask("GET", f"/sessions?{urlencode(query)}")
-            found += page
+            sessions += page
             if len(page) < PAGE:
-                return found
+                return sessions
             query["before"] = page[-1]["id"]
 
     def load(self, session: int) -> SessionTables:
-        """A session as tables. The server writes an export of it, which needs the role of an operator."""
+        """Return a session as tables.
+
+        The server writes an export of it, which needs the role of an operator.
+        """
         job = self._address.ask("POST", "/exports", {"session": session, "format": "csv"})
         while job["state"] in ("waiting", "running"):
             time.sleep(POLL_SECONDS)
@@ -54,14 +58,14 @@ class Sessions:
         return read_csv_export(data)
 
     def compare(self, sessions: Sequence[int], signals: Sequence[str]) -> dict[str, Any]:
-        """Lines and figures of several sessions side by side, as `POST /api/compare` answers."""
+        """Return lines and figures of several sessions side by side, as `POST /api/compare` answers."""
         asked = {"sessions": [*sessions], "signals": [*signals]}
-        found: dict[str, Any] = self._address.ask("POST", "/compare", asked)
-        return found
+        comparison: dict[str, Any] = self._address.ask("POST", "/compare", asked)
+        return comparison
 
     @staticmethod
     def read(file: Path | str) -> SessionTables:
-        """A session of a file that `mucat export` wrote as csv, mcap or archive. Raises RobotError."""
+        """Return a session of a file that `mucat export` wrote as csv, mcap or archive. Raise RobotError."""
         path = Path(file)
         try:
             with path.open("rb") as opened:
@@ -69,7 +73,7 @@ class Sessions:
                     return read_mcap(path)
             with zipfile.ZipFile(path) as files:
                 described = files.read(find_members(files, "session.json")["session.json"])
-            archived = json.loads(described).get("format") == ARCHIVE_FORMAT
+            archived = json.loads(described).get("format") == FORMAT
             return read_archive(path) if archived else read_csv_export(path)
         except OSError as problem:
             raise RobotError(f"{file} cannot be read: {problem.strerror}.") from problem
@@ -87,9 +91,9 @@ class FolderSessions:
         self._folder = Path(folder)
 
     def list(self) -> "list[dict[str, Any]]":
-        """All sessions, newest first."""
+        """Return all sessions, newest first."""
         return list_folder(self._folder)
 
     def load(self, session: int) -> SessionTables:
-        """A session as tables."""
+        """Return a session as tables."""
         return read_folder(self._folder, session)

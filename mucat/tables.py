@@ -30,15 +30,15 @@ class SessionTables:
 
     @property
     def topics(self) -> list[str]:
-        """The topics that it has."""
+        """The topics of the session."""
         return [*self._readers]
 
     def units(self, topic: str) -> dict[str, str]:
-        """The units of a topic's columns; those without one are left out. Raises RobotError."""
+        """Return the units of a topic's columns; those without one are left out. Raise RobotError."""
         return dict(self._table(topic).units)
 
     def pandas(self, topic: str) -> Any:
-        """A topic as a pandas DataFrame, with the units in its `attrs`. Raises RobotError."""
+        """Return a topic as a pandas DataFrame, with the units in its `attrs`. Raise RobotError."""
         import pandas
 
         table = self._table(topic)
@@ -47,7 +47,7 @@ class SessionTables:
         return frame
 
     def polars(self, topic: str) -> Any:
-        """A topic as a polars DataFrame; `units` says the units. Raises RobotError."""
+        """Return a topic as a polars DataFrame; `units` returns the units. Raise RobotError."""
         import polars
 
         return polars.DataFrame(dict(self._table(topic).columns))
@@ -59,21 +59,21 @@ class SessionTables:
 
 
 def si_column(name: str, unit: str, values: Sequence[Any]) -> tuple[str, str, Sequence[Any]]:
-    """Name, unit and values of a column in SI units: the board's clock, in µs, is `board_time` in s."""
+    """Return name, unit and values of a column in SI units: the board's clock, µs, is `board_time` in s."""
     if unit != "µs":
         return name, unit, values
     return "board_time" if name == "time" else name, "s", [value * MICROSECOND for value in values]
 
 
 def text_of_value(value: object) -> str:
-    """A value of a document as the text of a cell: lists and objects as JSON, nothing for null."""
+    """Return a value of a document as the text of a cell: lists and objects as JSON, nothing for null."""
     if value is None:
         return ""
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
 def typed_column(cells: Sequence[str]) -> Sequence[Any]:
-    """Numbers where every cell that is not empty holds one, NaN for the empty ones; else the texts."""
+    """Return numbers where each non-empty cell is a number, NaN for empty cells; else the texts."""
     try:
         numbers = [float(cell) if cell else math.nan for cell in cells]
     except ValueError:

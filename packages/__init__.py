@@ -1,1 +1,1 @@
-"""Builds what users install: the wheels and the container image."""
+"""The build of the packages that users install: the wheels and the container image."""

@@ -19,17 +19,17 @@ class Architecture:
 
     @property
     def is_own(self) -> bool:
-        """True where this computer has it."""
+        """True if it is this computer's."""
         return platform.machine() == self.machine
 
     def tool(self, name: str) -> str:
-        """Returns the name of a GNU tool, such as gcc, for this architecture."""
+        """Return the name of a GNU tool, such as gcc, for this architecture."""
         return name if self.is_own else f"{self.gnu}-{name}"
 
 
 ARCHITECTURES = {
-    one.machine: one
-    for one in (
+    architecture.machine: architecture
+    for architecture in (
         Architecture("x86_64", "amd64", "x86_64-linux-gnu"),
         Architecture("aarch64", "arm64", "aarch64-linux-gnu"),
         Architecture("i686", "i386", "i686-linux-gnu"),

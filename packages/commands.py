@@ -12,16 +12,18 @@ WORDS_MAX = 2000
 
 
 def run(command: Sequence[str | Path], remedy: str, failure: str = "") -> str:
-    """Runs a command; returns its output. Raises PackagingError.
+    """Run a command; return its output. Raise PackagingError.
 
-    `remedy` says how the program is installed, `failure` what it means that it fails.
+    `remedy` is the way to install the program, `failure` the meaning of its failure.
     """
-    words = [str(one) for one in command]
-    program = Path(words[0]).name
+    arguments = [str(argument) for argument in command]
+    program = Path(arguments[0]).name
     # Another make's flags are not for one that this starts.
     alone = os.environ | {"MAKEFLAGS": ""}
     try:
-        done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, env=alone)
+        done = subprocess.run(
+            arguments, capture_output=True, text=True, errors="replace", check=False, env=alone
+        )
     except OSError as problem:
         raise PackagingError(f"{program} cannot be run ({problem.strerror}): {remedy}.") from problem
     if done.returncode:

@@ -19,7 +19,7 @@ SMALL = {"platform_machine": "armv6l", "python_version": "3.13", "python_full_ve
 
 
 def write_constraints(dist: Path) -> list[Path]:
-    """Writes `constraints.txt` and `constraints-32bit.txt` into `dist`. Raises PackagingError."""
+    """Write `constraints.txt` and `constraints-32bit.txt` into `dist`. Raise PackagingError."""
     dist.mkdir(exist_ok=True)
     extras = [word for extra in EXTRAS for word in ("--extra", extra)]
     whole = dist / "constraints.txt"
@@ -30,9 +30,9 @@ def write_constraints(dist: Path) -> list[Path]:
 
 
 def small_requirements() -> list[str]:
-    """Returns what mucat[mqtt] needs on a 32-bit Debian 13 besides apt's packages, as `NAME==VERSION`.
+    """Return the needs of mucat[mqtt] on a 32-bit Debian 13 besides apt's packages, as `NAME==VERSION`.
 
-    Raises PackagingError.
+    Raise PackagingError.
     """
     pins = (PACKAGES / "constraints.txt").read_text().splitlines()
     own = {_name(line): line for line in DEBIAN.read_text().splitlines()}
@@ -44,9 +44,10 @@ def small_requirements() -> list[str]:
         resolved = _resolve([*options, "--constraints", merged.name])
     needed = [Requirement(line) for line in resolved.splitlines()]
     return [
-        f"{one.name}{one.specifier}"
-        for one in needed
-        if one.name not in FROM_APT and (one.marker is None or one.marker.evaluate(dict(SMALL)))
+        f"{requirement.name}{requirement.specifier}"
+        for requirement in needed
+        if requirement.name not in FROM_APT
+        and (requirement.marker is None or requirement.marker.evaluate(dict(SMALL)))
     ]
 
 

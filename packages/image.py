@@ -51,7 +51,7 @@ CONFIG = (
 
 
 def main() -> int:
-    """Builds the image. Returns 1 where it cannot."""
+    """Build the image. Return 1 where it cannot."""
     parser = argparse.ArgumentParser(prog="python -m packages.image", description=__doc__)
     parser.add_argument("key", type=Path, help="the secret key of the release; made where there is none")
     options = parser.parse_args()
@@ -64,9 +64,9 @@ def main() -> int:
 
 
 def build_image(secret: Path, dist: Path) -> Path:
-    """Builds the image for this computer's architecture. Returns its path.
+    """Build the image for this computer's architecture. Return its path.
 
-    Raises PackagingError.
+    Raise PackagingError.
     """
     machine = platform.machine()
     if os.geteuid() != 0:
@@ -127,8 +127,8 @@ def _pack(root: Path, archive: Path) -> None:
         _buildah("rm", container)
 
 
-def _buildah(*words: str) -> str:
-    return run(["buildah", *words], TOOLS).strip()
+def _buildah(*arguments: str) -> str:
+    return run(["buildah", *arguments], TOOLS).strip()
 
 
 if __name__ == "__main__":

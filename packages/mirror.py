@@ -5,7 +5,7 @@ from packages.commands import run
 
 
 def find_mirror() -> str:
-    """Returns the address of Debian's main archive in this computer's sources. Raises PackagingError."""
+    """Return the address of Debian's main archive in this computer's sources. Raise PackagingError."""
     targets = ("indextargets", "--format", "$(ORIGIN)|$(LABEL)|$(COMPONENT)|$(REPO_URI)")
     for line in run(["apt-get", *targets], "this needs a Debian").splitlines():
         origin, label, component, address = line.split("|", 3)

@@ -33,7 +33,7 @@ SMALL_PURE = (*PURE, "markupsafe")
 
 
 def main() -> int:
-    """Builds the release. Returns 1 where it cannot."""
+    """Build the release. Return 1 where it cannot."""
     parser = argparse.ArgumentParser(prog="python -m packages.release", description=__doc__)
     parser.add_argument("key", type=Path, help="the secret key; made where there is none")
     parser.add_argument("--machine", default=platform.machine(), choices=(*MACHINES, *SMALL_MACHINES))
@@ -50,9 +50,9 @@ def main() -> int:
 
 
 def build_release(secret: Path, machine: str, python: str, dist: Path) -> Path:
-    """Builds the folder of a release; an older one of this name is replaced. Returns its path.
+    """Build the folder of a release; an older one of this name is replaced. Return its path.
 
-    Raises PackagingError.
+    Raise PackagingError.
     """
     if machine in SMALL_MACHINES and python != SMALL["python_version"]:
         raise PackagingError(
@@ -79,21 +79,21 @@ def build_release(secret: Path, machine: str, python: str, dist: Path) -> Path:
 
 
 def _gather(folder: Path, wheel: Path, machine: str, python: str) -> None:
-    """Put the wheels of what mucat needs into the folder, in the pinned versions."""
+    """Put the wheels of mucat's dependencies into the folder, in the pinned versions."""
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
     pins = ["--constraint", str(PACKAGES / "constraints.txt")]
     if machine in SMALL_MACHINES:
         # pip would take what mucat needs on this computer.
-        pure, wanted = SMALL_PURE, ["--no-deps", *small_requirements()]
+        pure, requirements = SMALL_PURE, ["--no-deps", *small_requirements()]
     else:
-        pure, wanted = PURE, [*pins, f"{wheel}[{','.join(EXTRAS)}]"]
+        pure, requirements = PURE, [*pins, f"{wheel}[{','.join(EXTRAS)}]"]
     for package in pure:
         command = [*pip, "wheel", "--no-deps", "--no-cache-dir", "--no-binary", package, *pins]
         command += ["--wheel-dir", str(folder), package]
         run(["env", "CC=/bin/false", *command], "make setup", f"{package} could not be built")
     tags = [word for tag in PLATFORMS for word in ("--platform", f"{tag}_{machine}")]
     command = [*pip, "download", "--only-binary", ":all:", *tags, "--python-version", python]
-    command += ["--find-links", str(folder), "--dest", str(folder), *wanted]
+    command += ["--find-links", str(folder), "--dest", str(folder), *requirements]
     run(command, "make setup", "The wheels could not be gathered")
 
 

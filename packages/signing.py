@@ -10,7 +10,7 @@ SUMS, SIGNATURE, PUBLIC_KEY = "SHA256SUMS", "SHA256SUMS.sig", "release.pem"
 
 
 def make_key(secret: Path) -> None:
-    """Makes a secret key, which its owner alone may read. Raises PackagingError."""
+    """Make a secret key, which its owner alone may read. Raise PackagingError."""
     secret.parent.mkdir(parents=True, exist_ok=True)
     secret.touch(0o600, exist_ok=False)
     try:
@@ -22,12 +22,12 @@ def make_key(secret: Path) -> None:
 
 
 def write_public_key(secret: Path, path: Path) -> None:
-    """Writes the public key that belongs to a secret one. Raises PackagingError."""
+    """Write the public key that belongs to a secret one. Raise PackagingError."""
     _openssl("pkey", "-in", secret, "-pubout", "-out", path)
 
 
 def sign_folder(folder: Path, secret: Path) -> None:
-    """Writes the checksums of the folder's wheels, and their signature. Raises PackagingError."""
+    """Write the checksums of the folder's wheels, and their signature. Raise PackagingError."""
     lines = [
         f"{hashlib.sha256(wheel.read_bytes()).hexdigest()}  {wheel.name}\n"
         for wheel in sorted(folder.glob("*.whl"))

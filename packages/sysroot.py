@@ -15,7 +15,7 @@ SUITE = "bookworm"
 
 
 def make_sysroot(architecture: Architecture) -> Path:
-    """Returns a folder with the architecture's libraries, made now or before. Raises PackagingError.
+    """Return a folder with the architecture's libraries, made now or before. Raise PackagingError.
 
     The packages are unpacked and none of their programs runs, so that no emulator is needed.
     """

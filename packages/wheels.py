@@ -35,7 +35,7 @@ GLIBC_MIN = (2, 17)
 
 
 def main() -> int:
-    """Builds the wheel `mucat`, and `mucat-emulator` for this computer or the architectures named."""
+    """Build the wheel `mucat`, and `mucat-emulator` for this computer or the architectures named."""
     parser = argparse.ArgumentParser(prog="python -m packages.wheels", description=__doc__)
     parser.add_argument("architectures", nargs="*", metavar="ARCHITECTURE", help=", ".join(ARCHITECTURES))
     names = parser.parse_args().architectures or [platform.machine()]
@@ -56,9 +56,9 @@ def main() -> int:
 
 
 def build_mucat(dist: Path) -> Path:
-    """Builds the wheel with page, help, migrations, default configuration and firmware, into `dist`.
+    """Build the wheel with page, help, migrations, default configuration and firmware, into `dist`.
 
-    Returns its path. Raises PackagingError.
+    Return its path. Raise PackagingError.
     """
     with _stage("mucat") as stage:
         _fill_mucat(stage)
@@ -98,9 +98,9 @@ def _copy_firmware(parts: Path, baud: int, *, hil: bool) -> None:
 
 
 def build_emulator(architecture: Architecture, dist: Path) -> Path:
-    """Builds the wheel with the emulated board for an architecture, into `dist`. Returns its path.
+    """Build the wheel with the emulated board for an architecture, into `dist`. Return its path.
 
-    Raises PackagingError.
+    Raise PackagingError.
     """
     with _stage(f"mucat-emulator-{architecture.machine}") as stage:
         _fill_emulator(stage, architecture)
@@ -130,9 +130,9 @@ def _fill_emulator(stage: Path, architecture: Architecture) -> None:
 
 
 def _glibc(architecture: Architecture, library: Path) -> tuple[int, int]:
-    """The version of glibc that a shared library needs."""
+    """Return the version of glibc that a shared library needs."""
     symbols = run([architecture.tool("objdump"), "--dynamic-syms", library], TOOLS)
-    return max([GLIBC_MIN, *((int(one[1]), int(one[2])) for one in GLIBC_SYMBOL.finditer(symbols))])
+    return max([GLIBC_MIN, *((int(match[1]), int(match[2])) for match in GLIBC_SYMBOL.finditer(symbols))])
 
 
 def _build(stage: Path, dist: Path) -> Path:
@@ -147,7 +147,7 @@ def _build(stage: Path, dist: Path) -> Path:
 
 @contextmanager
 def _stage(name: str) -> Iterator[Path]:
-    """Yields an empty folder for a wheel's files; another build of wheels waits meanwhile."""
+    """Yield an empty folder for a wheel's files; another build of wheels waits meanwhile."""
     STAGES.mkdir(parents=True, exist_ok=True)
     with (STAGES / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

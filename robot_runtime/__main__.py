@@ -7,14 +7,14 @@ from dataclasses import replace
 from math import inf
 from pathlib import Path
 
-from robot_runtime.config import Config, craft_in, craft_path, load_with_text
+from robot_runtime.config import Config, craft_in_force, load_with_text
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.control.controllers import check_control
 from robot_runtime.control.craft_gains import tune_to_craft
 from robot_runtime.durable_files import keep_private
 from robot_runtime.profile import fit_to_this_computer
 from robot_runtime.provenance import hash_software
-from robot_runtime.robot import Robot
+from robot_runtime.robot import RobotRuntime
 from robot_runtime.transport.lifetime import (
     add_server_options,
     end_on_request,
@@ -31,7 +31,7 @@ holds on the smallest computer as well."""
 
 
 def main() -> int:
-    """Runs until SIGTERM or SIGINT. Returns 2 if the configuration or an endpoint cannot be used."""
+    """Run until SIGTERM or SIGINT. Return 2 if the configuration or an endpoint cannot be used."""
     keep_private()
     limit_memory(BYTES_MAX, share=inf)
     options = _options()
@@ -42,12 +42,14 @@ def main() -> int:
         config, text = load_with_text(options.config)
         config = fit_to_this_computer(config)
         check_control(config.control)
-        craft = craft_in(craft_path(config, options.config, options.data))
+        craft = craft_in_force(config, options.config, options.data)
         config = replace(config, control=tune_to_craft(config.control, craft))
         with open_transport(config, options.data) as messages:
             port = options.port or config.link.port
             vision_file = VisionSettingsFile(options.data / "vision.json")
-            robot = Robot(config, port, messages, heartbeat=options.heartbeat, vision_file=vision_file)
+            robot = RobotRuntime(
+                config, port, messages, craft, heartbeat=options.heartbeat, vision_file=vision_file
+            )
             robot.serve()
             messages.serve("query/provenance", lambda _: {"configuration": text, "software": hash_software()})
             end_on_request(options, robot.close)
@@ -74,7 +76,7 @@ def _options() -> argparse.Namespace:
 
 
 def open_transport(config: Config, data: Path) -> ZenohTransport:
-    """Opens the runtime's transport. Raises OSError, and ConfigError where certificates are missing."""
+    """Open the runtime's transport. Raise OSError, and ConfigError where certificates are missing."""
     run, more = (data / "run").resolve(), config.zenoh.listen
     run.mkdir(parents=True, exist_ok=True)
     return ZenohTransport(

@@ -23,7 +23,7 @@ _FROM_OUTSIDE = frozenset(-number for number in (SIGKILL, SIGTERM, SIGINT, SIGHU
 
 
 def is_killed(status: int | None) -> bool:
-    """Returns True for the exit status of a process that was killed from outside, or where it is not known.
+    """Return True if this exit status is that of a process killed from outside, or is not known.
 
     Signals such as SIGSEGV and SIGABRT are errors of its own.
     """
@@ -37,7 +37,7 @@ class Backoff:
         self._next = 0.0
 
     def after(self, lived: float, *, killed: bool) -> float:
-        """The pause in s after a run of `lived` s; `killed`: from outside (`is_killed`)."""
+        """Return the pause, s, after a run of `lived` s; `killed`: from outside (`is_killed`)."""
         if lived >= STEADY_SECONDS:
             self._next = 0.0
         pause = min(self._next, KILLED_MAX) if killed and lived >= UP_SECONDS else self._next
@@ -46,5 +46,5 @@ class Backoff:
 
 
 def describe_pause(pause: float) -> str:
-    """The pause before a restart, in words."""
+    """Return the pause before a restart, in words."""
     return f"in {pause:.1f} s" if pause else "at once"

@@ -9,7 +9,7 @@ class Clock(Protocol):
     """A source of time."""
 
     def now(self) -> float:
-        """Returns s on a steady clock, which never jumps and is the same in every process of one computer."""
+        """Return s of a steady clock, which never jumps and is the same in every process of one computer."""
         ...
 
 
@@ -17,12 +17,12 @@ class SteadyClock:
     """The computer's CLOCK_MONOTONIC, which all its processes share until it restarts."""
 
     def now(self) -> float:
-        """Returns s since an arbitrary moment, usually the start of the computer."""
+        """Return s since an arbitrary moment, usually the start of the computer."""
         return time.monotonic()
 
 
 def boot() -> str:
-    """Returns the identifier of this start of the computer; steady clocks compare only within one start."""
+    """Return the identifier of this start of the computer; steady clocks compare only within one start."""
     return Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
 
 
@@ -33,11 +33,11 @@ class SimulatedClock:
         self._now = start
 
     def now(self) -> float:
-        """Returns the start time and the seconds advanced since."""
+        """Return the start time and the seconds advanced since."""
         return self._now
 
     def forward(self, seconds: float) -> None:
-        """Advances the time. Raises ValueError for a negative duration."""
+        """Advance the time. Raise ValueError for a negative duration."""
         if seconds < 0:
             raise ValueError(f"time cannot run backwards by {-seconds} s")
         self._now += seconds

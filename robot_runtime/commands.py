@@ -1,4 +1,4 @@
-"""Performs the commands of `robot_runtime.contract.commands`, or refuses them with a reason."""
+"""The performance of the commands of `robot_runtime.contract.commands`, or their refusal with a reason."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -46,7 +46,7 @@ Answer = Mapping[str, Any]
 
 
 class Commands:
-    """Performs commands on one robot. `do` maps a command's name to a function of its fields as a table."""
+    """The commands of one robot. `do` maps a command's name to a function of its fields as a table."""
 
     def __init__(self, robot: Core) -> None:
         self._robot = robot
@@ -81,7 +81,7 @@ class Commands:
         }
 
     def perform(self, command: RobotCommand) -> Answer:
-        """Performs a command; returns each changed parameter before and after. Raises RefusedError."""
+        """Perform a command; return each changed parameter before and after. Raise RefusedError."""
         handler, policy = self._handlers[type(command)], command.policy
         if policy.disturbs_experiment:
             self._robot.experiments.require_none()
@@ -99,9 +99,9 @@ class Commands:
         return {"changed": {name: list(values) for name, values in changed.items()}, **answer}
 
     def begin_mission(self, command: MissionCommand) -> Arming:
-        """Asks the board to arm for a mission, which begins once it is armed.
+        """Ask the board to arm for a mission, which begins once it is armed.
 
-        Raises RefusedError with all reasons against the mission and against arming.
+        Raise RefusedError with all reasons against the mission and against arming.
         """
         robot = self._robot
         robot.missions.require_none()
@@ -115,7 +115,8 @@ class Commands:
         if reasons:
             raise RefusedError(" ".join(reasons))
         begin = partial(robot.missions.prepare, mission)
-        return robot.supervisor.begin_arming("automatic", mission.document.limits.alone, begin)
+        # A mission has its own limit of the time without a page, and watches it itself.
+        return robot.supervisor.begin_arming("automatic", mission.document.limits.alone, 0.0, begin)
 
     def _mission(self, command: MissionCommand) -> None:
         self._robot.supervisor.finish_arming(self.begin_mission(command))
@@ -140,7 +141,7 @@ class Commands:
         self._robot.supervisor.stop("Stopped by the operator.")
 
     def _arm(self, command: ArmCommand) -> None:
-        self._robot.supervisor.arm(command.mode, command.alone)
+        self._robot.supervisor.arm(command.mode, command.alone, command.unwatched)
 
     def _mode(self, command: ModeCommand) -> None:
         self._robot.supervisor.change_mode(command.mode)
@@ -204,15 +205,17 @@ class Commands:
         self._robot.set_vision(parse(VisionSettings, table))
 
     def _vision_settings(self, command: VisionSettingsBase) -> None:
+        for depth in command.settings.actions.values():
+            self._robot.control.depth.check(depth)
         self._robot.set_vision(command.settings)
 
     def _step_experiment(self, command: StepExperimentCommand) -> None:
-        self._begin(command, StepExperiment(command, self._robot.clock))
+        self._begin(command, StepExperiment(command, self._robot.clock), command.start, command.target)
 
     def _relay_experiment(self, command: RelayExperimentCommand) -> None:
-        self._begin(command, RelayExperiment(command, self._robot.clock))
+        self._begin(command, RelayExperiment(command, self._robot.clock), command.set_point)
 
-    def _begin(self, command: ExperimentCommand, experiment: LoopExperiment) -> None:
+    def _begin(self, command: ExperimentCommand, experiment: LoopExperiment, *set_points: float) -> None:
         control, mode = self._robot.control, self._robot.supervisor.mode
         if mode != "automatic":
             raise RefusedError(f"The robot is {mode}. An experiment needs it armed, in automatic.")
@@ -221,6 +224,8 @@ class Commands:
             raise RefusedError("The heading follows the beacons. Choose the course “stay” first.")
         if loop.measured is None:
             raise RefusedError(f"The {loop.name} is not measured yet. Check the sensors.")
+        for set_point in set_points:
+            loop.check(set_point)
         self._robot.experiments.begin(command.number, loop, experiment)
 
     def _end_experiment(self, _: EndExperimentCommand) -> None:

@@ -11,16 +11,16 @@ _WRITE = os.O_WRONLY | os.O_CREAT | os.O_TRUNC
 
 
 def write_whole(path: Path, data: bytes, mode: int = 0o666) -> None:
-    """Writes a file durably, replacing an older one. Raises OSError; then the older one is unchanged."""
+    """Write a file durably, replacing an older one. Raise OSError; then the older one is unchanged."""
     with unfinished(path) as part, os.fdopen(os.open(part, _WRITE, mode), "wb") as file:
         file.write(data)
 
 
 @contextmanager
 def unfinished(path: Path) -> Iterator[Path]:
-    """Yields a temporary path to write to, and afterwards renames it to `path`, durably.
+    """Yield a temporary path to write to, and rename it to `path` afterwards, durably.
 
-    On failure the temporary file is removed and an older file is unchanged. Raises OSError.
+    On failure the temporary file is removed and an older file is unchanged. Raise OSError.
     """
     part = path.with_name(path.name + PART)
     try:
@@ -33,13 +33,13 @@ def unfinished(path: Path) -> Iterator[Path]:
 
 
 def put_in_place(part: Path, path: Path) -> None:
-    """Renames a finished file, durably. Raises OSError."""
+    """Rename a finished file, durably. Raise OSError."""
     part.replace(path)
     sync(path.parent)
 
 
 def make_folder(path: Path) -> None:
-    """Makes a folder and its parents, durably. Raises OSError."""
+    """Make a folder and its parents, durably. Raise OSError."""
     if path.is_dir():
         return
     make_folder(path.parent)
@@ -48,12 +48,12 @@ def make_folder(path: Path) -> None:
 
 
 def keep_private() -> None:
-    """Makes what this process and its children create readable and writable by their user alone."""
+    """Make files of this process and its children readable and writable by their user alone."""
     os.umask(0o077)
 
 
 def sync(path: Path) -> None:
-    """Flushes a file, or the names in a folder, to the disk. Raises OSError."""
+    """Flush a file, or the names in a folder, to the disk. Raise OSError."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)

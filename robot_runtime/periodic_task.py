@@ -7,7 +7,7 @@ SAME_TIME = 1e-6
 
 
 class PeriodicTask:
-    """An action every `period` (s), first at `start`. A period that passed as a whole is not made up for."""
+    """An action every `period` (s), first at `start`. A missed period is not made up for."""
 
     def __init__(self, start: float, period: float, action: Callable[[], object]) -> None:
         self.due = start
@@ -15,7 +15,7 @@ class PeriodicTask:
         self._action = action
 
     def run_if_due(self, now: float) -> None:
-        """Runs the action if it is due."""
+        """Run the action if it is due."""
         if now < self.due - SAME_TIME:
             return
         self.due += self._period

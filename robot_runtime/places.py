@@ -1,4 +1,4 @@
-"""Places of what is built and of the sources, in a repository and in an installation from wheels.
+"""Paths of the build products and the sources, in a repository and in an installation from wheels.
 
 In a repository `make` builds into the folder `build`. The wheels bring the same files in the folder
 `mucat_build` beside the packages: `mucat` the firmware and the default configuration, `mucat-emulator` the

@@ -22,17 +22,19 @@ LEAN_RATE = 2.0
 """Hz: pictures looked at, at most."""
 LEAN_WIDTH, LEAN_HEIGHT = 160, 120
 """Pixels of a picture, at most."""
+LEAN_STREAM_WIDTH, LEAN_STREAM_RATE = 320, 5.0
+"""Pixels and Hz of the camera's stream, at most."""
 
 
 def choose_profile(config: Config, processors: int, memory: int) -> Profile:
-    """Returns the profile for a computer with so many processors and bytes of memory."""
+    """Return the profile for a computer with so many processors and bytes of memory."""
     if config.robot.profile != "auto":
         return config.robot.profile
     return "lean" if processors == 1 and memory < LEAN_BYTES else "full"
 
 
 def fit(config: Config, profile: Profile) -> Config:
-    """Returns the configuration in this profile, which it then names."""
+    """Return the configuration in this profile, which it then names."""
     config = replace(config, robot=replace(config.robot, profile=profile))
     if profile == "full":
         return config
@@ -43,15 +45,17 @@ def fit(config: Config, profile: Profile) -> Config:
         rate=min(now.rate, LEAN_RATE),
         width=round(now.width * smaller),
         height=round(now.height * smaller),
+        stream_width=min(now.stream_width, LEAN_STREAM_WIDTH),
+        stream_rate=min(now.stream_rate, LEAN_STREAM_RATE),
     )
     return replace(config, vision=vision)
 
 
 def profile_here(config: Config) -> Profile:
-    """Returns the profile on this computer."""
+    """Return the profile on this computer."""
     return choose_profile(config, len(os.sched_getaffinity(0)), memory_bytes())
 
 
 def fit_to_this_computer(config: Config) -> Config:
-    """Returns the configuration in the profile of this computer."""
+    """Return the configuration in the profile of this computer."""
     return fit(config, profile_here(config))

@@ -9,9 +9,9 @@ HASH_CHARACTERS = 16
 
 @cache
 def hash_software() -> str:
-    """Returns the first 16 hexadecimal digits of the SHA-256 of the runtime's Python sources and their names.
+    """Return the first 16 hexadecimal digits of the SHA-256 of the runtime's Python sources and their names.
 
-    It is the same wherever they are installed. Raises OSError.
+    It is the same wherever they are installed. Raise OSError.
     """
     root = Path(__file__).parent
     made = sha256()
@@ -23,7 +23,7 @@ def hash_software() -> str:
 
 
 def hash_firmware(program: Path) -> str:
-    """Returns the first 16 hexadecimal digits of a firmware file's SHA-256; empty without such a file."""
+    """Return the first 16 hexadecimal digits of a firmware file's SHA-256; empty without such a file."""
     try:
         return sha256(program.read_bytes()).hexdigest()[:HASH_CHARACTERS]
     except OSError:

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from robot_runtime.clock import SteadyClock
 from robot_runtime.commands import Commands
 from robot_runtime.config import Config
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT, Craft
 from robot_runtime.contract.documents import Event
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.vision_settings import VisionSettings
@@ -24,7 +25,7 @@ from robot_runtime.vision.process import VisionProcess
 from robot_runtime.vision.settings_file import VisionSettingsFile
 
 
-class Robot(Core):
+class RobotRuntime(Core):
     """The running robot. `run` returns after `close`. `heartbeat`: s after which a silent server is a fault.
 
     Settings in `vision_file` replace the configuration's.
@@ -35,6 +36,7 @@ class Robot(Core):
         config: Config,
         port: str,
         messages: ZenohTransport,
+        craft: Craft = DEFAULT_DOCUMENT.craft,
         heartbeat: float | None = None,
         vision_file: VisionSettingsFile | None = None,
     ) -> None:
@@ -68,6 +70,7 @@ class Robot(Core):
             ),
             heartbeat=heartbeat,
         )
+        self.control.dead_reckoning.craft = craft
         self._vision_file = vision_file
         self._vision_unstored: VisionSettings | None = None
         self._storing = threading.Lock()
@@ -77,25 +80,26 @@ class Robot(Core):
         messages.subscribe(PILOT, lambda _, payload: self.take_pilot(payload))
 
     def serve(self) -> None:
-        """Serves the commands and queries of the other processes."""
+        """Serve the commands and queries of the other processes."""
         for name, command in Commands(self).do.items():
             self._messages.serve(f"command/{name}", command)
-        self._messages.serve("query/frames", lambda _: self.frames())
+        self._messages.serve("query/frames", lambda _: self.line.describe_frames())
         self._messages.serve("query/vision", lambda _: self.vision_settings())
         self._messages.serve("query/pick", lambda question: self.vision.pick(question))
+        self._messages.serve("query/snapshot", lambda _: self.vision.take_snapshot())
         self._messages.serve("query/state", lambda _: asdict(self.state()))
         self._messages.serve("query/parameters", lambda _: asdict(self.list_parameters()))
         self._messages.serve_bytes("query/blocks", self.cache.answer)
 
     def set_vision(self, settings: VisionSettings) -> None:
-        """Applies vision settings from the next picture on; `store_settings` stores them."""
+        """Apply vision settings from the next picture on; `store_settings` stores them."""
         super().set_vision(settings)
         # What a mission sets is put back at its end, and must not outlive a runtime that is killed.
         if not self.missions.active:
             self._vision_unstored = settings
 
     def store_settings(self) -> None:
-        """Stores changed vision settings for the next start."""
+        """Store changed vision settings for the next start."""
         with self._storing:
             settings, self._vision_unstored = self._vision_unstored, None
             if settings is None or self._vision_file is None:
@@ -109,7 +113,7 @@ class Robot(Core):
                 self._publish_vision_event(f"The settings apply, but could not be stored: {problem.strerror}")
 
     def run(self) -> None:
-        """Runs until `close` is called, then disarms the board and closes everything."""
+        """Run until `close` is called, then disarm the board and close everything."""
         self.connection.start()
         self.vision.start()
         control = threading.Thread(target=self._control_loop, name="control", daemon=True)
@@ -127,12 +131,13 @@ class Robot(Core):
             self.outbox.flush()
 
     def close(self) -> None:
-        """Makes `run` return; takes no lock, so that a signal handler may call it."""
+        """Make `run` return; take no lock, so that a signal handler may call it."""
         self._closing = True
 
-    def _see_server(self, pages: bytes, run: str) -> None:
-        self.supervisor.detector.see_server()
-        self.missions.see_pages(int(pages) if pages.isdigit() else 0)
+    def _see_server(self, payload: bytes, run: str) -> None:
+        counts = [int(count) for count in payload.split() if count.isdigit()]
+        self.supervisor.detector.see_server(watched=any(counts))
+        self.missions.see_pages(counts[0] if counts else 0)
         if run != self._server_run:
             # A server that has just started needs the state at once, not only when it is due again.
             self._server_run = run

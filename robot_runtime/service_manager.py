@@ -8,7 +8,7 @@ FEED_SECONDS = 1.0
 
 
 class ServiceManager:
-    """systemd, or nobody: without $NOTIFY_SOCKET nothing is sent. The times are of any steady clock, in s."""
+    """The connection to systemd; without $NOTIFY_SOCKET it sends nothing. Times are s of any steady clock."""
 
     def __init__(self) -> None:
         address = os.environ.get("NOTIFY_SOCKET", "")

@@ -1,4 +1,4 @@
-"""Finds the members of a zip file again that a person has unpacked and packed."""
+"""The members of a zip file, also of one that a person has unpacked and packed again."""
 
 import re
 from zipfile import ZipFile, ZipInfo
@@ -8,15 +8,15 @@ _ADDED = re.compile(r"(?:.*/)?(?:__MACOSX/.*|\._[^/]*|\.DS_Store|Thumbs\.db|desk
 
 
 def find_members(files: ZipFile, known: str) -> dict[str, ZipInfo]:
-    """The members by their names in the folder in which `known` lies, which is none as first packed.
+    """Return the members by their names in the folder of `known`, which is the top one as first packed.
 
-    What lies elsewhere has its whole name. Raises ValueError where two members have the same name.
+    Members elsewhere have their whole names. Raise ValueError where two members have the same name.
     """
-    found = [(info.filename.replace("\\", "/"), info) for info in files.infolist()]
-    found = [(name, info) for name, info in found if not _ADDED.fullmatch(name)]
-    places = [name.removesuffix(known) for name, _ in found if f"/{name}".endswith(f"/{known}")]
-    folder = min(places, key=len, default="")
-    members = {name.removeprefix(folder): info for name, info in found}
-    if len(members) < len(found):
+    packed = [(info.filename.replace("\\", "/"), info) for info in files.infolist()]
+    packed = [(name, info) for name, info in packed if not _ADDED.fullmatch(name)]
+    folders = [name.removesuffix(known) for name, _ in packed if f"/{name}".endswith(f"/{known}")]
+    folder = min(folders, key=len, default="")
+    members = {name.removeprefix(folder): info for name, info in packed}
+    if len(members) < len(packed):
         raise ValueError("it holds two members of the same name")
     return members

@@ -10,23 +10,18 @@ from starlette.routing import BaseRoute
 
 from server import VERSION
 from server.container import Container, features_on
+from server.driving.admission import admit
 from server.feature import Feature
-from server.features.lease.admission import admit
 from server.http.addresses import make_unknown_router
-from server.http.audit import AuditMiddleware
 from server.http.description import DescribedApp
 from server.http.error_handlers import add_error_handlers
-from server.http.head_requests import HeadRequests
 from server.http.help_pages import HelpPages, make_help_router
+from server.http.layers import add_layers
 from server.http.operations import EVERYWHERE, Operations
 from server.http.page import Page, make_router
-from server.http.proxies import RequestsOfAddress
-from server.http.security import SecurityMiddleware
 from server.http.sign_in.access import cookie_name
-from server.http.sign_in.middleware import SignInMiddleware
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
-from server.http.start_problems import StartProblems, explaining_start
-from server.http.turns import RequestTurns
+from server.http.start_problems import explaining_start
 from server.platform.settings import Settings
 from server.processes.managed_process import ProcessCommand
 
@@ -36,9 +31,9 @@ def create_app(
     commands: Sequence[ProcessCommand] = (),
     started: Callable[[Container], None] | None = None,
 ) -> FastAPI:
-    """The server for one robot; `commands` are the processes that it keeps running (`supervisor.plan`).
+    """Return the server for one robot; it keeps the processes `commands` running (`supervisor.plan`).
 
-    `started` is called once everything is there, before anybody is served.
+    `started` is called once everything is ready, before any request is served.
     """
 
     # Made before the fork, so that it stays valid when the server is started again.
@@ -56,7 +51,7 @@ def create_app(
                 yield
 
     app = DescribedApp(
-        cookie=cookie_name(settings.port),
+        cookie=cookie_name(settings.server.port),
         title="µ-CAT",
         version=VERSION,
         description="The server of µ-CAT, a hand-sized underwater robot turtle. Errors say what happened, "
@@ -67,41 +62,28 @@ def create_app(
         lifespan=lifespan,
     )
     app.state.ended = ""
-    # The middleware added last runs first.
-    app.add_middleware(RequestTurns)
-    app.add_middleware(SignInMiddleware)
-    app.add_middleware(
-        SecurityMiddleware,
-        allowed_hosts=settings.allowed_hosts,
-        port=settings.port,
-        public_url=settings.public_url,
-    )
-    if settings.trusted_proxies:
-        app.add_middleware(RequestsOfAddress)
-    app.add_middleware(HeadRequests)
-    app.add_middleware(AuditMiddleware)
-    app.add_middleware(StartProblems)
+    add_layers(app, settings)
     add_error_handlers(app)
     for feature in features_on(settings):
-        for place in feature.routes:
-            app.router.routes.extend(_build_routes(place, feature, settings))
+        for location in feature.routes:
+            app.router.routes.extend(_build_routes(location, feature, settings))
     app.include_router(make_unknown_router())
     app.include_router(make_help_router(HelpPages(settings.help_pages)))
     app.include_router(make_router(Page(settings.page)))
     return app
 
 
-def _build_routes(place: str, feature: Feature, settings: Settings) -> list[BaseRoute]:
-    """The routes at this place of a feature's code, each behind admission."""
-    found = resolve_name(place)
-    if isinstance(found, Operations):
-        return _build(found)
+def _build_routes(location: str, feature: Feature, settings: Settings) -> list[BaseRoute]:
+    """Return the routes at this location of a feature's code, each behind admission."""
+    source = resolve_name(location)
+    if isinstance(source, Operations):
+        return _build(source)
     assert feature.section is not None
-    return [route for made in found(settings.section(feature.section)) for route in _build(made)]
+    return [route for made in source(settings.section(feature.section)) for route in _build(made)]
 
 
 @cache
 def _build(operations: Operations) -> list[BaseRoute]:
-    """The same for all servers of a process."""
+    """Build an application's routes once for all servers of a process."""
     checks = [] if operations.admits_itself else [Depends(admit)]
     return operations.build(checks, responses=EVERYWHERE)

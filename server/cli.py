@@ -22,7 +22,10 @@ COMMANDS = {
 
 
 def places_of_commands() -> dict[str, str]:
-    """The place of each command. Only the called one is loaded: a Raspberry Pi Zero is slow at that."""
+    """Return the location of each command's code.
+
+    Only the called one is loaded: a Raspberry Pi Zero is slow at that.
+    """
     places = dict(COMMANDS)
     for feature in list_features().values():
         places |= feature.commands
@@ -30,16 +33,16 @@ def places_of_commands() -> dict[str, str]:
 
 
 class LazyGroup(click.Group):
-    """Commands that are imported when they are needed."""
+    """Group of commands that are imported when they are needed."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
         """Return the names in alphabetical order."""
         return list(places_of_commands())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
-        """Import a command; None where there is none of this name."""
-        place = places_of_commands().get(cmd_name)
-        command: click.Command | None = None if place is None else resolve_name(place)
+        """Import a command; return None where there is none of this name."""
+        location = places_of_commands().get(cmd_name)
+        command: click.Command | None = None if location is None else resolve_name(location)
         return command
 
 
@@ -67,7 +70,7 @@ def completion(shell: str) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Exit status: 0 after an orderly end, 1 where the command cannot be carried out, 2 for wrong usage."""
+    """Run a command. Return the exit status: 0 for success, 1 for a failure, 2 for wrong usage."""
     keep_private()
     limit_library_threads()
     try:

@@ -8,9 +8,9 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import MISSING, fields
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from robot_runtime.config import Config
+from robot_runtime.contract.hints import Hint, read_fields
 from robot_runtime.generate.markdown import page, table
 from server.feature import list_features
 from server.platform.server_config import ServerConfig
@@ -36,7 +36,10 @@ _CONTINUED = re.compile(r"\s+# (.*)")
 
 
 def configuration_page(robot_toml: str) -> str:
-    """The whole text of configuration.md. Raises ValueError where an entry has no comment in `robot_toml`."""
+    """Return the whole text of configuration.md.
+
+    Raise ValueError where an entry has no comment in `robot_toml`.
+    """
     meanings = read_comments(robot_toml)
     parts = [INTRODUCTION]
     for name, cls in list_sections().items():
@@ -46,51 +49,57 @@ def configuration_page(robot_toml: str) -> str:
 
 
 def list_sections() -> dict[str, type]:
-    """The classes of all sections: the robot's, the server's, the features'."""
+    """Return the classes of all sections: the robot's, the server's, the features'."""
     return {
-        **{one.name: type(one.default) for one in fields(Config)},
+        **{field.name: type(field.default) for field in fields(Config)},
         "server": ServerConfig,
-        **{one.name: one.section for one in list_features().values() if one.section is not None},
+        **{
+            feature.name: feature.section
+            for feature in list_features().values()
+            if feature.section is not None
+        },
     }
 
 
 def read_comments(text: str) -> dict[str, str]:
-    """The comment of each entry of a TOML file, by `section.entry`; lines that continue it are joined."""
+    """Return the comment of each entry of a TOML file, by `section.entry`; continued lines are joined."""
     section, entry = "", ""
     comments: dict[str, str] = {}
     for line in text.splitlines():
         if header := _HEADER.match(line):
             section, entry = header[1], ""
-        elif found := _ENTRY.match(line):
-            entry = f"{section}.{found[1]}"
-            comments[entry] = found[2] or ""
+        elif match := _ENTRY.match(line):
+            entry = f"{section}.{match[1]}"
+            comments[entry] = match[2] or ""
         elif (more := _CONTINUED.match(line)) and entry:
             comments[entry] += f" {more[1]}"
     return comments
 
 
 def _rows(cls: type, section: str, defaults: object, meanings: Mapping[str, str]) -> list[tuple[str, ...]]:
-    hints = get_type_hints(cls, include_extras=True)
+    hints = read_fields(cls)
     rows: list[tuple[str, ...]] = []
-    for one in fields(cls):
-        meaning = TABLES.get(one.name) or meanings.get(f"{section}.{one.name}")
+    for field in fields(cls):
+        meaning = TABLES.get(field.name) or meanings.get(f"{section}.{field.name}")
         if not meaning:
-            raise ValueError(f"robot.toml has no comment beside {section}.{one.name}; add one")
-        default = getattr(defaults, one.name)
-        shown = "" if one.name in TABLES or one.default is MISSING is one.default_factory else _toml(default)
-        rows.append((f"`{one.name}`", _values(hints[one.name]), shown, meaning))
+            raise ValueError(f"robot.toml has no comment beside {section}.{field.name}; add one")
+        default = getattr(defaults, field.name)
+        shown = (
+            ""
+            if field.name in TABLES or field.default is MISSING is field.default_factory
+            else _toml(default)
+        )
+        rows.append((f"`{field.name}`", _values(hints[field.name]), shown, meaning))
     return rows
 
 
-def _values(hint: Any) -> str:
-    """The values that a type hint admits, in words."""
-    if get_origin(hint) is Annotated:
-        limits = get_args(hint)[1]
-        return f"{limits.minimum:g} to {limits.maximum:g}"
-    if get_origin(hint) is Literal:
-        return ", ".join(f"`{value}`" for value in get_args(hint))
-    names = {bool: "true or false", str: "text", int: "whole number", float: "number", dict: "table"}
-    return names.get(get_origin(hint) or hint, "list")
+def _values(hint: Hint) -> str:
+    """Return the values that a type hint admits, as text."""
+    if hint.limits is not None:
+        return f"{hint.limits.minimum:g} to {hint.limits.maximum:g}"
+    if hint.form == "choice":
+        return ", ".join(f"`{value}`" for value in hint.choices)
+    return "true or false" if hint.form == "switch" else "list" if hint.form == "tuple" else hint.form
 
 
 def _toml(value: object) -> str:

@@ -25,7 +25,7 @@ BASE: tuple[type[Plug], ...] = (HttpPlug, StreamPlug, HealthPlug)
 
 
 class Container:
-    """Everything that lives as long as the server does.
+    """The services that live as long as the server.
 
     `ended` is a sentence about the unexpected end of the server before this one; empty without one.
     """
@@ -42,14 +42,14 @@ class Container:
         self.services.add(Store, Store(settings.data.database))
         self.services.add(ShellToken, ShellToken(token))
         self.services.add(ServerStart, ServerStart(tuple(commands), ended))
-        plugs = [*BASE, *(resolve_name(one.plug) for one in features_on(settings) if one.plug)]
+        plugs = [*BASE, *(resolve_name(feature.plug) for feature in features_on(settings) if feature.plug)]
         for plug in plugs:
             self.services.offer(*plug.makers)
         self._plugs: list[Plug] = [self.services.get(plug) for plug in plugs]
 
     @asynccontextmanager
     async def run(self) -> AsyncIterator[None]:
-        """Start everything; end everything. Raises SetupError, StoreError."""
+        """Start everything; end everything. Raise SetupError, StoreError."""
         tasks: list[asyncio.Task[None]] = []
         try:
             for plug in self._plugs:
@@ -68,12 +68,12 @@ class Container:
                     ending.push_async_callback(end)
 
     def warm_up(self) -> None:
-        """Prepare what is likely to be asked for."""
+        """Prepare the services that are likely to be needed."""
         for plug in self._plugs:
             plug.warm_up()
 
     def _begin(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
-        """Begin a background task, whose failure is logged and an alarm."""
+        """Begin a background task; its failure is logged and raises an alarm."""
         task = asyncio.create_task(work, name=getattr(work, "__qualname__", None))
         task.add_done_callback(self._see_failed)
         return task
@@ -87,7 +87,7 @@ class Container:
 
 
 def features_on(settings: Settings) -> list[Feature]:
-    """The features that are on."""
+    """Return the features that are on."""
     return [feature for feature in list_features().values() if settings.has(feature)]
 
 

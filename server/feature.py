@@ -14,7 +14,7 @@ from importlib.metadata import entry_points
 from pkgutil import iter_modules, resolve_name
 from typing import Any, ClassVar
 
-from robot_runtime.contract.declarations import DeclaredTwiceError
+from robot_runtime.contract.declarations import Declarations
 from server.services import Maker
 
 ENTRY_POINTS = "mucat.features"
@@ -22,13 +22,14 @@ ENTRY_POINTS = "mucat.features"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Feature:
-    """A feature and what it consists of; places in the code are written "module:name".
+    """A feature and its parts; locations in the code are written "module:name".
 
     `section` is the class of its section of robot.toml, which has its name. `is_on` tells by the section
     whether the feature has anything to do. An `optional` one can be switched off in `[features]`. `removed`
     are entries of earlier versions: empty ones are passed over, others refused in words. `routes` are places
-    of `Operations`, or of functions that make them of their section. `commands` are those of the shell, by
-    their names. `plug` is the place of its `Plug`.
+    of `Operations`, or of functions that make them of their section. `prepare` is the place of a function of
+    the settings, called before the server is loaded; a SetupError ends the start. `commands` are those of the
+    shell, by their names. `plug` is the place of its `Plug`.
     """
 
     name: str
@@ -39,58 +40,52 @@ class Feature:
     routes: Sequence[str] = ()
     commands: Mapping[str, str] = field(default_factory=dict)
     plug: str = ""
+    prepare: str = ""
 
 
 class Plug:
-    """The part of a feature that lives in a running server. Its constructor asks for services by their types.
+    """The part of a feature that lives in a running server. Its constructor names services by their types.
 
-    `makers` are functions that make services which cannot make themselves. A failure of `open` and `start`
-    ends the server's start. All calls come from the event loop.
+    `makers` are functions that make services whose constructors do not suffice. A failure of `open` and
+    `start` ends the server's start. All calls come from the event loop.
     """
 
     makers: ClassVar[Sequence[Maker]] = ()
 
     async def open(self) -> None:
-        """Make ready; the robot is not heard yet."""
+        """Prepare; no data of the robot arrives yet."""
 
     async def start(self) -> None:
-        """Begin; every feature is open. Nobody is served yet."""
+        """Begin; every feature is open, and no request is served yet."""
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
-        """The background work that lasts as long as the server; its failure is an alarm."""
+        """Return the background work that lasts as long as the server; its failure is an alarm."""
         return ()
 
     def warm_up(self) -> None:
-        """Prepare what is likely to be asked for; the server serves."""
+        """Prepare data that is likely to be needed; the server serves already."""
 
     async def stop(self) -> None:
-        """End what the feature does; the robot's processes still run, the background work has ended."""
+        """End the feature's work; the robot's processes still run, the background work has ended."""
 
     async def close(self) -> None:
-        """Release what it holds; the robot's processes have ended."""
+        """Release its resources; the robot's processes have ended."""
 
 
 @cache
 def list_features() -> Mapping[str, Feature]:
-    """All features by name: those of the server, then those of other packages.
+    """Return all features by name: those of the server, then those of other packages.
 
-    Raises DeclaredTwiceError where two have the same name, or a command of the same name.
+    Raise DeclaredTwiceError where two have the same name, or a command of the same name.
     """
-    features = resolve_name("server.features")
-    own = [
-        resolve_name(f"server.features.{module.name}:FEATURE") for module in iter_modules(features.__path__)
-    ]
-    others = [point.load() for point in entry_points(group=ENTRY_POINTS)]
-    named: dict[str, Feature] = {}
-    commands: dict[str, str] = {}
-    for feature in [*own, *others]:
-        if feature.name in named:
-            raise DeclaredTwiceError(f"two features are named {feature.name!r}; rename one of them")
+    folders = iter_modules(resolve_name("server.features").__path__)
+    modules = [f"server.features.{folder.name}" for folder in folders]
+    features = [(module, resolve_name(f"{module}:FEATURE")) for module in modules]
+    features += [(point.value, point.load()) for point in entry_points(group=ENTRY_POINTS)]
+    named: Declarations[str, Feature] = Declarations("the name of a feature")
+    commands: Declarations[str, Feature] = Declarations("the name of a shell command")
+    for location, feature in features:
+        named.add_from(location, feature.name, feature)
         for command in feature.commands:
-            if command in commands:
-                raise DeclaredTwiceError(
-                    f"the features {commands[command]} and {feature.name} both have a command {command!r}"
-                )
-            commands[command] = feature.name
-        named[feature.name] = feature
+            commands.add_from(location, command, feature)
     return named

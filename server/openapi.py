@@ -18,7 +18,10 @@ SOURCES = Path(__file__).resolve().parents[1]
 
 
 def main() -> int:
-    """Write the document, always in the same order. Exit status: 1 where `--check` finds another page."""
+    """Write the document, always in the same order.
+
+    Return the exit status: 1 where `--check` finds a change.
+    """
     parser = argparse.ArgumentParser(prog="python -m server.openapi", description=__doc__)
     parser.add_argument("--reference", action="store_true", help="write the pages of the reference")
     parser.add_argument("--check", action="store_true", help="write nothing; fail if the page is not current")
@@ -40,7 +43,7 @@ def main() -> int:
 
 
 def _write(page: Path, text: str, *, only_check: bool) -> int:
-    """Write a page, or say that it is not current. Returns the exit status."""
+    """Write a page, or report that it is not current. Return the exit status."""
     if not only_check:
         page.write_text(text, encoding="utf-8")
     elif not page.is_file() or page.read_text(encoding="utf-8") != text:

@@ -1,4 +1,4 @@
-"""The services of a server: each is made when it is first asked for, of what the types of its maker name."""
+"""The services of a server: each is made at its first use, from the services that its maker's types name."""
 
 from collections.abc import Callable
 from inspect import Parameter, signature
@@ -9,11 +9,11 @@ Maker = Callable[..., object]
 
 
 class UnknownServiceError(LookupError):
-    """A service cannot be made; the text says for whom it was asked."""
+    """A service cannot be made; the text names the services that need it."""
 
 
 class Services:
-    """Makes each service once. A class is its own maker; a function can be offered for what it returns.
+    """The services, each made once. A class is its own maker; a function can be offered for its return type.
 
     A parameter that has a default value keeps it.
     """
@@ -24,7 +24,7 @@ class Services:
         self._making: list[type] = []
 
     def add(self, kind: type[T], service: T) -> None:
-        """Add a service that is there already; `kind` is the type by which it is asked for."""
+        """Add an existing service; `kind` is the type that requests it."""
         self._made[kind] = service
 
     def offer(self, *makers: Maker) -> None:
@@ -33,7 +33,7 @@ class Services:
             self._makers[get_type_hints(maker)["return"]] = maker
 
     def get(self, kind: type[T]) -> T:
-        """The service of this type. Raises UnknownServiceError where it cannot be made."""
+        """Return the service of this type. Raise UnknownServiceError where it cannot be made."""
         if kind not in self._made:
             if kind in self._making:
                 raise self._error(kind, "needs itself")
@@ -58,5 +58,5 @@ class Services:
         return maker(**asked)
 
     def _error(self, kind: type, what: str) -> UnknownServiceError:
-        chain = " for ".join(one.__name__ for one in reversed(self._making))
+        chain = " for ".join(service.__name__ for service in reversed(self._making))
         return UnknownServiceError(f"{kind.__name__} {what} (made: {chain})")

@@ -21,7 +21,7 @@ _AGAIN = 0.1
 
 
 def main(command: list[str]) -> int:
-    """Returns the command's exit code, as a shell does; passes on the signals that end it."""
+    """Return the command's exit code, as a shell does; passes on the signals that end it."""
     ending: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda number, _: ending.append(number))
@@ -35,7 +35,7 @@ def main(command: list[str]) -> int:
 
 
 def _give_way(session: int) -> None:
-    """Does nothing where the kernel does not share by session, or the session has ended."""
+    """Do nothing where the kernel does not share by session, or the session has ended."""
     with suppress(FileNotFoundError, ProcessLookupError):
         while True:
             try:

@@ -41,6 +41,12 @@ def pytest_unconfigure() -> None:
 
 
 @pytest.fixture(scope="session")
+def anyio_backend() -> str:
+    """Run async tests and fixtures in asyncio's event loop, one for each test."""
+    return "asyncio"
+
+
+@pytest.fixture(scope="session")
 def _running() -> Iterator[Stack]:
     with tempfile.TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
         yield stack

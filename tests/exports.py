@@ -7,7 +7,7 @@ _PATIENCE = 60.0
 _POLL = 0.05
 
 
-class Client(Protocol):
+class HttpClient(Protocol):
     """A client of httpx, or a session of requests."""
 
     def get(self, url: str) -> Any: ...
@@ -17,8 +17,8 @@ class Client(Protocol):
     def delete(self, url: str) -> Any: ...
 
 
-def export_session(client: Client, session: int, format_: str = "csv", base: str = "") -> Any:
-    """The file of a session's export in this format; the export is deleted afterwards."""
+def export_session(client: HttpClient, session: int, format_: str = "csv", base: str = "") -> Any:
+    """Return the file of a session's export in this format; the export is deleted afterwards."""
     answer = client.post(f"{base}/exports", json={"session": session, "format": format_})
     answer.raise_for_status()
     job: dict[str, Any] = answer.json()

@@ -45,7 +45,7 @@ def main() -> None:
         assert text.count(before) == 1, before
         text = text.replace(before, after)
     (data / "robot.toml").write_text(text)
-    told: dict[str, Any] = {}
+    reports: dict[str, Any] = {}
     mucat = str(Path(sys.executable).parent / "mucat")
     robot = ["--data", str(data / "data"), "--config", str(data / "robot.toml")]
     subprocess.run(
@@ -61,7 +61,7 @@ def main() -> None:
     ):
         silent = "The board sends no status. Wait a moment, or reset it."
         wait(lambda: silent not in refusals(stack), "the board's first status", stack)
-        told["alone"] = refusals(stack)
+        reports["alone"] = refusals(stack)
         simulator = subprocess.Popen(
             [mucat, "simulator", *there],
             cwd=ROOT,
@@ -69,20 +69,20 @@ def main() -> None:
         )
         try:
             wait(lambda: refusals(stack) == [], "the simulator", stack)
-            told["simulator"] = health(stack, "simulator")
+            reports["simulator"] = health(stack, "simulator")
             if missing() is None:
                 wait(lambda: state(stack)["camera"] == "rendered scene", "pictures of the scene", stack)
             session = stack.api.post("/sessions", json={"name": "in the loop"}).json()
             stack.arm()
-            wait(Dive(stack, session["id"]).has_turned, "the turn below the set point", stack)
-            told["armed"] = state(stack)["armed"]
+            wait(LoopDive(stack, session["id"]).has_turned, "the turn below the set point", stack)
+            reports["armed"] = state(stack)["armed"]
             hosts.loss = 1.0
             wait(lambda: not state(stack)["armed"], "the stop after the cut", stack)
             time.sleep(CUT_SECONDS)
-            told["cut"] = refusals(stack)
+            reports["cut"] = refusals(stack)
             hosts.loss = 0.01
             wait(lambda: len(refusals(stack)) == 1, "the simulator's return", stack)
-            told["back"] = state(stack)["mode"]
+            reports["back"] = state(stack)["mode"]
             acknowledge = "/robot/commands/acknowledge"
             wait(lambda: stack.api.post(acknowledge).is_success, "the runtime to be acknowledged", stack)
             wait(lambda: refusals(stack) == [], "the acknowledgement", stack)
@@ -91,16 +91,16 @@ def main() -> None:
         finally:
             simulator.terminate()
             simulator.wait(PATIENCE)
-        told["packets"] = hosts.packets
-    print(json.dumps(told))  # noqa: T201 - it speaks to the test that started it
+        reports["packets"] = hosts.packets
+    print(json.dumps(reports))  # noqa: T201 - it speaks to the test that started it
 
 
 def state(stack: Stack) -> dict[str, Any]:
-    found: dict[str, Any] = stack.api.get("/robot").json()
-    return found
+    answer: dict[str, Any] = stack.api.get("/robot").json()
+    return answer
 
 
-class Dive:
+class LoopDive:
     """Follows the depth of a session that has just begun."""
 
     def __init__(self, stack: Stack, session: int) -> None:
@@ -109,7 +109,7 @@ class Dive:
         self._deepest = 0.0
 
     def has_turned(self) -> bool:
-        """True once the robot was below its set point and rises again; to be asked often."""
+        """Return True once the robot was below its set point and rises again; to be asked often."""
         span = {"start": max(time.monotonic() - self._began - LATEST, 0.0), "end": PATIENCE}
         answer = self._stack.api.get(f"/sessions/{self._session}/blocks", params=span)
         blocks = [block for block in read_blocks(answer.raise_for_status().content) if block.topic is DEPTH]
@@ -120,8 +120,8 @@ class Dive:
 
 
 def refusals(stack: Stack) -> list[str]:
-    found: list[str] = state(stack)["refusals"]
-    return found
+    result: list[str] = state(stack)["refusals"]
+    return result
 
 
 def health(stack: Stack, name: str) -> str:

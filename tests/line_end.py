@@ -47,7 +47,7 @@ class LineEnd:
         return self._channel.urgent
 
     def say(self, packets: Sequence[Packet], now: float) -> bytes:
-        """The bytes that carry these packets: HELLO and STOP in open frames, the others in the session."""
+        """Return the bytes of these packets: HELLO and STOP in open frames, the others in the session."""
         opened = [packet for packet in packets if isinstance(packet, Hello | Stop)]
         data = build(opened, 0, 0) if opened else b""
         for packet in packets:
@@ -69,7 +69,7 @@ class LineEnd:
         return data
 
     def hear(self, data: bytes, now: float) -> list[tuple[int, bytes]]:
-        """The messages in these bytes, by type and payload."""
+        """Return the messages in these bytes, by type and payload."""
         heard: list[tuple[int, bytes]] = []
         for frame in self._decoder.feed(data):
             self.frames += 1

@@ -24,9 +24,11 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import WebSocketException
 
 from bench.dive import Dive
+from robot_runtime.config import RobotConfig
 from robot_runtime.contract.topics import BY_NAME, TIME, Kind
 from robot_runtime.transport.blocks import Block, read_blocks, row
-from server.features.lease.arbiter import ControlArbiter
+from server.driving.arbiter import ControlArbiter
+from server.platform.server_config import ServerConfig
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.server.serving import Served, serve
 from tests.server.sign_in.browsers import new_code
@@ -52,7 +54,7 @@ PATIENCE = 30.0
 
 
 @dataclass
-class Report:
+class NetworkReport:
     """The observations of the page and of the robot's end."""
 
     ages: list[float] = field(default_factory=list)
@@ -83,7 +85,7 @@ def _spread(ages: list[float]) -> dict[str, float]:
 class FarPage:
     """A page on the other host, which opens its socket again whenever it closes or falls silent."""
 
-    def __init__(self, hosts: TwoHosts, served: Served, report: Report) -> None:
+    def __init__(self, hosts: TwoHosts, served: Served, report: NetworkReport) -> None:
         self.connections = 0
         self.age = float("inf")
         """s, of the newest depth, when it came."""
@@ -93,7 +95,7 @@ class FarPage:
         self._report = report
         # A socket stays on the host on which it was made, so one thread that lives there is enough.
         self._there = ThreadPoolExecutor(1, initializer=hosts.enter_there)
-        self._origin = f"http://{HERE}:{served.settings.port}"
+        self._origin = f"http://{HERE}:{served.settings.server.port}"
         self._api = httpx.Client(base_url=f"{self._origin}/api", headers={"origin": self._origin}, timeout=20)
         self._socket: ClientConnection | None = None
 
@@ -122,7 +124,7 @@ class FarPage:
             await asyncio.sleep(RETRY_SECONDS)
 
     async def _watch(self) -> None:
-        address = (HERE, self._served.settings.port)
+        address = (HERE, self._served.settings.server.port)
         make = lambda: socket.create_connection(address, SILENT_SECONDS)  # noqa: E731
         line = await asyncio.get_running_loop().run_in_executor(self._there, make)
         line.setblocking(False)
@@ -150,9 +152,9 @@ class FarPage:
     def _take(self, message: str | bytes) -> None:
         now = time.monotonic()
         if isinstance(message, str):
-            found = json.loads(message)
-            if found["op"] == "hello":
-                self.hello = found
+            answer = json.loads(message)
+            if answer["op"] == "hello":
+                self.hello = answer
             return
         for block in read_blocks(message):
             if block.topic.kind is Kind.PICTURE and self.measuring:
@@ -163,11 +165,11 @@ class FarPage:
                     self._report.ages.append(self.age)
 
 
-class Scenario:
+class NetworkTrial:
     """A page that watches, drives, stops the robot, loses the network and comes back."""
 
     def __init__(self, hosts: TwoHosts, served: Served) -> None:
-        self.report = Report()
+        self.report = NetworkReport()
         self._hosts = hosts
         self._served = served
         self._page = FarPage(hosts, served, self.report)
@@ -221,10 +223,10 @@ class Scenario:
     async def _time(self, name: str, ask: Callable[[], Any]) -> float:
         """s until a command has reached the robot's end, and its answer the page where there is one."""
         asked = self._served.runtime.asked
-        before = sum(one == name for one, _ in asked)
+        before = sum(request == name for request, _ in asked)
         began = time.monotonic()
         await ask()
-        await until(lambda: sum(one == name for one, _ in asked) > before, name, PATIENCE)
+        await until(lambda: sum(request == name for request, _ in asked) > before, name, PATIENCE)
         return time.monotonic() - began
 
     async def _steer(self) -> None:
@@ -262,20 +264,19 @@ class Scenario:
         self.report.connections = [before, self._page.connections]
 
 
-async def run(hosts: TwoHosts, folder: Path) -> Report:
-    """The report of a scenario."""
+async def run(hosts: TwoHosts, folder: Path) -> NetworkReport:
+    """Return the report of a scenario."""
     data = DataFolder(folder / "data")
     make_folders(data)
     settings = Settings(
         data=data,
         config=ROOT / "robot.toml",
-        robot="tested",
-        host="0.0.0.0",
-        allowed_hosts=("127.0.0.1", HERE),
+        robot=RobotConfig(name="tested"),
+        sections={ServerConfig: ServerConfig(host="0.0.0.0", allowed_hosts=["127.0.0.1", HERE])},
         page=folder,
     )
     async with serve(settings) as served:
-        scenario = Scenario(hosts, served)
+        scenario = NetworkTrial(hosts, served)
         await scenario.play()
         return scenario.report
 

@@ -13,9 +13,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from server import VERSION
+from server.analysis.comparer import Comparer
+from server.analysis.schemas import ComparisonQuery
 from server.cli import main
-from server.features.comparison.comparer import Comparer
-from server.features.comparison.schemas import ComparisonQuery
 from server.platform.settings import DataFolder
 from server.platform.store import Reader
 
@@ -71,13 +71,13 @@ do = "stop"
 
 
 def run(*arguments: str | Path) -> None:
-    """A command of the shell. Raises RuntimeError."""
-    if main([str(one) for one in arguments]) != 0:
+    """A command of the shell. Raise RuntimeError."""
+    if main([str(argument) for argument in arguments]) != 0:
         raise RuntimeError(f"mucat {arguments[0]} has failed")
 
 
 def hash_tables(data: Path, session: int) -> dict[str, str]:
-    """The SHA-256 of the exported tables and pictures of a session, by file."""
+    """Return the SHA-256 of the exported tables and pictures of a session, by file."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "session.zip"
         run("export", str(session), "--format", "csv", "-o", path, "--data", data)
@@ -90,14 +90,14 @@ def hash_tables(data: Path, session: int) -> dict[str, str]:
 
 
 def compare(data: Path, session: int) -> dict[str, Any]:
-    """The figures of a session, and the number of points of each line."""
+    """Return the figures of a session, and the number of points of each line."""
     query = ComparisonQuery(sessions=[session], signals=SIGNALS, points=20)
     with closing(Reader(DataFolder(data).database)) as store:
-        found = json.loads(Comparer(store).compare(query).model_dump_json())
-    (one,) = found["sessions"]
+        answer = json.loads(Comparer(store).compare(query).model_dump_json())
+    (item,) = answer["sessions"]
     return {
-        "figures": {name: figure["value"] for name, figure in one["figures"].items()},
-        "lines": one["series"],
+        "figures": {name: figure["value"] for name, figure in item["figures"].items()},
+        "lines": item["series"],
     }
 
 

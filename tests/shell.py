@@ -7,7 +7,7 @@ import httpx
 from server.platform.settings import DataFolder
 
 
-class ShellToken(httpx.Auth):
+class ShellAuth(httpx.Auth):
     """The token of the server of this folder; each start of it makes another."""
 
     def __init__(self, folder: DataFolder) -> None:
@@ -19,7 +19,7 @@ class ShellToken(httpx.Auth):
 
 
 def shell_headers(folder: DataFolder) -> dict[str, str]:
-    """The headers with the token; none before a first server has started."""
+    """Return the headers with the token; none before a first server has started."""
     try:
         return {"authorization": f"Bearer {folder.token.read_text().strip()}"}
     except FileNotFoundError:

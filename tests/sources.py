@@ -26,6 +26,6 @@ def _copy_compiled(source: Path, copy: Path) -> None:
         return
     compiled = Path(cache_from_source(source))
     if compiled.is_file():
-        place = Path(cache_from_source(copy))
-        place.parent.mkdir(exist_ok=True)
-        shutil.copy2(compiled, place)
+        path = Path(cache_from_source(copy))
+        path.parent.mkdir(exist_ok=True)
+        shutil.copy2(compiled, path)

@@ -18,7 +18,7 @@ import psutil
 from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
 from tests.control import Commander
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 
 ROOT = Path(__file__).resolve().parents[1]
 READY_SECONDS = 40.0
@@ -27,7 +27,7 @@ _POLL = 0.05
 
 
 def free_port() -> int:
-    """A TCP port of the loopback that nobody uses."""
+    """Return a TCP port of the loopback that nobody uses."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
@@ -48,7 +48,7 @@ class Stack:
         self.log = data / "stack.log"
         self._options = options
         self._process: subprocess.Popen[bytes] | None = None
-        self.api = Commander(base_url=f"{self.url}/api", timeout=20.0, auth=ShellToken(DataFolder(data)))
+        self.api = Commander(base_url=f"{self.url}/api", timeout=20.0, auth=ShellAuth(DataFolder(data)))
 
     def __enter__(self) -> Self:
         self.start()
@@ -133,7 +133,11 @@ class Stack:
         while True:
             self._insist("/robot/commands/acknowledge")
             state = self.api.get("/robot").json()
-            recording = [one["id"] for one in self.api.get("/sessions").json() if one["state"] == "recording"]
+            recording = [
+                session["id"]
+                for session in self.api.get("/sessions").json()
+                if session["state"] == "recording"
+            ]
             if not (state["armed"] or state["refusals"] or recording):
                 return
             for session in recording:
@@ -143,34 +147,44 @@ class Stack:
             time.sleep(_POLL)
 
     def arm(self) -> None:
-        """Arm as soon as nothing speaks against it; after a start, a sensor or a value may be awaited."""
-        # 409: something speaks against it.
-        self._insist("/robot/commands/arm", 409)
+        """Arm as soon as nothing speaks against it; after a start, a sensor or a value may be awaited.
 
-    def _insist(self, path: str, *refusals: int) -> None:
+        No page is open here, and none is needed.
+        """
+        # 409: something speaks against it.
+        self._insist("/robot/commands/arm", 409, body={"unwatched": 0})
+
+    def _insist(self, path: str, *refusals: int, body: dict[str, Any] | None = None) -> None:
         """Give a command until it is taken, where it is refused so, or the runtime is silent (503, 504)."""
         end = time.monotonic() + READY_SECONDS
-        while (answer := self.api.post(path)).status_code in (503, 504, *refusals):
+        while (answer := self.api.post(path, json=body)).status_code in (503, 504, *refusals):
             assert time.monotonic() < end, answer.text
             time.sleep(_POLL)
         answer.raise_for_status()
 
     def child(self, word: str) -> psutil.Process:
-        """The started process whose command line holds `word`."""
-        found = [one for one in self.process.children(recursive=True) if word in " ".join(one.cmdline())]
-        assert len(found) == 1, f"{len(found)} processes with {word}"
-        return found[0]
+        """Return the started process whose command line holds `word`."""
+        results = [
+            process
+            for process in self.process.children(recursive=True)
+            if word in " ".join(process.cmdline())
+        ]
+        assert len(results) == 1, f"{len(results)} processes with {word}"
+        return results[0]
 
     def part(self, name: str) -> psutil.Process:
-        """The running part of this name, whichever server has started it; "vision" is the runtime's own.
+        """Return the running part of this name, whichever server has started it; "vision" is the runtime's
+        own.
 
-        Raises LookupError where there is none.
+        Raise LookupError where there is none.
         """
         if name == "vision":
-            found = [
-                one for one in self.part("runtime").children() if "robot_runtime.vision" in one.cmdline()
+            results = [
+                process
+                for process in self.part("runtime").children()
+                if "robot_runtime.vision" in process.cmdline()
             ]
-            return found[0]
+            return results[0]
         return psutil.Process(running_parts(DataFolder(self.data).run)[name].pid)
 
     def kill(self) -> None:

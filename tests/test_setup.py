@@ -48,7 +48,7 @@ def test_a_complete_machine_needs_nothing(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
+    ("name", "message"),
     [
         ("node", "Node 20.19 or newer"),
         ("python3", "Python 3.11 or newer"),
@@ -56,12 +56,12 @@ def test_a_complete_machine_needs_nothing(path: Path) -> None:
         ("avrdude", "avrdude"),
     ],
 )
-def test_missing_programs_are_reported_in_one_line(path: Path, name: str, words: str) -> None:
+def test_missing_programs_are_reported_in_one_line(path: Path, name: str, message: str) -> None:
     (path / name).unlink()
     done = set_up(path)
     assert done.returncode == 1
     assert len(done.stderr.splitlines()) == 1
-    assert words in done.stderr
+    assert message in done.stderr
 
 
 def test_an_old_node_is_named_with_its_version(path: Path) -> None:

@@ -33,7 +33,7 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def available() -> str:
-    """The reason why two hosts cannot be made here; empty where they can."""
+    """Return the reason why two hosts cannot be made here; empty where they can."""
     try:
         probe = subprocess.run(
             ["unshare", "--user", "--map-root-user", "--net", "ip", "tuntap", "add", "probe", "mode", "tun"],
@@ -116,7 +116,7 @@ class TwoHosts:
 
 
 def _interface(address: str) -> int:
-    """Bring up the loopback and a TUN device of this address in this namespace; returns its far end."""
+    """Bring up the loopback and a TUN device of this address in this namespace; return its far end."""
     handle = os.open("/dev/net/tun", os.O_RDWR)
     fcntl.ioctl(handle, _TUNSETIFF, _REQUEST.pack(b"tun0", _IFF_TUN | _IFF_NO_PI))
     for command in (

@@ -162,12 +162,14 @@ static void fault(struct service *service, struct client *client, char *argument
   bool bus = !strcmp(arguments, "i2c");
   if (kind &&
       (bus ? twi_set_fault(&board->twi, kind) : devices_set_fault(&board->devices, arguments, kind))) {
+    pins_update_inputs(&board->pins);
     send_ok(service, client);
     return;
   }
   refuse(service, client,
          "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck; weak for encoders, "
-         "tripped for bridges, dip for the imu; or i2c, and none, stuck, refused, stretched or contested");
+         "tripped for bridges, dip for the imu; or leak, and none or wet; or i2c, and none, stuck, refused, "
+         "stretched or contested");
 }
 
 static void mistake(struct service *service, struct client *client, char *text) {

@@ -32,7 +32,11 @@ void devices_create(struct devices *devices, struct device_clock clock) {
 }
 
 void devices_set_wiring(struct devices *devices, const struct wiring *wiring) {
+  bool another_imu = devices->wiring.imu_identity != wiring->imu_identity;
   devices->wiring = *wiring;
+  if (another_imu) {
+    mpu6050_dip(&devices->imu);  // as its power-on leaves it
+  }
   find_addresses(devices);
 }
 
@@ -112,6 +116,10 @@ static enum fault *fault_of(struct devices *devices, const char *name, enum kind
 }
 
 bool devices_set_fault(struct devices *devices, const char *name, const char *fault) {
+  if (!strcmp(name, "leak")) {
+    devices->leak = !strcmp(fault, "wet");
+    return devices->leak || !strcmp(fault, "none");
+  }
   enum kind_of_device kind;
   enum fault *device = fault_of(devices, name, &kind);
   if (device == &devices->imu.fault && !strcmp(fault, "dip")) {

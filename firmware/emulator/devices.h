@@ -27,6 +27,7 @@ struct devices {
   struct surroundings surroundings;
   struct wiring wiring;
   bool motor_power;
+  bool leak;  // water between the wires of the leak sensor
   struct drv8830 bridges[FIN_COUNT];
   struct as5040 encoders[FIN_COUNT];
   struct motors motors;
@@ -55,7 +56,7 @@ double devices_battery(const struct devices *devices);
 
 // Sets the fault of imu, pressure, encoder0 to 3 or bridge0 to 3: `none`, `absent`, `stuck`; of an encoder
 // with a weak magnet `weak`; of an H-bridge after an overcurrent `tripped`. `dip` puts the IMU to sleep, as a
-// dip of its supply does. False for other words.
+// dip of its supply does. The leak sensor is `none` or `wet`. False for other words.
 bool devices_set_fault(struct devices *devices, const char *name, const char *fault);
 
 #endif

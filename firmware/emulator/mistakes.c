@@ -28,8 +28,10 @@ const char mistakes_usage[] =
     "  divider-wrong:FACTOR       the battery reads as this many times its voltage, 0.1 to 10\n"
     "  regulator-off:PERCENT      the 5 V are this much higher, -10 to 10\n"
     "  gyro-offset:X,Y,Z          of the gyroscope's axes, -20 to 20 degrees/s\n"
+    "  gyro-drift:X,Y,Z           of the gyroscope's offsets, -1 to 1 degrees/s for each degree C above 25\n"
     "  encoder-noise:TICKS        of all encoders, to either side, 0 to 20\n"
     "  backlash:RAD               of all fins' gears, 0 to 0.3\n"
+    "  stiction:STEPS             of all fins: below this drive one that rests stays at rest, 0 to 63\n"
     "  pack-resistance:OHM        of the battery, 0 to 2\n"
     "FIN is front-right, back-right, back-left or front-left.\n";
 
@@ -215,13 +217,22 @@ static bool set_regulator(struct wiring *wiring, const char *text) {
   return valid;
 }
 
-static bool set_gyro_offset(struct wiring *wiring, const char *text) {
-  double offset[3];
-  bool valid = numbers(text, offset, 3, -20, 20);
+// Three numbers of the gyroscope's axes, in degrees.
+static bool set_gyro(double values[3], const char *text, double most) {
+  double degrees[3];
+  bool valid = numbers(text, degrees, 3, -most, most);
   for (int axis = 0; valid && axis < 3; axis++) {
-    wiring->gyro_offset[axis] = offset[axis] * DEGREE;
+    values[axis] = degrees[axis] * DEGREE;
   }
   return valid;
+}
+
+static bool set_gyro_offset(struct wiring *wiring, const char *text) {
+  return set_gyro(wiring->gyro_offset, text, 20);
+}
+
+static bool set_gyro_drift(struct wiring *wiring, const char *text) {
+  return set_gyro(wiring->gyro_drift, text, 1);
 }
 
 static bool set_encoder_noise(struct wiring *wiring, const char *text) {
@@ -230,6 +241,10 @@ static bool set_encoder_noise(struct wiring *wiring, const char *text) {
 
 static bool set_backlash(struct wiring *wiring, const char *text) {
   return numbers(text, &wiring->backlash, 1, 0, 0.3);
+}
+
+static bool set_stiction(struct wiring *wiring, const char *text) {
+  return numbers(text, &wiring->stiction, 1, 0, 63);
 }
 
 static bool set_pack_resistance(struct wiring *wiring, const char *text) {
@@ -255,8 +270,10 @@ static const struct {
     {"divider-wrong", set_divider},
     {"regulator-off", set_regulator},
     {"gyro-offset", set_gyro_offset},
+    {"gyro-drift", set_gyro_drift},
     {"encoder-noise", set_encoder_noise},
     {"backlash", set_backlash},
+    {"stiction", set_stiction},
     {"pack-resistance", set_pack_resistance},
 };
 

@@ -5,10 +5,11 @@
 
 // A gear motor of the size that fits: at 6 V 220 rpm without load and 0.235 N m stalled (Pololu's 150:1 HP).
 // Its 12.3 rad/s at the 3.2 V of a drive of 40 are about what is taken for the robot.
-#define SPEED_PER_STEP 0.315  // rad/s without load, for each step of the bridge's voltage: 12.6 rad/s at 40
-#define TORQUE_SLOPE 0.0102   // N m for each rad/s by which it is slower than without load
-#define FRICTION_STEPS 2      // below this drive a motor stands still
-#define FRICTION (FRICTION_STEPS * SPEED_PER_STEP * TORQUE_SLOPE)
+#define SPEED_PER_STEP 0.315  // rad/s without friction, for each step of the bridge's voltage
+#define TORQUE_SLOPE 0.0102   // N m for each rad/s by which it is slower than that
+// Of the torque that a motor at rest needs to break away: what resists it once it turns. Dry friction and
+// shaft seals need more to start than to go on.
+#define SLIDING_SHARE 0.8
 // Motor and fin, with the water that moves along. A plate of this size has pi/4 * 1000 * chord^2 * R^3 / 3 =
 // 4.7e-4 kg m^2 at most; this makes a time constant of 30 ms.
 #define INERTIA (TORQUE_SLOPE * 30e-3)
@@ -32,18 +33,22 @@ static const int rotation_sign[FIN_COUNT] = {1, 1, -1, -1};
 // Fin angles at power-on, never exactly in place; rad.
 static const double first_angle[FIN_COUNT] = {0.05, -0.04, 0.03, -0.06};
 
-// rad/s at which a motor has no torque left; without load, friction holds it below that.
-static double ideal_speed(double drive) {
-  return SPEED_PER_STEP * (drive + (drive > 0 ? FRICTION_STEPS : drive < 0 ? -FRICTION_STEPS : 0));
+// rad/s at which a motor has no torque left.
+static double ideal_speed(double drive) { return SPEED_PER_STEP * drive; }
+
+// N m that act against a motor's turning.
+static double friction(const struct motors *motors, double speed) {
+  return motors->wiring->stiction * SPEED_PER_STEP * TORQUE_SLOPE * (speed == 0 ? 1 : SLIDING_SHARE);
 }
 
 // The speed after a step: implicit where torque grows with the speed, so that no step is too long. Friction
 // only ever stops.
-static double speed_after(double speed, double fin_speed, double load, double drive, bool coasts) {
+static double speed_after(double speed, double friction, double fin_speed, double load, double drive,
+                          bool coasts) {
   double step = MOTORS_PERIOD / INERTIA;
   double slope = coasts ? 0 : TORQUE_SLOPE;
   double pushed = speed + step * slope * ideal_speed(drive);
-  double stopped = step * FRICTION;
+  double stopped = step * friction;
   if (fabs(pushed) <= stopped) {
     return 0;
   }
@@ -67,7 +72,8 @@ static void turn_fin(struct motors *motors, unsigned fin) {
   double gap = motors->wiring->backlash / 2;
   double ahead = motors->rotor[fin] - motors->shaft[fin];
   bool engaged = fabs(ahead) >= gap;
-  motors->speed[fin] = engaged ? motors->rotor_speed[fin] : 0;
+  // A motor that has just reversed has left the fin.
+  motors->speed[fin] = engaged && ahead * motors->rotor_speed[fin] >= 0 ? motors->rotor_speed[fin] : 0;
   motors->shaft[fin] += engaged ? ahead - copysign(gap, ahead) : 0;
 }
 
@@ -79,7 +85,8 @@ static double turn(struct motors *motors, unsigned fin, double drive_max) {
   bool coasts = number == NOT_CONNECTED || drv8830_coasts(bridge);
   double drive = coasts ? 0 : wiring->leads[fin] * fmax(fmin(drv8830_drive(bridge), drive_max), -drive_max);
   double before = motors->rotor_speed[fin];
-  double after = speed_after(before, motors->speed[fin], motors->surroundings->fin_load, drive, coasts);
+  double after = speed_after(before, friction(motors, before), motors->speed[fin],
+                             motors->surroundings->fin_load, drive, coasts);
   motors->rotor_speed[fin] = after;
   motors->rotor[fin] += MOTORS_PERIOD * (before + after) / 2;
   turn_fin(motors, fin);

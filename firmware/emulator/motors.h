@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The four gear motors with their fins and encoders. A motor's torque falls with its speed; friction and the
-// water, which resists the fin with the square of its speed, act against it. A fin turns with its motor's
+// The four gear motors with their fins and encoders. A motor's torque falls with its speed; friction, which
+// holds a motor that rests up to a torque, and the water, which resists the fin with the square of its speed,
+// act against it. A fin turns with its motor's
 // shaft.
 #ifndef MOTORS_H
 #define MOTORS_H

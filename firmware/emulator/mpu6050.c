@@ -16,6 +16,7 @@
 
 #define POWER_RESET 0x80
 #define POWER_SLEEP 0x40
+#define POWER_CLOCK 0x01
 #define FILTER_MASK 7
 #define RANGE_SHIFT 3
 
@@ -30,6 +31,7 @@
 static const double narrow_bandwidth[] = {20, 10, 5};
 
 #define GRAVITY 9.80665
+#define GYRO_CALIBRATED 25.0  // °C, at which its offset is what it is said to be
 #define DEGREE (M_PI / 180)
 
 // Counts for 1 °/s, 1 g and 1 °C, as in the data sheet; each range is half as fine as the one before it.
@@ -37,12 +39,6 @@ static const double narrow_bandwidth[] = {20, 10, 5};
 #define FORCE_COUNTS 16384.0
 #define TEMPERATURE_COUNTS 340.0
 #define TEMPERATURE_ZERO 36.53
-
-static void reset(struct mpu6050 *imu) {
-  memset(imu->registers, 0, sizeof imu->registers);
-  imu->registers[REGISTER_POWER] = POWER_SLEEP;
-  imu->sample = -1;
-}
 
 static void put(struct mpu6050 *imu, unsigned address, double counts) {
   int value = (int)lround(fmin(fmax(counts, INT16_MIN), INT16_MAX));
@@ -55,6 +51,16 @@ static double range(const struct mpu6050 *imu, unsigned address) {
 }
 
 static double now(const struct mpu6050 *imu) { return imu->clock.seconds(imu->clock.owner); }
+
+// The data sheets' values: an MPU-6500 (0x70) or MPU-9250 (0x71) is awake, an MPU-6050 and its copies sleep.
+static void reset(struct mpu6050 *imu) {
+  uint8_t identity = imu->wiring->imu_identity;
+  bool awake = identity == 0x70 || identity == 0x71;
+  memset(imu->registers, 0, sizeof imu->registers);
+  imu->registers[REGISTER_POWER] = awake ? POWER_CLOCK : POWER_SLEEP;
+  imu->woken = awake ? now(imu) : 0;
+  imu->sample = -1;
+}
 
 static double pass(double before, double after, double share) { return share * after + (1 - share) * before; }
 
@@ -75,9 +81,11 @@ static void measure(struct mpu6050 *imu) {
   bool turning = now(imu) - imu->woken >= GYRO_START;
   double force_counts = FORCE_COUNTS / range(imu, REGISTER_ACCEL_CONFIG) / GRAVITY;
   double rate_counts = RATE_COUNTS / range(imu, REGISTER_GYRO_CONFIG) / DEGREE;
+  double warmer = imu->surroundings->temperature - GYRO_CALIBRATED;
   for (unsigned i = 0; i < 3; i++) {
     struct chip_axis axis = imu->wiring->imu_axes[i];
-    double rate = axis.sign * imu->rate[axis.body] + imu->wiring->gyro_offset[i];
+    double offset = imu->wiring->gyro_offset[i] + imu->wiring->gyro_drift[i] * warmer;
+    double rate = axis.sign * imu->rate[axis.body] + offset;
     put(imu, REGISTER_FORCE + 2 * i, axis.sign * imu->force[axis.body] * force_counts);
     put(imu, REGISTER_RATE + 2 * i, turning ? rate * rate_counts : 0);
   }

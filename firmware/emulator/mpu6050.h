@@ -27,7 +27,7 @@ struct mpu6050 {
 
 void mpu6050_create(struct mpu6050 *imu, struct device_clock clock, const struct surroundings *surroundings,
                     const struct wiring *wiring);
-// A dip of the supply: the chip sleeps with its settings lost.
+// A dip of the supply: the chip is as after power-on, with its settings lost.
 void mpu6050_dip(struct mpu6050 *imu);
 // Call it before the surroundings change.
 void mpu6050_filter(struct mpu6050 *imu);

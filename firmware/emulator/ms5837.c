@@ -119,7 +119,9 @@ void ms5837_write(void *device, unsigned index, uint8_t byte) {
     return;
   }
   sensor->command = byte;
-  if (byte == COMMAND_RESET) {
+  if (byte == COMMAND_ADC_READ && now(sensor) < sensor->ready) {
+    sensor->conversion /= 2;  // read too early, it goes on, and its result is wrong
+  } else if (byte == COMMAND_RESET) {
     sensor->was_reset = true;
     sensor->conversion = 0;
     sensor->ready = now(sensor) + RESET_SECONDS;

@@ -15,6 +15,7 @@ struct pin {
 static const struct pin select_pins[FIN_COUNT] = {{'D', 7}, {'B', 0}, {'B', 1}, {'B', 2}};  // D7 to D10
 static const struct pin beacon_right_pin = {'D', 4};
 static const struct pin beacon_left_pin = {'D', 5};
+static const struct pin leak_pin = {'D', 2};
 static const struct pin led_pin = {'C', 1};          // A1
 static const struct pin motor_power_pin = {'C', 3};  // A3
 static const int battery_input = ADC_IRQ_ADC2;       // A2
@@ -51,6 +52,7 @@ void pins_create(struct pins *pins, struct chip *chip, struct devices *devices) 
   *pins = (struct pins){.chip = chip, .devices = devices};
   pins->beacon_right = pin_irq(chip, beacon_right_pin);
   pins->beacon_left = pin_irq(chip, beacon_left_pin);
+  pins->leak = pin_irq(chip, leak_pin);
   pins->battery = avr_io_getirq(chip->avr, AVR_IOCTL_ADC_GETIRQ, battery_input);
   for (unsigned i = 0; i < FIN_COUNT; i++) {
     avr_irq_register_notify(pin_irq(chip, select_pins[i]), on_select, &devices->encoders[i]);
@@ -71,6 +73,7 @@ void pins_reset(struct pins *pins) {
   pin_irq(pins->chip, motor_power_pin)->flags |= IRQ_FLAG_INIT;
   pins->beacon_right->flags |= IRQ_FLAG_INIT;
   pins->beacon_left->flags |= IRQ_FLAG_INIT;
+  pins->leak->flags |= IRQ_FLAG_INIT;
   pull(pins, 'B', 0x07, 0x07);
   pull(pins, 'C', 1 << led_pin.bit | 1 << motor_power_pin.bit, 0);
   pins_update_inputs(pins);
@@ -80,10 +83,14 @@ void pins_update_inputs(struct pins *pins) {
   bool levels[2];
   devices_beacons(pins->devices, levels);
   uint8_t beacons = (uint8_t)(levels[0] << beacon_right_pin.bit | levels[1] << beacon_left_pin.bit);
-  uint8_t select = 1 << select_pins[0].bit;
-  pull(pins, 'D', (uint8_t)(1 << beacon_right_pin.bit | 1 << beacon_left_pin.bit | select), beacons | select);
+  bool dry = !pins->devices->leak;
+  uint8_t high = (uint8_t)(1 << select_pins[0].bit | dry << leak_pin.bit);
+  uint8_t mask =
+      1 << beacon_right_pin.bit | 1 << beacon_left_pin.bit | 1 << select_pins[0].bit | 1 << leak_pin.bit;
+  pull(pins, 'D', mask, beacons | high);
   avr_raise_irq(pins->beacon_right, levels[0]);
   avr_raise_irq(pins->beacon_left, levels[1]);
+  avr_raise_irq(pins->leak, dry);
   pins_update_battery(pins);
 }
 

@@ -29,8 +29,10 @@ struct wiring {
   double divider;          // the battery's voltage over that at the pin
   double reference;        // V, of the chip's converter
   double gyro_offset[3];   // rad/s, about the chip's axes
+  double gyro_drift[3];    // rad/s for each °C above GYRO_CALIBRATED
   double encoder_noise;    // ticks to either side, every value alike
   double backlash;         // rad, of each fin's gear
+  double stiction;         // drive below which a motor that rests stays at rest, of all fins
   double pack_resistance;  // ohm
 };
 
@@ -40,7 +42,7 @@ struct wiring {
     .bridge = {0, 1, 2, 3}, .leads = {1, 1, 1, 1}, .shaft = {0, 1, 2, 3}, .counting = {1, 1, 1, 1},   \
     .bridge_address = {0x64, 0x60, 0x61, 0x63}, .imu_address = 0x69, .imu_identity = 0x68,            \
     .pressure_address = 0x76, .imu_axes = {{0, 1}, {1, 1}, {2, 1}}, .beacon_connected = {true, true}, \
-    .divider = 2, .reference = 5                                                                      \
+    .divider = 2, .reference = 5, .stiction = 2                                                       \
   }
 
 #endif

@@ -1,4 +1,4 @@
-// Battery and beacon detectors with the simulator's values.
+// Battery and beacon detectors with the simulator's values; no leak sensor.
 #include "board/board.h"
 #include "loop.h"
 
@@ -21,6 +21,8 @@ uint16_t take_battery() {
 bool beacon_right() { return loop::newest_input().right; }
 
 bool beacon_left() { return loop::newest_input().left; }
+
+bool leak() { return false; }
 
 }  // namespace board
 }  // namespace mucat

@@ -105,6 +105,8 @@ bool beacon_right() { return the_board.right; }
 
 bool beacon_left() { return the_board.left; }
 
+bool leak() { return the_board.leak; }
+
 void set_led(bool on) { the_board.led = on; }
 
 void set_motor_power(bool on) { the_board.motor_power = on; }
@@ -117,7 +119,8 @@ void write_eeprom(uint8_t index, uint8_t byte) { the_board.eeprom[index] = byte;
 
 RetainedMemory& retained_memory() { return the_board.retained; }
 
-uint16_t stack_free() { return 0; }
+// About what is left on the chip.
+uint16_t stack_free() { return 200; }
 
 }  // namespace board
 }  // namespace mucat

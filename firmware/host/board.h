@@ -38,6 +38,7 @@ struct Board {
   uint16_t battery = 0;
   bool right = false;
   bool left = false;
+  bool leak = false;
   bool led = false;
   bool motor_power = false;
   uint64_t fed_us = 0;

@@ -28,6 +28,12 @@ Calibration calibrated() {
   return store.value();
 }
 
+Parameters initial() {
+  Parameters parameters;
+  parameters.start();
+  return parameters;
+}
+
 }  // namespace
 
 extern "C" {
@@ -110,7 +116,7 @@ void firmware_mix(const int8_t* command, float* directions, float* amplitudes) {
   memcpy(&navigation, command, sizeof navigation);
   FinDemand demands[kFinCount];
   for (uint8_t i = 0; i < kFinCount; ++i) demands[i] = {directions[i], 0};
-  mix(navigation, Parameters().value(kFinsAmplitude), demands);
+  mix(navigation, initial().value(kFinsAmplitude), demands);
   for (uint8_t i = 0; i < kFinCount; ++i) {
     directions[i] = demands[i].direction;
     amplitudes[i] = demands[i].amplitude;
@@ -124,10 +130,10 @@ FinLaw* law_create(float angle) {
 }
 void law_destroy(FinLaw* law) { delete law; }
 float law_step(FinLaw* law, float direction, float amplitude, uint16_t phase) {
-  return law->step({direction, amplitude}, phase, Parameters().value(kFinsTurnRate) * kTickSeconds);
+  return law->step({direction, amplitude}, phase, initial().value(kFinsTurnRate) * kTickSeconds);
 }
 bool law_flapping(const FinLaw* law) { return law->flapping(); }
-uint16_t law_phase_per_tick() { return phase_per_tick(Parameters().value(kFinsFrequency)); }
+uint16_t law_phase_per_tick() { return phase_per_tick(initial().value(kFinsFrequency)); }
 uint16_t law_fin_phase(uint8_t fin) { return fin_phase(fin); }
 
 int16_t firmware_wrap_counts(int16_t counts) { return wrap_counts(counts); }
@@ -141,7 +147,7 @@ PositionLoop* loop_create() { return new PositionLoop; }
 void loop_destroy(PositionLoop* loop) { delete loop; }
 int8_t loop_step(PositionLoop* loop, uint8_t fin, int16_t set_point, int16_t measured) {
   return loop->step(fin_calibration(calibrated(), fin), set_point, measured,
-                    gain_from_thousandths(Parameters()[kFinsGain]));
+                    gain_from_thousandths(initial()[kFinsGain]));
 }
 
 // ---- sensors ----
@@ -164,7 +170,11 @@ void firmware_compensate(const uint16_t* prom, uint32_t d1, uint32_t d2, int32_t
   *temperature = reading.temperature;
 }
 
-Attitude* attitude_create() { return new Attitude; }
+Attitude* attitude_create() {
+  Attitude* const attitude = new Attitude;
+  attitude->start();
+  return attitude;
+}
 void attitude_destroy(Attitude* attitude) { delete attitude; }
 void attitude_update(Attitude* attitude, const float* rate, const float* force, float seconds,
                      float* quaternion) {
@@ -186,12 +196,14 @@ void board_set_beacons(bool right, bool left) {
   host::the_board.right = right;
   host::the_board.left = left;
 }
+void board_set_leak(bool leak) { host::the_board.leak = leak; }
 // The EEPROM as the factory delivers it.
 void board_erase_eeprom() { memset(host::the_board.eeprom, 0xFF, sizeof host::the_board.eeprom); }
 void board_flip_eeprom(uint8_t index) { host::the_board.eeprom[index] ^= 0x10; }
 uint16_t board_epoch() { return host::the_board.epoch; }
 bool board_led() { return host::the_board.led; }
 bool board_motor_power() { return host::the_board.motor_power; }
+void board_advance(uint32_t us) { host::advance(us); }
 uint64_t board_now_us() { return host::the_board.now_us; }
 uint64_t board_fed_us() { return host::the_board.fed_us; }
 uint32_t board_overwritten() { return host::the_board.overwritten; }

@@ -39,16 +39,6 @@ bool possible(const Calibration& calibration) {
 
 }  // namespace
 
-FlashText describe_step(uint8_t steps) {
-  if (steps & static_cast<uint8_t>(CalibrationStep::kFins)) return FLASH_TEXT("fins");
-  if (steps & static_cast<uint8_t>(CalibrationStep::kMotors)) return FLASH_TEXT("motors");
-  if (steps & static_cast<uint8_t>(CalibrationStep::kAxes)) return FLASH_TEXT("IMU axes");
-  if (steps & static_cast<uint8_t>(CalibrationStep::kGyro)) return FLASH_TEXT("gyroscope");
-  if (steps & static_cast<uint8_t>(CalibrationStep::kPressure)) return FLASH_TEXT("pressure");
-  if (steps & static_cast<uint8_t>(CalibrationStep::kBattery)) return FLASH_TEXT("battery");
-  return FLASH_TEXT("beacons");
-}
-
 uint32_t CalibrationStore::checksum() const {
   return crc32(reinterpret_cast<const uint8_t*>(&record_), offsetof(Record, checksum));
 }
@@ -65,7 +55,7 @@ void CalibrationStore::start() {
   if (in_the_loop()) none.done = kAllSteps;
 }
 
-uint8_t CalibrationStore::missing() const { return writing() ? kAllSteps : kAllSteps & ~value().done; }
+uint8_t CalibrationStore::missing() const { return writing_ ? kAllSteps : kAllSteps & ~value().done; }
 
 void CalibrationStore::store(const Calibration& calibration) {
   answer_due_ = true;
@@ -73,13 +63,14 @@ void CalibrationStore::store(const Calibration& calibration) {
   record_.version = kCalibrationVersion;
   record_.calibration = calibration;
   record_.checksum = checksum();
+  writing_ = true;
   next_byte_ = 0;
 }
 
 void CalibrationStore::step() {
-  if (!writing()) return;
+  if (!writing_) return;
   if (next_byte_ == sizeof record_) {
-    next_byte_ = kIdle;
+    writing_ = false;
     start();
     return;
   }

@@ -2,14 +2,11 @@
 #pragma once
 #include <stdint.h>
 
-#include "board/flash.h"
 #include "packets.gen.h"
 
 namespace mucat {
 
 // The step of the lowest bit that is set.
-FlashText describe_step(uint8_t steps);
-
 class CalibrationStore {
  public:
   // Reads the record. Without a valid record no step is done. In the loop there is nothing to calibrate.
@@ -24,7 +21,7 @@ class CalibrationStore {
   // One tick: writes a byte. After the last one it reads all of them again: the answer says what EEPROM
   // holds.
   void step();
-  bool answer_due() const { return answer_due_ && !writing(); }
+  bool answer_due() const { return answer_due_ && !writing_; }
   void answered() { answer_due_ = false; }
 
  private:
@@ -33,13 +30,12 @@ class CalibrationStore {
     Calibration calibration;
     uint32_t checksum;  // CRC-32 of all before
   };
-  static constexpr uint8_t kIdle = 0xFF;
 
-  bool writing() const { return next_byte_ != kIdle; }
   uint32_t checksum() const;
 
-  Record record_;
-  uint8_t next_byte_ = kIdle;
+  Record record_ = {};
+  bool writing_ = false;
+  uint8_t next_byte_ = 0;  // to be written
   bool answer_due_ = false;
 };
 

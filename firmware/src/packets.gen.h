@@ -2,9 +2,11 @@
 #pragma once
 #include <stdint.h>
 
+#include "board/flash.h"
+
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0xe47854faUL;
+constexpr uint32_t kDefinitionsHash = 0x718dde94UL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
@@ -28,7 +30,7 @@ enum class StatusFlag : uint8_t {
   kHil = 64,
 };
 
-enum class DeviceFault : uint16_t {
+enum class DeviceFault : uint32_t {
   kImu = 1,
   kPressure = 2,
   kEncoderFrontRight = 4,
@@ -45,6 +47,7 @@ enum class DeviceFault : uint16_t {
   kTrackingFrontLeft = 8192,
   kMagnet = 16384,
   kSurface = 32768,
+  kLeak = 65536,
 };
 
 enum class ResetCause : uint8_t {
@@ -63,6 +66,38 @@ enum class CalibrationStep : uint8_t {
   kPressure = 16,
   kBattery = 32,
   kBeacons = 64,
+};
+
+enum class BoardEventKind : uint8_t {
+  kBoot = 0,
+  kArmed = 1,
+  kRefused = 2,
+  kDisarmed = 3,
+  kBattery = 4,
+  kFault = 5,
+  kFaultOver = 6,
+};
+
+enum class Refusal : uint8_t {
+  kNone = 0,
+  kNoHello = 1,
+  kDefinitions = 2,
+  kEpoch = 3,
+  kTraffic = 4,
+  kBattery = 5,
+  kCalibration = 6,
+  kSurface = 7,
+  kLeak = 8,
+};
+
+enum class Disarming : uint8_t {
+  kNone = 0,
+  kStop = 1,
+  kSilence = 2,
+  kBattery = 3,
+  kDefinitions = 4,
+  kHost = 5,
+  kLeak = 6,
 };
 
 // Host to board: disarm at once. Always accepted, also outside a session and repeatedly.
@@ -129,7 +164,7 @@ struct __attribute__((packed)) Motor {
 };
 static_assert(sizeof(Motor) == 24, "Motor has another size");
 
-// Board to host: a line of text.
+// Board to host: a line of text, from a sketch of one's own.
 struct __attribute__((packed)) Debug {
   static constexpr uint8_t kType = 0x09;
   uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
@@ -155,17 +190,17 @@ struct __attribute__((packed)) Status {
   uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
   uint16_t epoch;  // epoch of the board's boot
   uint8_t flags;  // see StatusFlag
-  uint16_t faults;  // see DeviceFault
+  uint32_t faults;  // see DeviceFault
   uint8_t reset_cause;  // see ResetCause
   uint16_t battery;  // battery voltage; x 0.001 V
   uint16_t loop_worst;  // longest pass of the main loop since the last status; µs
   uint16_t missed_ticks;  // passes of the main loop missed since the start
   uint16_t frames_invalid;  // invalid frames dropped since the start
   uint16_t bytes_lost;  // received bytes lost to a full buffer since the start
-  uint16_t debug_lost;  // debug lines lost to a full buffer since the start
+  uint16_t debug_lost;  // events and lines lost to a full buffer since the start
   uint16_t stack_free;  // memory that the stack has never used; B
 };
-static_assert(sizeof(Status) == 24, "Status has another size");
+static_assert(sizeof(Status) == 26, "Status has another size");
 
 // Host to board, 10 Hz: the host is alive.
 struct __attribute__((packed)) Heartbeat {
@@ -276,7 +311,7 @@ struct __attribute__((packed)) Jog {
 };
 static_assert(sizeof(Jog) == 2, "Jog has another size");
 
-// Board to host, only in the bring-up, 20 Hz: what the devices say, as they say it.
+// Board to host, only in the bring-up, 20 Hz: the devices' raw readings.
 struct __attribute__((packed)) Raw {
   static constexpr uint8_t kType = 0x19;
   uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
@@ -288,40 +323,37 @@ struct __attribute__((packed)) Raw {
   int16_t temperature;  // temperature of the water; x 0.01 °C
   uint16_t battery;  // the converter's counts, 1023 for twice 5 V
   uint8_t beacons;  // levels of the detectors' pins; bit 0: right, bit 1: left
+  uint8_t leak;  // 1 while the leak sensor is wet
 };
-static_assert(sizeof(Raw) == 34, "Raw has another size");
+static_assert(sizeof(Raw) == 35, "Raw has another size");
+
+// Board to host: an event, which the host puts into words (`robot_runtime/contract/board_events.py`).
+struct __attribute__((packed)) BoardEvent {
+  static constexpr uint8_t kType = 0x1a;
+  uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
+  uint8_t kind;  // see BoardEventKind
+  uint8_t detail;  // as the kind says
+  uint16_t value;  // as the kind says
+};
+static_assert(sizeof(BoardEvent) == 8, "BoardEvent has another size");
+
+// Host to board: the LED of an armed robot counts down. Expires after 300 ms.
+struct __attribute__((packed)) Countdown {
+  static constexpr uint8_t kType = 0x1b;
+  uint8_t remaining;  // time until the end of the countdown; x 0.1 s
+};
+static_assert(sizeof(Countdown) == 1, "Countdown has another size");
+
+// Payload bytes by type, in flash: the compiler puts the table of a switch into RAM.
+const int8_t kPayloadBytes[] PROGMEM = {0, 2, 6, 24, 12, 6, 24, -1, -1, -1, 8, 26, 4, 1, 2, 0, 10, 22, 3, 25, 0, 0, 0, 16, 2, 35, 8, 1};
 
 // Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.
 inline int8_t payload_bytes(uint8_t type) {
-  switch (type) {
-    case Stop::kType: return 0;
-    case Start::kType: return 2;
-    case Navigation::kType: return 6;
-    case Imu::kType: return 24;
-    case Depth::kType: return 12;
-    case Beacon::kType: return 6;
-    case Motor::kType: return 24;
-    case Hello::kType: return 8;
-    case Status::kType: return 24;
-    case Heartbeat::kType: return 4;
-    case Acknowledge::kType: return 1;
-    case TestMsg::kType: return 2;
-    case RequestResult::kType: return 0;
-    case TestResult::kType: return 10;
-    case Sense::kType: return 22;
-    case Parameter::kType: return 3;
-    case Calibration::kType: return 25;
-    case RequestCalibration::kType: return 0;
-    case ZeroDepth::kType: return 0;
-    case RequestScan::kType: return 0;
-    case Scan::kType: return 16;
-    case Jog::kType: return 2;
-    case Raw::kType: return 34;
-    default: return -1;
-  }
+  if (type >= sizeof kPayloadBytes) return -1;
+  return static_cast<int8_t>(pgm_read_byte(&kPayloadBytes[type]));
 }
 
 // Whether a packet of this type is repeated until it is acknowledged.
-constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType || type == Parameter::kType || type == Calibration::kType || type == RequestCalibration::kType || type == ZeroDepth::kType || type == RequestScan::kType || type == Scan::kType; }
+constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType || type == Parameter::kType || type == Calibration::kType || type == RequestCalibration::kType || type == ZeroDepth::kType || type == RequestScan::kType || type == Scan::kType || type == BoardEvent::kType; }
 
 }  // namespace mucat

@@ -9,7 +9,7 @@ uint16_t read(const uint16_t& in_flash) { return pgm_read_word(&in_flash); }
 
 }  // namespace
 
-Parameters::Parameters() {
+void Parameters::start() {
   for (uint8_t i = 0; i < kParameterCount; ++i) values_[i] = read(kParameterLimits[i].initial);
 }
 

@@ -9,7 +9,8 @@ namespace mucat {
 
 class Parameters {
  public:
-  Parameters();
+  // Sets all to their initial values.
+  void start();
   // In thousandths of its unit.
   uint16_t operator[](ParameterNumber number) const { return values_[number]; }
   float value(ParameterNumber number) const { return values_[number] * 0.001f; }
@@ -22,7 +23,7 @@ class Parameters {
   void answered(uint8_t number) { unanswered_ &= ~(1 << number); }
 
  private:
-  uint16_t values_[kParameterCount];
+  uint16_t values_[kParameterCount] = {};
   uint8_t unanswered_ = 0;
 };
 

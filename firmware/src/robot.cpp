@@ -1,7 +1,6 @@
 #include "robot.h"
 
 #include "board/board.h"
-#include "led.h"
 #include "schedule.h"
 #include "sensors/simulated_input.h"
 
@@ -23,10 +22,11 @@ constexpr uint8_t bit(Enum flag, bool on) {
 void Robot::start() {
   board::start();
   calibration_.start();
-  fins_.start();
+  parameters_.start();
+  fins_.start(calibration_.value());
   epoch_ = board::next_epoch();
   arming_.begin(epoch_);
-  sensors_.start();
+  sensors_.start(calibration_.value());
   report_boot();
   link_.greet(epoch_);
 }
@@ -66,6 +66,9 @@ void Robot::handle(const Message& message) {
     case Navigation::kType:
       if (arming_.navigate(board::milliseconds())) fins_.command(unpack<Navigation>(message));
       break;
+    case Countdown::kType:
+      led_.count_down(unpack<Countdown>(message).remaining);
+      break;
     case Sense::kType:
       accept_simulated_input(unpack<Sense>(message));
       break;
@@ -104,12 +107,10 @@ void Robot::arm(const Start& start) {
   const Refusal refusal =
       arming_.start(start, !missing, !sensors_.surface_uncertain(), board::milliseconds());
   if (refusal != Refusal::kNone) {
-    DebugLine line(DebugLevel::kWarning);
-    line << FLASH_TEXT("START refused: ") << describe(refusal);
-    if (refusal == Refusal::kCalibration) line << describe_step(missing);
-    link_.queue_line(line);
+    const uint8_t steps = refusal == Refusal::kCalibration ? missing : 0;
+    link_.queue_event(BoardEventKind::kRefused, static_cast<uint8_t>(refusal), steps);
   } else if (!was_armed) {
-    link_.queue_line(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("armed"));
+    link_.queue_event(BoardEventKind::kArmed);
   }
 }
 
@@ -117,11 +118,12 @@ void Robot::tick(uint8_t ticks) {
   const uint32_t now = board::milliseconds();
   report_disarmed(arming_.tick(now));
   watch_battery(now);
+  watch_leak();
   // First, so that a command takes effect with the least delay.
   fins_.step(motion(now), parameters_);
   sensors_.step(ticks, armed());
   calibration_.step();
-  board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
+  board::set_led(led_.lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
   tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;
   if (slot_tick_ < kTicksPerSlot) ++slot_tick_;
   // On a slow line telemetry waits until it can be sent, so that it is new.
@@ -150,11 +152,17 @@ void Robot::watch_battery(uint32_t now_ms) {
   if (!battery_alarm_.update(millivolts, parameters_[kBatteryAlarm], now_ms)) return;
   lowering_ = armed();
   lowering_since_ms_ = now_ms;
-  DebugLine line(DebugLevel::kError);
-  line << FLASH_TEXT("battery at ") << static_cast<uint16_t>(millivolts / 1000) << FLASH_TEXT(".");
-  line.digits(millivolts / 10 % 100, 2) << FLASH_TEXT(" V: ");
-  link_.queue_line(line << (lowering_ ? FLASH_TEXT("fins down, disarmed") : FLASH_TEXT("arming refused")));
+  link_.queue_event(BoardEventKind::kBattery, lowering_, millivolts);
   report_disarmed(arming_.fail_battery());
+}
+
+void Robot::watch_leak() {
+  if (leak_alarm_.update(board::leak())) report_disarmed(arming_.fail_leak());
+}
+
+uint32_t Robot::faults() const {
+  const uint32_t leak = leak_alarm_.on() ? static_cast<uint32_t>(DeviceFault::kLeak) : 0;
+  return leak | sensors_.faults() | fins_.faults();
 }
 
 Motion Robot::motion(uint32_t now_ms) {
@@ -178,7 +186,7 @@ void Robot::send_telemetry() {
     sensors_.read(&beacon);
     link_.send(beacon);
   }
-  // Lines wait for a host: at power-on the encoders are not ready yet, and what they lack fills the queue.
+  // Events wait for a host: at power-on the encoders are not ready yet, and what they lack fills the queue.
   if (slot_ == kStatusSlot && arming_.greeted()) report_changed_faults();
   // On a slow line the status slot may be far away, and the host that armed the board waits for the status.
   if (slot_ == kStatusSlot || (kSlow && armed() != reported_armed_)) send_status();

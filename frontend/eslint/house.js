@@ -15,19 +15,21 @@ const LAYERS = [
   ['floor'],
   ['access', 'drive'],
   ['live'],
+  ['capture', 'sound'],
   ['parts'],
   ['charts'],
   ['panels/*'],
   ['panels'],
   ['layout'],
   ['shell', 'pages/*'],
+  ['flight'],
   ['app'],
 ];
 /** Files beside the rooms' folders. */
-const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'searching', 'shortcuts', 'storage', 'theme'];
+const FLOOR = ['api', 'attitude', 'files', 'flight', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'searching', 'shortcuts', 'storage', 'theme'];
 const APP = ['App', 'Root', 'lazyPages', 'main'];
-/** A single panel is reached through the registry (panels/registry.ts) alone. */
-const DOORS = { 'panels/*': ['panels'] };
+/** A single panel is reached through the registry (panels/registry.ts), and by the flight view, which shows parts of some. */
+const DOORS = { 'panels/*': ['panels', 'flight'] };
 /** The one page that shows another: a replay is Operate, filled from a recording. */
 const SHOWN = { 'pages/replay': 'pages/operate/Operate.svelte' };
 

@@ -1,5 +1,5 @@
 /** Angles of the body, rad. */
-export interface Euler {
+interface Euler {
   /** right side down */
   readonly roll: number;
   /** nose up */

@@ -1,4 +1,6 @@
-/** Calls to the server: what each carries, how long it may take, and what went wrong in words. */
+/** Calls to the server, typed by its interface: what each carries, how long it may take, and what went wrong in words. */
+import createClient, { createFinalURL, createQuerySerializer, defaultPathSerializer, type ClientPathsWithMethod, type MethodResponse } from 'openapi-fetch';
+import type { paths, Problem } from './generated/api';
 import { secretHeader } from './pageSecret';
 import { connection } from './texts/connection';
 
@@ -11,6 +13,7 @@ export interface Refusal {
 }
 
 const texts = connection.requests;
+/** ms */
 const TIMEOUT = 5000;
 const SAFE = 'GET';
 const UNAUTHORISED = 401;
@@ -23,6 +26,8 @@ const WAIT = 2;
 let clientKey: string | null = null;
 let signedOut: (why: string) => void = () => undefined;
 let confirmed: () => Promise<boolean> = () => Promise.resolve(false);
+/** why the robot cannot be commanded from this page now; STOP always can */
+let barred: string | null = null;
 
 /** Send this key of the page with every call that changes something; null sends none. */
 export function nameClient(key: string | null): void {
@@ -39,70 +44,99 @@ export function onUnconfirmed(call: () => Promise<boolean>): void {
   confirmed = call;
 }
 
-/** Fetch, and once more where the server names a short time to wait: somebody may have mistyped a code here. */
-async function fetchPatiently(path: string, options: () => RequestInit): Promise<Response> {
-  const response = await fetch(`/api${path}`, options());
-  const wait = Number(response.headers.get('Retry-After') ?? Infinity);
-  if (response.status !== TOO_MANY || !(wait <= WAIT)) return response;
-  await new Promise((resolve) => setTimeout(resolve, 1000 * wait));
-  return fetch(`/api${path}`, options());
+/** Refuse every command to the robot but STOP, with this reason, until told otherwise by null. */
+export function refuseCommands(reason: string | null): void {
+  barred = reason;
 }
 
-/** Fetch, and once more where the server asks for a confirmation and gets it. */
-async function fetchConfirmed(path: string, options: () => RequestInit): Promise<Response> {
-  const response = await fetchPatiently(path, options);
-  if (response.status !== FORBIDDEN) return response;
-  const asked = readProblem(await response.clone().text()).kind === 'confirmation';
-  return asked && (await confirmed()) ? fetch(`/api${path}`, options()) : response;
+/** The server as everybody may ask it. */
+export const server = createClient<paths>({ fetch: within(TIMEOUT) });
+/** The same for what the robot obeys, which may be refused from this page. */
+export const robot = createClient<paths>({ fetch: unlessBarred(TIMEOUT) });
+
+type Send = (request: Request) => Promise<Response>;
+
+/**
+ * Return what sends a request, each attempt for at most so many ms; null sets no limit. It is sent once more where the
+ * server names a short time to wait, since somebody may have mistyped a code here, and where it gets the confirmation
+ * that it asks for.
+ */
+export function within(timeout: number | null): Send {
+  return async (request) => {
+    let response = await attempt(request, timeout);
+    const wait = Number(response.headers.get('Retry-After') ?? Infinity);
+    if (response.status === TOO_MANY && wait <= WAIT) {
+      await new Promise((resolve) => setTimeout(resolve, 1000 * wait));
+      response = await attempt(request, timeout);
+    }
+    const again = response.status === FORBIDDEN && (await asksConfirmation(response)) && (await confirmed());
+    return again ? attempt(request, timeout) : response;
+  };
+}
+
+/** As `within`, and nothing is sent while commands are refused. */
+export function unlessBarred(timeout: number): Send {
+  return (request) => (barred === null ? within(timeout)(request) : Promise.resolve(Response.json({ detail: barred }, { status: FORBIDDEN })));
+}
+
+/** Send a request as this page, which may have been signed in anew since the last attempt. */
+function attempt(request: Request, timeout: number | null): Promise<Response> {
+  const sent = new Request(request.clone(), timeout === null ? {} : { signal: AbortSignal.timeout(timeout) });
+  for (const [name, value] of Object.entries(credentials(request.method))) sent.headers.set(name, value);
+  return fetch(sent);
+}
+
+function credentials(method: string): Record<string, string> {
+  return { ...secretHeader(), ...(method === SAFE || clientKey === null ? {} : { 'X-Mucat-Client': clientKey }) };
+}
+
+async function asksConfirmation(response: Response): Promise<boolean> {
+  const problem: unknown = await response.clone().json().catch(() => null);
+  return read(problem).kind === 'confirmation';
 }
 
 /** The fields of an error; none where something between the page and the server answered in its place. */
-function readProblem(text: string): { detail?: unknown; kind?: unknown } {
-  try {
-    return Object(JSON.parse(text)) as object;
-  } catch {
-    return {};
-  }
+function read(error: unknown): Partial<Record<keyof Problem, unknown>> {
+  return Object(error) as object;
 }
 
-function headers(method: string): Record<string, string> {
-  if (method === SAFE || clientKey === null) return secretHeader();
-  return { ...secretHeader(), 'X-Mucat-Client': clientKey };
-}
-
-function refused(status: number, text: string): Refusal {
-  const problem = describe(status, text);
+function refused(status: number, error: unknown): Refusal {
+  const { detail, kind } = read(error);
+  const problem = typeof detail === 'string' ? detail : texts.noReason(status);
   if (status === UNAUTHORISED) signedOut(problem);
-  const { kind } = readProblem(text);
   return { problem, kind: typeof kind === 'string' ? kind : '' };
 }
 
-export async function send<T>(
-  method: string,
-  path: string,
-  body: object | undefined,
-  timeout: number | undefined,
-  read: (response: Response) => Promise<T>,
-): Promise<Answer<T>> {
+type Call<T> = Promise<{ readonly data?: T; readonly error?: unknown; readonly response: Response }>;
+
+/** What a call brings, or why it brings nothing. */
+export function ask<T>(call: Call<T>): Promise<Answer<T>> {
+  return askFor(call, (data) => data);
+}
+
+/** What is read from the answer to a call; `failure` are the words where none comes. */
+export async function askFor<T, Value>(
+  call: Call<T>,
+  take: (data: T, response: Response) => Value | Promise<Value>,
+  failure: string = texts.noAnswer,
+): Promise<Answer<Value>> {
   try {
-    const response = await fetchConfirmed(path, () => ({
-      method,
-      headers: { ...headers(method), ...(body ? { 'Content-Type': 'application/json' } : {}) },
-      ...(body ? { body: JSON.stringify(body) } : {}),
-      signal: AbortSignal.timeout(timeout ?? TIMEOUT),
-    }));
-    if (!response.ok) return refused(response.status, await response.text());
-    return { value: await read(response) };
+    const { data, error, response } = await call;
+    return response.ok ? { value: await take(data as T, response) } : refused(response.status, error);
   } catch {
-    return { problem: texts.noAnswer };
+    return { problem: failure };
   }
 }
 
-export function request<T>(method: string, path: string, body?: object, timeout?: number): Promise<Answer<T>> {
-  return send(method, path, body, timeout, async (response) => {
-    const text = await response.text();
-    return (text === '' ? null : JSON.parse(text)) as T;
-  });
+/** What came as bytes: the client says undefined where a body is empty. */
+export function bytes(body: ArrayBuffer | undefined): ArrayBuffer {
+  return body ?? new ArrayBuffer(0);
+}
+
+/** Have something done. Answers why it was not, in words; null where it was. */
+export async function command(call: Call<unknown>): Promise<string | null> {
+  const answer = await ask(call);
+  return 'problem' in answer ? answer.problem : null;
 }
 
 /** Several answers as one: all values, or the first problem. */
@@ -112,23 +146,33 @@ export async function together<T>(requests: readonly Promise<Answer<T>>[]): Prom
   return failed ?? { value: answers.flatMap((answer) => ('value' in answer ? [answer.value] : [])) };
 }
 
-export async function command(method: string, path: string, body?: object, timeout?: number): Promise<string | null> {
-  const answer = await request<null>(method, path, body, timeout);
-  return 'problem' in answer ? answer.problem : null;
+type Readable = ClientPathsWithMethod<typeof server, 'get'>;
+interface Parameters {
+  readonly path?: Record<string, unknown>;
+  readonly query?: Record<string, unknown>;
+}
+type ParametersOf<Path extends Readable> = paths[Path] extends { get: { parameters: infer Given extends Parameters } } ? Given : never;
+
+/** The address of something that the browser fetches by itself. */
+export function address<Path extends Readable>(path: Path, params: ParametersOf<Path>): string {
+  return createFinalURL(path, { baseUrl: '', params, querySerializer: createQuerySerializer(), pathSerializer: defaultPathSerializer });
 }
 
-/** Fetch tells nothing of how far it has sent a body. */
-export function upload<T>(path: string, file: File, progress: (share: number) => void): Promise<Answer<T>> {
+type Writable = ClientPathsWithMethod<typeof server, 'post'>;
+
+/** Send a file. Fetch tells nothing of how far it has sent a body. */
+export function upload<Path extends Writable>(path: Path, file: File, progress: (share: number) => void): Promise<Answer<MethodResponse<typeof server, 'post', Path>>> {
   return new Promise((resolve) => {
     const sending = new XMLHttpRequest();
+    sending.responseType = 'json';
     sending.upload.onprogress = (event) => event.lengthComputable && progress(event.loaded / event.total);
     sending.onload = () => {
-      if (sending.status >= 400) resolve(refused(sending.status, sending.responseText));
-      else resolve({ value: JSON.parse(sending.responseText) as T });
+      if (sending.status >= 400) resolve(refused(sending.status, sending.response));
+      else resolve({ value: sending.response as MethodResponse<typeof server, 'post', Path> });
     };
     sending.onerror = () => resolve({ problem: texts.uploadFailed(file.name) });
-    sending.open('POST', `/api${path}`);
-    for (const [name, value] of Object.entries(headers('POST'))) sending.setRequestHeader(name, value);
+    sending.open('POST', path);
+    for (const [name, value] of Object.entries(credentials('POST'))) sending.setRequestHeader(name, value);
     sending.send(file);
   });
 }
@@ -138,31 +182,24 @@ export interface Downloaded {
   readonly name: string;
 }
 
-/** A file; `progress` is told of its bytes. It may take as long as it takes: a large one is copied first. */
-export async function download(path: string, progress: (received: number, total: number) => void): Promise<Answer<Downloaded>> {
-  try {
-    const response = await fetchConfirmed(path, () => ({ headers: headers(SAFE) }));
-    if (!response.ok || response.body === null) return refused(response.status, await response.text());
-    const total = Number(response.headers.get('Content-Length'));
-    const name = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition') ?? '')?.[1] ?? 'download';
-    let received = 0;
-    const counted = new TransformStream<Uint8Array, Uint8Array>({
-      transform(piece, passed) {
-        progress((received += piece.byteLength), total);
-        passed.enqueue(piece);
-      },
-    });
-    // The browser may keep a blob on the disk, which it does not with pieces that are gathered here.
-    const blob = await new Response(response.body.pipeThrough(counted)).blob();
-    return { value: { blob, name } };
-  } catch {
-    return { problem: texts.downloadFailed };
-  }
+type Stream = Response['body'];
+type Progress = (received: number, total: number) => void;
+
+/** A file; `progress` is told of its bytes. */
+export function download(call: Call<Stream>, progress: Progress = () => undefined): Promise<Answer<Downloaded>> {
+  return askFor(call, (body, { headers }) => gather(body, headers, progress), texts.downloadFailed);
 }
 
-function describe(status: number, text: string): string {
-  const { detail } = readProblem(text);
-  if (typeof detail === 'string') return detail;
-  if (Array.isArray(detail)) return detail.map((one: { msg?: string }) => one.msg ?? '').join('; ');
-  return texts.noReason(status);
+async function gather(body: Stream, headers: Headers, progress: Progress): Promise<Downloaded> {
+  const total = Number(headers.get('Content-Length'));
+  let received = 0;
+  const counted = new TransformStream<Uint8Array, Uint8Array>({
+    transform(piece, passed) {
+      progress((received += piece.byteLength), total);
+      passed.enqueue(piece);
+    },
+  });
+  // The browser may keep a blob on the disk, which it does not with pieces that are gathered here.
+  const blob = await new Response(body?.pipeThrough(counted)).blob();
+  return { blob, name: /filename="([^"]+)"/.exec(headers.get('Content-Disposition') ?? '')?.[1] ?? 'download' };
 }

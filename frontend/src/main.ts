@@ -2,7 +2,7 @@
 import './styles/tokens.css';
 import './styles/base.css';
 import './styles/forced.css';
-import './styles/listing.css';
+import './styles/table.css';
 import './styles/tiles.css';
 import { mount } from 'svelte';
 import { Access } from './access/access.svelte';

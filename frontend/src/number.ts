@@ -2,7 +2,7 @@
 import { numbers as texts } from './texts/numbers';
 
 /** A number that was read, or why none was. */
-export type NumberReading = { readonly value: number; readonly problem: '' } | { readonly value: null; readonly problem: string };
+type NumberReading = { readonly value: number; readonly problem: '' } | { readonly value: null; readonly problem: string };
 
 export interface NumberRules {
   /** what may stand behind the number */

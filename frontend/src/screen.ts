@@ -4,7 +4,7 @@ import { MediaQuery } from 'svelte/reactivity';
 export const narrow = new MediaQuery('(max-width: 899px)');
 
 /** Too narrow for all that the bar of states could say at length. */
-export const snug = new MediaQuery('(max-width: 1599px)');
+export const snug = new MediaQuery('(max-width: 2199px)');
 
 /** Too narrow for the panels to stand side by side on one screen. */
 export const compact = new MediaQuery('(max-width: 1099px)');

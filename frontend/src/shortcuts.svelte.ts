@@ -15,6 +15,12 @@ export class Shortcuts {
     this.on = on;
     writeStored(KEY, on ? 'on' : 'off');
   };
+
+  /** True where one of these letters goes down alone, as a shortcut. */
+  pressed(event: KeyboardEvent, ...letters: readonly string[]): boolean {
+    if (!letters.includes(event.key.toLowerCase()) || event.repeat || event.ctrlKey || event.metaKey || event.altKey) return false;
+    return this.on && !isTyping(event.target);
+  }
 }
 
 export const [useShortcuts, provideShortcuts] = createContext<Shortcuts>();

@@ -4,7 +4,7 @@ import { readStored, writeStored } from './storage';
 const KEY = 'mucat-theme';
 
 export const THEME_CHOICES = ['device', 'dark', 'sunlight'] as const;
-export type ThemeChoice = (typeof THEME_CHOICES)[number];
+type ThemeChoice = (typeof THEME_CHOICES)[number];
 
 /** The page's colours: dark, or light enough for sunlight. The device's until one is chosen; remembered on it. */
 export class Theme {
@@ -38,10 +38,10 @@ export class Theme {
 
 export const [useTheme, provideTheme] = createContext<Theme>();
 
-/** The value of a token of styles/tokens.css as it stands. */
-export function token(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+/** The value of a token of styles/tokens.css as it stands there: over a picture some have others. */
+export function token(name: string, at: Element = document.documentElement): string {
+  return getComputedStyle(at).getPropertyValue(`--${name}`).trim();
 }
 
 /** A canvas font: a size of the type scale in the page's typeface. */
-export const canvasFont = (size: 'tiny' | 'small'): string => `${token(size)} ${token('font')}`;
+export const canvasFont = (size: 'tiny' | 'small' | 'label' | 'title'): string => `${token(size)} ${token('font')}`;

@@ -4,24 +4,18 @@ import { browserName, codeIn } from '../src/access/code';
 import { api } from '../src/api';
 import { nameClient } from '../src/http';
 
-interface Sent {
-  readonly address: string;
-  readonly method: string;
-  readonly headers: Record<string, string>;
-}
-
 const PERSON = { device: 3, name: 'Firefox on Linux', role: 'operator', kind: 'browser' } as const;
 const ME = { signed_in: true, robot: 'turtle', identity: PERSON, ended: '', pairing_open: false, operators_only: ['startSession'] };
 const NOBODY = { ...ME, signed_in: false, identity: null };
 let answers: Record<string, () => Response>;
-let sent: Sent[];
+let sent: Request[];
 
 beforeEach(() => {
   sent = [];
   answers = {};
-  vi.stubGlobal('fetch', (address: string, init: Omit<Sent, 'address'>) => {
-    sent.push({ address, method: init.method, headers: init.headers });
-    const answer = answers[`${init.method} ${address}`];
+  vi.stubGlobal('fetch', (request: Request) => {
+    sent.push(request);
+    const answer = answers[nameOf(request)];
     return answer ? Promise.resolve(answer()) : Promise.reject(new TypeError('refused'));
   });
 });
@@ -33,7 +27,8 @@ afterEach(() => {
 });
 
 const json = (body: object, status = 200) => () => new Response(JSON.stringify(body), { status });
-const asked = () => sent.map(({ method, address }) => `${method} ${address}`);
+const nameOf = ({ method, url }: Request) => `${method} ${new URL(url).pathname}`;
+const asked = () => sent.map(nameOf);
 
 describe('signing in', () => {
   it('looks once, and shows the page to somebody who is known', async () => {
@@ -167,9 +162,9 @@ describe('what every call carries', () => {
     nameClient('key');
     await api.storage();
     await api.deleteExport('1');
-    expect(sent.map(({ headers }) => headers).slice(-2)).toEqual([
-      { 'X-Mucat': 'of this page' },
-      { 'X-Mucat': 'of this page', 'X-Mucat-Client': 'key' },
+    expect(sent.map(({ headers }) => Object.fromEntries(headers)).slice(-2)).toEqual([
+      { 'x-mucat': 'of this page' },
+      { 'x-mucat': 'of this page', 'x-mucat-client': 'key' },
     ]);
   });
 });

@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, test, vi } from 'vitest';
-import type { BringUpReadings, BringUpStep } from '../src/api';
+import type { RawReadings, BringUpStep } from '../src/api';
 import { Hold } from '../src/pages/bring_up/hold';
 import { kindOf, openStep, readings } from '../src/pages/bring_up/steps';
 
@@ -78,7 +78,7 @@ test('a step opens by its name, or else the first that is not done', () => {
   expect(kindOf('toString').kind).toBe('other');
 });
 
-const RAW: BringUpReadings = {
+const RAW: RawReadings = {
   encoders: [
     { counts: 0, field: 'green' },
     { counts: 256, field: 'yellow' },
@@ -90,6 +90,7 @@ const RAW: BringUpReadings = {
   temperature: null,
   battery_volts: 7.456,
   beacons: { right: true, left: false },
+  leak: true,
 };
 
 test.each([
@@ -101,6 +102,8 @@ test.each([
   ['gyro', { ...RAW, imu: null }, ['–']],
   ['pressure', RAW, ['1013.3', '–']],
   ['beacons', RAW, ['high', 'low']],
+  ['leak', RAW, ['wet']],
+  ['leak', { ...RAW, leak: false }, ['dry']],
   ['devices', RAW, []],
 ])('the readings of %s are those of its parts', (name, raw, values) => {
   expect(readings(name, raw).map(({ value }) => value)).toEqual(values);

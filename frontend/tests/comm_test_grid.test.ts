@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { compare, summarise, toggle, type Column } from '../src/pages/comm_tests/comparison';
+import { compare, summarise, type Column } from '../src/pages/comm_tests/comparison';
 import { drawFigure, type FigureCell } from '../src/pages/comm_tests/figure';
 import { facetColumns, gridOf, placesOf } from '../src/pages/comm_tests/grid';
 import { differencePaint, ratePaint } from '../src/pages/comm_tests/scale';
@@ -57,11 +57,6 @@ describe('comparing', () => {
     expect(summary.mean).toBeCloseTo((0.75 + 0.998 + 1) / 3, 9);
     expect(summary.difference).toBeCloseTo(0.124, 9);
     expect(summarise(compare([first, column('c', [])]), 1)).toMatchObject({ mean: null, least: null, common: 0, difference: null });
-  });
-
-  it('keeps the order in which columns were chosen', () => {
-    expect(toggle(toggle(toggle([], '3'), 'table6'), '1')).toEqual(['3', 'table6', '1']);
-    expect(toggle(['3', 'table6', '1'], '3')).toEqual(['table6', '1']);
   });
 });
 

@@ -3,7 +3,6 @@ import type { Cell } from '../src/api';
 import { mergeCells } from '../src/live/cells';
 import { CommTestWatch } from '../src/live/comm_test.svelte';
 import type { CommTestActive } from '../src/live/messages';
-import { readMessage } from '../src/live/messages';
 
 const cell = (number: number, rate = 1): Cell => ({ number, rate }) as Cell;
 const active = (run: number, done: number): CommTestActive => ({
@@ -50,10 +49,6 @@ describe('the watch', () => {
     const watch = new CommTestWatch();
     watch.take(active(4, 0), { run: 3, ...cell(74) });
     expect(watch.cells).toEqual([]);
-  });
-
-  it('is told by the live socket', () => {
-    expect(readMessage('{"op": "comm_test", "active": null, "cell": null}')).toMatchObject({ op: 'comm_test' });
   });
 });
 

@@ -9,8 +9,8 @@ afterEach(() => {
 describe('a page that may not command', () => {
   it('sends nothing to the robot but STOP', async () => {
     const sent: string[] = [];
-    vi.stubGlobal('fetch', (address: string) => {
-      sent.push(address);
+    vi.stubGlobal('fetch', ({ url }: Request) => {
+      sent.push(new URL(url).pathname);
       return Promise.resolve(new Response(null, { status: 204 }));
     });
     refuseCommands('a replay');

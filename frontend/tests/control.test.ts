@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { Control } from '../src/live/control.svelte';
-import type { ControlMessage, You } from '../src/live/messages';
+import type { ControlState } from '../src/api';
+import type { You } from '../src/live/messages';
 
 let asked: string[];
 let seen: boolean;
@@ -8,8 +9,7 @@ let control: Control;
 
 const OPERATOR: You = { name: 'me', role: 'operator', client: 1 };
 const other = { client: 2, name: 'Safari on iPad' };
-const message = (said: Partial<ControlMessage> = {}): ControlMessage => ({
-  op: 'control',
+const message = (said: Partial<ControlState> = {}): ControlState => ({
   epoch: 1,
   holder: null,
   ...said,

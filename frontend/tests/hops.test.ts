@@ -5,7 +5,7 @@ const WELL: Heard = {
   connection: 'open',
   farewell: '',
   untrusted: false,
-  parts: [{ name: 'runtime', state: 'ok', text: 'It runs.' }],
+  parts: [{ name: 'runtime', state: 'ok', text: 'It runs.', here: null }],
   silent: false,
   state: { connected: true, connection: 'connected' },
 };
@@ -25,13 +25,13 @@ describe('findBroken', () => {
   });
 
   it.each(['starting', 'failed'] as const)('says in the words of the server that the runtime is %s', (state) => {
-    const broken = findBroken({ ...WELL, parts: [{ name: 'runtime', state, text: 'Exit code 3' }] });
+    const broken = findBroken({ ...WELL, parts: [{ name: 'runtime', state, text: 'Exit code 3', here: null }] });
     expect(broken?.hop).toBe(1);
     expect(broken?.what).toContain('Exit code 3');
   });
 
   it('says calmly which work the board does instead of the runtime’s', () => {
-    const broken = findBroken({ ...WELL, silent: true, parts: [{ name: 'runtime', state: 'absent', text: 'The bring-up uses it.' }] });
+    const broken = findBroken({ ...WELL, silent: true, parts: [{ name: 'runtime', state: 'absent', text: 'The bring-up uses it.', here: null }] });
     expect(broken).toMatchObject({ what: 'The bring-up uses it.', reserved: true });
     expect(findBroken({ ...WELL, silent: true })?.reserved).toBeUndefined();
   });

@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
-import { DEFINITIONS_HASH, OTHER_TOPICS } from '../src/generated/topics';
+import { DEFINITIONS_HASH, DOCUMENT_TOPICS, PICTURE_TOPICS } from '../src/generated/topics';
 import { LiveFeed } from '../src/live/feed';
 import type { Live } from '../src/live/live.svelte';
 import { blockBytes, depthBlock, documentBlock, join } from './bytes';
@@ -98,17 +98,17 @@ describe('Live', () => {
 
   it('takes in rows and documents', () => {
     server().greet();
-    server().give(depthBlock(99, [0.1, 0.2]), documentBlock(OTHER_TOPICS.debug, [{ time: 99, level: 1, text: 'hello' }]));
+    server().give(depthBlock(99, [0.1, 0.2]), documentBlock(DOCUMENT_TOPICS.debug, [{ time: 99, level: 1, text: 'hello' }]));
     expect(live.rings.depth.latest()?.depth).toBeCloseTo(0.2, 6);
     expect(live.debug.entries.map(({ text }) => text)).toEqual(['hello']);
   });
 
   it('has the newest calibration, until the robot’s clock is another', () => {
     server().greet();
-    server().give(documentBlock(OTHER_TOPICS.calibration, [{ time: 98, values: null, missing: ['b'] }, { time: 99, values: null, missing: [] }]));
-    expect(live.calibration?.missing).toEqual([]);
+    server().give(documentBlock(DOCUMENT_TOPICS.calibration, [{ time: 98, values: null, missing: ['b'] }, { time: 99, values: null, missing: [] }]));
+    expect(live.documents.calibration.value?.missing).toEqual([]);
     server().greet({ steady: 5 });
-    expect(live.calibration).toBeNull();
+    expect(live.documents.calibration.value).toBeNull();
   });
 
   it('counts time by the robot’s clock, whatever this computer’s calendar says', () => {
@@ -131,7 +131,7 @@ describe('Live', () => {
   it('opens again for ever, and takes a replay only once', () => {
     server().greet();
     const line = (time: number, text: string) => ({ time, level: 1, text });
-    server().give(depthBlock(99, [0.1, 0.2], 0), documentBlock(OTHER_TOPICS.debug, [line(99, 'one')]));
+    server().give(depthBlock(99, [0.1, 0.2], 0), documentBlock(DOCUMENT_TOPICS.debug, [line(99, 'one')]));
     for (let attempt = 0; attempt < 20; attempt += 1) {
       server().close();
       expect(live.connection).toBe('lost');
@@ -144,10 +144,18 @@ describe('Live', () => {
     expect(live.connection).toBe('open');
     server().give(
       depthBlock(99, [0.1, 0.2, 0.3], 0),
-      documentBlock(OTHER_TOPICS.debug, [line(99, 'one'), line(99.5, 'two')]),
+      documentBlock(DOCUMENT_TOPICS.debug, [line(99, 'one'), line(99.5, 'two')]),
     );
     expect(depths()).toHaveLength(3);
     expect(live.debug.entries.map(({ text }) => text)).toEqual(['one', 'two']);
+  });
+
+  it('has the newest document of each topic, and ignores messages and topics that it does not know', () => {
+    server().greet();
+    for (const op of ['dance', 'toString']) server().tell({ op });
+    server().give(documentBlock(DOCUMENT_TOPICS.craft, [{ time: 98, title: 'one' }, { time: 99, title: 'two' }]), documentBlock(250, [{ time: 99 }]));
+    expect(live.documents.craft.value?.title).toBe('two');
+    expect(live.documents.mission.value).toBeNull();
   });
 
   it('has the bystander’s pictures sent while somebody looks, also after the connection was lost', () => {
@@ -155,26 +163,26 @@ describe('Live', () => {
     const picture = (time: number) => {
       const payload = new Uint8Array(10);
       new DataView(payload.buffer).setFloat64(0, time, true);
-      return blockBytes(OTHER_TOPICS.observer, 2, 1, 0, payload);
+      return blockBytes(PICTURE_TOPICS.observer, 2, 1, 0, payload);
     };
     server().greet();
     const first = live.watch('observer');
     const second = live.watch('observer');
     expect(asked()).toEqual([['picture', 'observer']]);
     server().give(picture(101));
-    expect(live.observer?.time).toBe(101);
+    expect(live.pictures.observer.value?.time).toBe(101);
     server().close();
     vi.advanceTimersByTime(3000);
     server().greet({ steady: 104 });
     expect(asked()).toEqual([['picture', 'observer']]);
     first();
-    expect(live.observer).not.toBeNull();
+    expect(live.pictures.observer.value).not.toBeNull();
     second();
-    expect(live.observer).toBeNull();
+    expect(live.pictures.observer.value).toBeNull();
     expect(asked().at(-1)).toEqual(['picture']);
     // One is still on its way: whoever looks next is to wait for a new one.
     server().give(picture(105));
-    expect(live.observer).toBeNull();
+    expect(live.pictures.observer.value).toBeNull();
   });
 
   it('gives up a connection that has fallen silent', () => {
@@ -197,8 +205,8 @@ describe('Live', () => {
   it('has events of robot and server in order of time, however they come', () => {
     const event = (time: number, text: string) => ({ time, kind: 'alarm', severity: 'alarm', text });
     server().greet();
-    server().give(documentBlock(OTHER_TOPICS.notice, [event(50, 'one'), event(98, 'four')]));
-    server().give(documentBlock(OTHER_TOPICS.event, [event(60, 'two'), event(61, 'three'), event(99, 'five')]));
+    server().give(documentBlock(DOCUMENT_TOPICS.notice, [event(50, 'one'), event(98, 'four')]));
+    server().give(documentBlock(DOCUMENT_TOPICS.event, [event(60, 'two'), event(61, 'three'), event(99, 'five')]));
     expect(live.events.entries.map(({ text }) => text)).toEqual(['one', 'two', 'three', 'four', 'five']);
   });
 
@@ -207,13 +215,13 @@ describe('Live', () => {
     server().give(depthBlock(99.9, [0.1]));
     vi.advanceTimersByTime(1300);
     expect(live.freshness('depth').state).toBe('stale');
-    server().give(documentBlock(OTHER_TOPICS.state, [{ time: 101, paces: [{ topic: 'depth', period: 0.5 }] }]));
+    server().give(documentBlock(DOCUMENT_TOPICS.state, [{ time: 101, paces: [{ topic: 'depth', period: 0.5 }] }]));
     expect(live.freshness('depth').state).toBe('fresh');
   });
 
   it('measures the age of every row of a tick by the control rate', () => {
     server().greet();
-    server().give(documentBlock(OTHER_TOPICS.state, [{ time: 100, control_rate: 0.5, paces: [] }]));
+    server().give(documentBlock(DOCUMENT_TOPICS.state, [{ time: 100, control_rate: 0.5, paces: [] }]));
     expect((['control', 'turning', 'navigation'] as const).map((topic) => live.period(topic))).toEqual([2, 2, 2]);
   });
 
@@ -303,13 +311,13 @@ describe('Live', () => {
 describe('a page at the control lease', () => {
   const control = (holder: number | null) =>
     ({ op: 'control', epoch: 3, holder: holder === null ? null : { client: holder, name: 'x' } }) as const;
-  const calls: { address: string; headers: Record<string, string> }[] = [];
+  const calls: Request[] = [];
   const drives = () => server().sent.map((text) => JSON.parse(text) as { op: string; axes: number[]; lease: number }).filter(({ op }) => op === 'drive');
 
   beforeEach(() => {
     calls.length = 0;
-    vi.stubGlobal('fetch', (address: string, init: { headers: Record<string, string> }) => {
-      calls.push({ address, headers: init.headers });
+    vi.stubGlobal('fetch', (request: Request) => {
+      calls.push(request);
       return Promise.resolve(new Response('{}'));
     });
   });
@@ -319,7 +327,7 @@ describe('a page at the control lease', () => {
     expect(access.know).toHaveBeenCalledWith(YOU);
     server().tell(control(null));
     server().tell(control(null));
-    expect(calls).toEqual([{ address: '/api/control/take', headers: { 'X-Mucat-Client': 'key' } }]);
+    expect(calls.map(({ url, headers }) => [new URL(url).pathname, headers.get('X-Mucat-Client')])).toEqual([['/api/control/take', 'key']]);
     expect(live.barred).not.toBeNull();
     server().tell(control(7));
     expect(live.barred).toBeNull();
@@ -328,7 +336,7 @@ describe('a page at the control lease', () => {
   it('drives while it may, and says neutral and then nothing as soon as it may not', () => {
     server().greet();
     server().tell(control(7));
-    server().give(documentBlock(OTHER_TOPICS.state, [{ time: 100, mode: 'manual', armed: true, alarms: [], paces: [] }]));
+    server().give(documentBlock(DOCUMENT_TOPICS.state, [{ time: 100, mode: 'manual', armed: true, alarms: [], paces: [] }]));
     vi.advanceTimersByTime(1000);
     expect(drives().length).toBeGreaterThanOrEqual(9);
     expect(drives().every(({ axes, lease }) => lease === 3 && axes.every((value) => value === 0))).toBe(true);
@@ -355,7 +363,7 @@ describe('a page at the control lease', () => {
     const alarm = { severity: 'alarm', active: true, acknowledged: false, what: '', cause: '', remedy: '' };
     server().greet();
     const state = { time: 100, mode: 'disarmed', paces: [], alarms: [{ ...alarm, fault: 'a', since: 1 }] };
-    server().give(documentBlock(OTHER_TOPICS.state, [state]));
+    server().give(documentBlock(DOCUMENT_TOPICS.state, [state]));
     server().tell({ op: 'alarms', alarms: [{ ...alarm, fault: 'b', since: 2 }] });
     expect(live.alarms.map(({ fault }) => fault)).toEqual(['b', 'a']);
     expect(live.alarms.map((one) => live.isUnknown(one))).toEqual([false, false]);
@@ -370,9 +378,9 @@ describe('STOP', () => {
   it('goes by socket and by HTTP, until the server has taken it', async () => {
     const answers = [new Response('{"detail":"no runtime"}', { status: 503 }), new Response(null, { status: 204 })];
     let calls = 0;
-    vi.stubGlobal('fetch', (address: string) => {
+    vi.stubGlobal('fetch', ({ url }: Request) => {
       calls += 1;
-      expect(address).toBe('/api/robot/stop');
+      expect(new URL(url).pathname).toBe('/api/robot/stop');
       // The first attempt meets no server at all.
       return calls === 1 ? Promise.reject(new TypeError('refused')) : Promise.resolve(answers[calls - 2]);
     });

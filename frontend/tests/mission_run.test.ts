@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
+import type { Session } from '../src/api';
 import type { Mission, MissionStepState, State } from '../src/generated/topics';
-import { ENDED_SHOWN, isCurrent, isTimed, listed, nest, phaseInRecording, phaseOf, sinceReport } from '../src/parts/mission/steps';
+import { ENDED_SHOWN, isCurrent, isTimed, listed, nest, phaseInRecording, phaseOf, sessionOf, sinceReport } from '../src/parts/mission/steps';
 
 const step = (path: string, more: Partial<MissionStepState> = {}): MissionStepState => ({
   path,
@@ -30,6 +31,7 @@ const mission = (phase: Mission['phase'], time = 100): Mission => ({
   deepest: 0.6,
   steps: [],
   document: '',
+  surfaced: null,
 });
 const state = (armed: boolean, time: number) => ({ armed, time }) as State;
 
@@ -68,13 +70,30 @@ describe('a mission on the page', () => {
   });
 
   it('is shown while it runs, and for a while after its end', () => {
-    expect(isCurrent(mission('running'), state(true, 500), 500)).toBe(true);
-    expect(isCurrent(mission('failed'), state(false, 110), 110)).toBe(true);
-    expect(isCurrent(mission('failed'), state(true, 110), 110)).toBe(false);
-    expect(isCurrent(mission('failed'), state(false, 300), 100 + ENDED_SHOWN)).toBe(false);
-    expect(isCurrent(mission('running'), state(false, 300), 300)).toBe(false);
+    expect(isCurrent(mission('running'), state(true, 500), 500, null)).toBe(true);
+    expect(isCurrent(mission('failed'), state(false, 110), 110, null)).toBe(true);
+    expect(isCurrent(mission('failed'), state(true, 110), 110, null)).toBe(false);
+    expect(isCurrent(mission('failed'), state(false, 300), 100 + ENDED_SHOWN, null)).toBe(false);
+    expect(isCurrent(mission('running'), state(false, 300), 300, null)).toBe(false);
     // Before the first state, and with a clock that is not known yet.
-    expect(isCurrent(mission('failed'), null, NaN)).toBe(false);
+    expect(isCurrent(mission('failed'), null, NaN, null)).toBe(false);
+  });
+
+  it('is shown to a page that comes back after the dive', () => {
+    const dive = { ...mission('succeeded'), surfaced: 98 };
+    expect(isCurrent(dive, state(false, 900), 900, 895)).toBe(true);
+    expect(isCurrent(dive, state(false, 900), 895 + ENDED_SHOWN, 895)).toBe(false);
+    expect(isCurrent(dive, state(true, 900), 900, 895)).toBe(false);
+    expect(isCurrent(dive, state(false, 9000), 9000, 8995)).toBe(false);
+    expect(isCurrent(mission('succeeded'), state(false, 900), 900, 895)).toBe(false);
+  });
+
+  it('finds the session of a dive', () => {
+    const at = (id: number, started: string) => ({ id, started }) as Session;
+    const sessions = [at(3, '2026-05-01T10:30:00Z'), at(2, '2026-05-01T10:00:00Z'), at(1, '2026-05-01T09:00:00Z')];
+    expect(sessionOf(sessions, new Date('2026-05-01T10:02:00Z'))?.id).toBe(2);
+    expect(sessionOf(sessions, new Date('2026-05-01T08:00:00Z'))).toBeNull();
+    expect(sessionOf(sessions, new Date(NaN))).toBeNull();
   });
 
   it('goes on between two reports, and no further', () => {

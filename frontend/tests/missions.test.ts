@@ -15,8 +15,8 @@ import {
   kindsFor,
   readCards,
   removeAt,
-  setField,
   setKind,
+  withEntry,
   tableOf,
   walk,
   type Card,
@@ -129,7 +129,7 @@ describe('cards', () => {
 
   it('lose a field that is emptied, and with another kind those that it does not have', () => {
     const { root: one } = readCards({ mission: { do: 'hold', seconds: 3, within: 0.2, note: 'n' } });
-    expect(setField(one, [], 'seconds', undefined).fields).toEqual({ do: 'hold', within: 0.2, note: 'n' });
+    expect(withEntry(one.fields, 'seconds', undefined)).toEqual({ do: 'hold', within: 0.2, note: 'n' });
     const turn = KINDS[1];
     expect(turn && setKind(one, [], turn).fields).toEqual({ do: 'turn', within: 0.2, note: 'n' });
   });

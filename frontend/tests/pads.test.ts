@@ -11,10 +11,11 @@ let end: () => void;
 const gamepad = (index: number, id: string, connected = true) =>
   ({ id, index, connected, mapping: 'standard', axes: [0, 0, 0, 0], buttons: [] }) as unknown as Gamepad;
 
-function start(): void {
+async function start(): Promise<void> {
   const pilot = new Pilot({ say: () => undefined, now: () => 0, lease: () => 1, keeps: () => false });
   pads = new Pads(pilot, () => undefined);
   end = pads.start();
+  await vi.dynamicImportSettled();
 }
 
 beforeEach(() => {
@@ -22,6 +23,8 @@ beforeEach(() => {
   plugged = [];
   page = new EventTarget();
   vi.stubGlobal('window', page);
+  vi.stubGlobal('history', { pushState: () => undefined });
+  vi.stubGlobal('location', { href: '' });
   vi.stubGlobal('navigator', { getGamepads: () => plugged });
 });
 
@@ -32,16 +35,16 @@ afterEach(() => {
 });
 
 describe('Pads', () => {
-  it('takes the gamepad that is there', () => {
+  it('takes the gamepad that is there', async () => {
     plugged = [null, gamepad(1, 'Pad (Vendor: 045e)')];
-    start();
+    await start();
     expect(pads.name).toBe('Pad');
     expect(pads.notice).toBe('');
   });
 
-  it('goes on with another gamepad where the one in use goes', () => {
+  it('goes on with another gamepad where the one in use goes', async () => {
     plugged = [gamepad(0, 'First'), gamepad(1, 'Second')];
-    start();
+    await start();
     expect(pads.name).toBe('First');
     plugged = [null, plugged[1] ?? null];
     page.dispatchEvent(new Event('gamepaddisconnected'));
@@ -49,18 +52,18 @@ describe('Pads', () => {
     expect(pads.notice).toContain('First disconnected');
   });
 
-  it('does not take one that is listed though it has gone', () => {
+  it('does not take one that is listed though it has gone', async () => {
     plugged = [gamepad(0, 'First')];
-    start();
+    await start();
     plugged = [gamepad(0, 'First', false)];
     page.dispatchEvent(new Event('gamepaddisconnected'));
     expect(pads.name).toBeNull();
     expect(pads.notice).toContain('First disconnected');
   });
 
-  it('says so where the browser offers no gamepads, as Firefox over http', () => {
+  it('says so where the browser offers no gamepads, as Firefox over http', async () => {
     vi.stubGlobal('navigator', {});
-    start();
+    await start();
     expect(pads.name).toBeNull();
     expect(pads.notice).toContain('https');
   });

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
-import type { TunableParameter } from '../src/generated/topics';
-import { differences, find, group, words, wrong } from '../src/pages/tune/parameters/list';
+import type { Loop, TunableParameter } from '../src/generated/topics';
+import { differences, find, group, groupTitle, valueWords, words, wrong } from '../src/pages/tune/parameters/list';
 
 function parameter(name: string, changes: Partial<TunableParameter> = {}): TunableParameter {
   return {
@@ -59,4 +59,19 @@ test('what differs is told of both sides, also where one lacks it', () => {
     { name: 'new', left: null, right: 3 },
   ]);
   expect([words(0.1 + 0.2), words('bang_bang'), words(true), words(null)]).toEqual(['0.3', 'bang bang', 'on', '–']);
+});
+
+test('a controller has the title that the robot gives it, in values and in groups', () => {
+  const controllers = [
+    { name: 'pid', title: 'PID', gains: [] },
+    { name: 'predictive', title: 'Model-based', gains: [] },
+  ];
+  const loops: Loop[] = [{ name: 'depth', on: false, set_point: 0, controller: 'pid', controllers }];
+  expect(valueWords(loops, 'depth.controller', 'predictive')).toBe('Model-based');
+  expect(groupTitle(loops, 'depth.predictive')).toBe('depth · Model-based');
+  // Nothing else is called so, and an older robot's controller keeps its own name.
+  expect(valueWords(loops, 'vision.colour', 'predictive')).toBe('predictive');
+  expect(valueWords(loops, 'depth.controller', 'bang_bang')).toBe('bang bang');
+  expect(valueWords([], 'depth.controller', 'predictive')).toBe('predictive');
+  expect(groupTitle(loops, 'depth.trim_speed')).toBe('depth · trim speed');
 });

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Answer, Stretch, Timeline } from '../src/api';
-import { OTHER_TOPICS } from '../src/generated/topics';
+import { DOCUMENT_TOPICS } from '../src/generated/topics';
 import { Stop } from '../src/live/stop.svelte';
 import { Player, type Source } from '../src/pages/replay/player.svelte';
 import { ticks } from '../src/pages/replay/ticks';
@@ -54,11 +54,11 @@ class Session implements Source {
     for (let second = Math.ceil(from); second < Math.min(end, this.duration); second += 1) {
       lines.push({ time: ZERO + second, level: 1, text: `line ${second}` });
     }
-    const state = history === undefined ? [] : [documentBlock(OTHER_TOPICS.state, [{ time: ZERO + Math.max(0, start - 1), paces: [] }])];
+    const state = history === undefined ? [] : [documentBlock(DOCUMENT_TOPICS.state, [{ time: ZERO + Math.max(0, start - 1), paces: [] }])];
     return {
       value: {
         leftOut: this.damagedFrom >= from && this.damagedFrom < end ? 50 : 0,
-        blocks: join(...state, depthBlock(ZERO + first / 50, depths), documentBlock(OTHER_TOPICS.debug, lines)).buffer,
+        blocks: join(...state, depthBlock(ZERO + first / 50, depths), documentBlock(DOCUMENT_TOPICS.debug, lines)).buffer,
       },
     };
   }

@@ -2,18 +2,13 @@ import { describe, expect, it } from 'vitest';
 import type { SessionDetail } from '../src/api';
 import { alike, findTooLong, orderProblem, SHEET_LINES } from '../src/pages/sessions/export/formats';
 import { asked, frames } from '../src/pages/sessions/film';
-import { toggle, withTags } from '../src/pages/sessions/find';
+import { withTags } from '../src/pages/sessions/find';
 import { compareLink, replayLink } from '../src/pages/sessions/links';
 import { gapWords } from '../src/pages/sessions/words';
 
 describe('tags', () => {
   it('are added once, whatever their letters', () => {
     expect(withTags(['pool'], ' Pool, sea ,, sea')).toEqual(['pool', 'sea']);
-  });
-
-  it('are toggled', () => {
-    expect(toggle([1, 2], 2)).toEqual([1]);
-    expect(toggle([1], 2)).toEqual([1, 2]);
   });
 });
 

@@ -43,6 +43,7 @@ describe.each([
     expect(contrast(of('on-accent'), of('accent'))).toBeGreaterThanOrEqual(textLeast);
     expect(contrast(of('on-replay'), of('replay'))).toBeGreaterThanOrEqual(textLeast);
     expect(contrast(of('on-stop'), of('stop'))).toBeGreaterThanOrEqual(4.5);
+    expect(contrast(of('on-armed'), of('armed'))).toBeGreaterThanOrEqual(textLeast);
   });
 
   it.each(['series-measured', 'series-wanted', 'series-third', 'series-4', 'series-5', 'series-6', 'series-7'])('the line %s stands out', (name) => {
@@ -65,11 +66,24 @@ const stylesOf = (file: string) =>
   file.endsWith('.css') ? read(file) : [...read(file).matchAll(/<style>[^]*<\/style>|style(:[\w-]+)?="[^"]*"/g)].join('\n');
 const files = readdirSync(SOURCES, { recursive: true, encoding: 'utf8' }).filter((file) => !file.startsWith('generated') && file !== 'styles/tokens.css');
 
+/** Widths of the window (px) at which something changes: at most the first, at least the second. */
+const WIDTHS = ['max-width: 479px', 'max-width: 899px', 'min-width: 900px', 'max-width: 1099px', 'max-width: 1719px', 'max-width: 2199px'];
+/** Of what stands within a thing, and between things; a negative margin takes back what another rule gives. */
+const ROOM = /(?:^|[\s;{"])(?:padding|margin|gap|row-gap|column-gap)(?:-[a-z]+)?: [^;}]*?(?<![-\w.])[\d.]+(?:px|rem)[^;}]*/g;
+
 describe('sizes and colours come from tokens.css', () => {
   const styled = files.filter((file) => /\.(css|svelte)$/.test(file));
 
   it.each(styled)('%s has no font size of its own', (file) => {
     expect(stylesOf(file).match(/font(-size)?:[^;}]*\d(px|rem|em|%|pt)[^;}]*/g) ?? []).toEqual([]);
+  });
+
+  it.each(styled)('%s has no spacing of its own', (file) => {
+    expect(stylesOf(file).match(ROOM) ?? []).toEqual([]);
+  });
+
+  it.each(files.filter((file) => /\.(css|svelte|ts)$/.test(file)))('%s changes at the page’s widths alone', (file) => {
+    expect((read(file).replaceAll(/@container[^{]*/g, '').match(/(?:max|min)-width: \d+px(?=\))/g) ?? []).filter((width) => !WIDTHS.includes(width))).toEqual([]);
   });
 
   it.each(styled)('%s has no colour of its own', (file) => {
@@ -84,5 +98,38 @@ describe('sizes and colours come from tokens.css', () => {
     const named = [...read(file).matchAll(/var\(--([\w-]+)/g), ...read(file).matchAll(/\btoken\('([\w-]+)'\)/g)].map(([, name = '']) => name);
     const own = new Set([...read(file).matchAll(/style:--([\w-]+)|(?:^|[\s;"])--([\w-]+)\s*:/gm)].map(([, one, other]) => one ?? other ?? ''));
     expect(named.filter((name) => !CSS.includes(`--${name}:`) && !own.has(name))).toEqual([]);
+  });
+});
+
+/** Where a colour of state may stand; a folder ends with a slash. */
+const PLACES: Readonly<Record<string, readonly string[]>> = {
+  armed: ['parts/state/ArmedState.svelte', 'pages/operate/Arm.svelte', 'shell/RobotNow.svelte', 'flight/'],
+  recording: ['shell/Recording.svelte', 'pages/sessions/RecordingNow.svelte', 'flight/'],
+  replay: ['pages/replay/', 'parts/Panel.svelte', 'shell/', 'App.svelte', 'styles/'],
+  stop: ['shell/StopButton.svelte', 'pages/operate/drive/PadMap.svelte', 'drive/', 'flight/'],
+  alarm: [
+    // alarms, faults and a lost link
+    'shell/', 'flight/', 'panels/events/', 'panels/console/', 'parts/Sheet.svelte', 'parts/state/', 'pages/operate/Failsafe.svelte', 'pages/replay/SeekBar.svelte',
+    // a check that the robot did not pass
+    'parts/Sign.svelte', 'parts/Judged.svelte', 'pages/bring_up/StepResults.svelte', 'pages/bring_up/DeviceChips.svelte',
+    // a drawing of what is red itself: a wire, a magnet's pole
+    'pages/bring_up/MotorPicture.svelte', 'pages/bring_up/MagnetPicture.svelte', 'pages/bring_up/MeterPicture.svelte',
+  ],
+};
+/** Amber as a mark in a drawing, a few pixels large, which nobody takes for a state. */
+const AMBER_MARKS = ['pages/replay/SeekBar.svelte', 'pages/missions/TrialResults.svelte'];
+
+describe('one language of state', () => {
+  const styled = files.filter((file) => /\.(css|svelte)$/.test(file));
+
+  it.each(Object.entries(PLACES))('the colour of %s stands only where that is meant', (name, places) => {
+    const users = styled.filter((file) => new RegExp(`var\\(--(on-)?${name}(-\\w+)?\\)`).test(read(file)));
+    expect(users.length).toBeGreaterThan(0);
+    expect(users.filter((file) => !places.some((place) => (place.endsWith('/') ? file.startsWith(place) : file === place)))).toEqual([]);
+  });
+
+  it('caution is text and outline, never a ground: filled amber is ARMED alone', () => {
+    expect(styled.filter((file) => !AMBER_MARKS.includes(file) && /background(-color)?:[^;}]*--caution/.test(read(file)))).toEqual([]);
+    expect(CSS).not.toContain('--caution-soft');
   });
 });

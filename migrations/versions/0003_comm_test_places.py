@@ -10,8 +10,8 @@ depends_on = None
 
 
 def upgrade() -> None:
-    place = sa.Column("place", sa.String, nullable=False, server_default="emulated")
-    op.add_column("comm_test_run", place)
+    column = sa.Column("place", sa.String, nullable=False, server_default="emulated")
+    op.add_column("comm_test_run", column)
     op.add_column("comm_test_run", sa.Column("sample", sa.String, nullable=False, server_default=""))
     op.add_column("comm_test_cell", sa.Column("repeated", sa.Integer, nullable=False, server_default="0"))
 

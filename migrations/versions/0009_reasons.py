@@ -30,7 +30,7 @@ def downgrade() -> None:
 
 
 def split_reasons(explanation: str, names: list[str]) -> list[str]:
-    """The reasons in the order of the explanation; each but the first begins with one of the names."""
+    """Return the reasons in the order of the explanation; each but the first begins with one of the names."""
     first, *parts = explanation.split("; ")
     reasons = [first]
     for part in parts:

@@ -1,1 +1,1 @@
-"""The calibration that the board keeps, and what it is measured by."""
+"""The board's calibration, and the measurements that it needs."""

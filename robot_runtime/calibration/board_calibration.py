@@ -1,4 +1,4 @@
-"""The calibration that the board keeps: asked for after each greeting, and stored on request."""
+"""The board's calibration: requested after each greeting, and stored on request."""
 
 import threading
 from collections.abc import Callable
@@ -36,18 +36,18 @@ class BoardCalibration:
 
     @property
     def values(self) -> CalibrationValues | None:
-        """The calibration that the board keeps; None until it has told."""
+        """The calibration that the board stores; None until the board has answered."""
         return self._stored
 
     def forget(self) -> None:
-        """The board was greeted: it may be another one."""
+        """Forget the calibration after a greeting: the board may be another one."""
         with self._changed:
             self._stored, self._problem = None, ""
             self._asked_at = float("-inf")
             self._asked = 0
 
     def see(self, packet: Calibration) -> None:
-        """Takes the board's answer."""
+        """Take the board's answer."""
         with self._changed:
             try:
                 self._stored, self._problem = CalibrationValues.from_packet(packet), ""
@@ -59,7 +59,7 @@ class BoardCalibration:
         self._on_change()
 
     def tick(self) -> None:
-        """Asks the board again when that is due; called several times a second."""
+        """Ask the board again when that is due; called several times a second."""
         with self._changed:
             due = self._clock.now() - self._asked_at >= _RETRY_SECONDS + self._patience
             if self._stored is None and due and self._send(RequestCalibration()):
@@ -67,7 +67,7 @@ class BoardCalibration:
                 self._asked += 1
 
     def refusals(self) -> list[str]:
-        """Reasons against arming; empty if the board keeps a whole calibration."""
+        """Return the reasons against arming; empty if the board stores a whole calibration."""
         with self._changed:
             if self._problem:
                 return [f"The board's calibration cannot be used: {self._problem}. Calibrate it again."]
@@ -77,16 +77,16 @@ class BoardCalibration:
             return [f"The board is not calibrated. Missing: {'; '.join(missing)}."] if missing else []
 
     def require(self) -> CalibrationValues:
-        """The calibration that the board keeps. Raises RefusedError until it has told."""
+        """Return the calibration that the board stores. Raise RefusedError until the board has answered."""
         stored = self._stored
         if stored is None:
             raise RefusedError("The board has not told its calibration. Check the connection.")
         return stored
 
     def store(self, values: CalibrationValues) -> None:
-        """Stores it in the board, and waits until the board has said that it keeps it.
+        """Store a calibration in the board, and wait until the board confirms it.
 
-        Raises RefusedError where it does not: there is no connection, it is armed, or its EEPROM fails.
+        Raise RefusedError where it does not: there is no connection, it is armed, or its EEPROM fails.
         """
         requested = values.packet()
         with self._changed:

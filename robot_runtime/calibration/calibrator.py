@@ -1,4 +1,4 @@
-"""People's part in the calibration: they store it, measure the gyroscope, say where the surface is."""
+"""The operator's part in the calibration: storing it, measuring the gyroscope, setting the surface."""
 
 import threading
 from collections.abc import Callable
@@ -16,9 +16,9 @@ from robot_runtime.parameters.board import Send
 
 
 class Calibrator:
-    """Changes what `board` keeps. `armed` says whether the board is; `tell` publishes a sentence.
+    """The operator's changes to the calibration of `board`; `tell` publishes a sentence.
 
-    All raise RefusedError with the reason.
+    All methods raise RefusedError with the reason.
     """
 
     def __init__(
@@ -40,23 +40,23 @@ class Calibrator:
         self._gyro: GyroMeasurement | None = None
 
     def publish(self) -> None:
-        """Publishes what the board keeps."""
+        """Publish the board's calibration."""
         stored = self.board.values
         missing = [STEPS[name] for name in stored.missing] if stored else []
         self._publish(CalibrationKept(time=self._clock.now(), values=stored, missing=missing))
 
     def see_imu(self, time: float, record: bytes) -> None:
-        """Takes a reading of the IMU at `time` (s)."""
+        """Take a reading of the IMU at `time` (s)."""
         if (gyro := self._gyro) is not None:
             gyro.see(time, record)
 
     def store(self, values: CalibrationValues) -> None:
-        """Stores a calibration in the board."""
+        """Store a calibration in the board."""
         self._require_disarmed("The board takes a calibration only while it is disarmed.")
         self.board.store(values)
 
     def measure_gyro(self) -> None:
-        """Begins to measure the gyroscope's offset at rest; some seconds later an event tells the result."""
+        """Begin to measure the gyroscope's offset at rest; an event reports the result some seconds later."""
         self._require_disarmed("The gyroscope is measured at rest, so not while the robot is armed.")
         stored = self.board.require()
         if self._gyro is not None:
@@ -87,7 +87,7 @@ class Calibrator:
         return f"The gyroscope's offset is {_in_degrees(forward, right, down)}; the board keeps it."
 
     def zero_depth(self) -> None:
-        """Has the board take the pressure now for the surface's."""
+        """Set the board's surface pressure to the pressure now."""
         self._require_disarmed("The surface is measured only while the robot is disarmed.")
         if not self._send(ZeroDepth()):
             raise RefusedError("There is no connection to the board.")

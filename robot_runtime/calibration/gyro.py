@@ -32,7 +32,7 @@ class Rest(NamedTuple):
 
 
 def judge_rest(rates: Sequence[Rate]) -> Rest:
-    """Judges whether a gyroscope lay still while it gave these readings, two at least."""
+    """Judge whether a gyroscope lay still while it gave these readings, two at least."""
     half = len(rates) // 2
     axes = [[rate[axis] for rate in rates] for axis in range(3)]
     deviations = [pstdev(axis) for axis in axes]
@@ -46,7 +46,7 @@ def judge_rest(rates: Sequence[Rate]) -> Rest:
 
 
 class GyroMeasurement:
-    """Averages the turn rate while the robot lies still. `see` may be called from another thread."""
+    """The mean turn rate of a robot that lies still. `see` may be called from another thread."""
 
     def __init__(self) -> None:
         self._rates: list[Rate] = []
@@ -54,7 +54,7 @@ class GyroMeasurement:
         self._complete = threading.Event()
 
     def see(self, time: float, record: bytes) -> None:
-        """Takes a reading of the IMU at `time` (s)."""
+        """Take a reading of the IMU at `time` (s)."""
         if self._complete.is_set():
             return
         if self._since is None:
@@ -64,9 +64,9 @@ class GyroMeasurement:
             self._complete.set()
 
     def result(self) -> Rate:
-        """Waits for the readings; returns their mean, rad/s.
+        """Wait for the readings; return their mean, rad/s.
 
-        Raises RefusedError where they do not come, where they all are one, or where the robot moved.
+        Raise RefusedError where they do not come, where all readings are equal, or where the robot moved.
         """
         if not self._complete.wait(SECONDS + _PATIENCE):
             raise RefusedError("The IMU sent too few readings. Check it, and try again.")

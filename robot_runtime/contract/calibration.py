@@ -1,4 +1,4 @@
-"""A board's calibration: what differs from robot to robot, in units for people and as the board keeps it.
+"""A board's calibration: the numbers that differ between robots, for people and as the board stores them.
 
 The board keeps it in EEPROM as a record: a version, the payload of the packet CALIBRATION, and the CRC-32 of
 both, little-endian. The version is taken from the packet's layout: a record of another layout does not count.
@@ -82,7 +82,7 @@ class CalibrationValues:
         return [name for name in STEPS if name not in self.done]
 
     def packet(self) -> Calibration:
-        """The same for the board."""
+        """Return the packet that carries these values."""
         forward, right, down = map(_axis_number, self.axes)
         return Calibration(
             done=sum(CalibrationStep[name.upper()] for name in set(self.done)),
@@ -98,7 +98,7 @@ class CalibrationValues:
 
     @classmethod
     def from_packet(cls, packet: Calibration) -> "CalibrationValues":
-        """The calibration of a board's answer. Raises ConfigError where its axes are impossible."""
+        """Return the calibration of a board's answer. Raise ConfigError where its axes are impossible."""
         if not all(1 <= abs(number) <= 3 for number in packet.axes):
             raise ConfigError(f"the board keeps impossible axes: {packet.axes}")
         forward, right, down = map(_axis, packet.axes)
@@ -128,12 +128,12 @@ def _axis(number: int) -> Axis:
 
 
 def _axis_number(axis: Axis) -> int:
-    place = _AXES.index(axis)
-    return place + 1 if place < 3 else place - len(_AXES)
+    index = _AXES.index(axis)
+    return index + 1 if index < 3 else index - len(_AXES)
 
 
 def _is_turn(axes: tuple[Axis, Axis, Axis]) -> bool:
-    """True where the axes are right-handed: the third is the cross product of the first two."""
+    """Return True where the axes are right-handed: the third is the cross product of the first two."""
     forward, right, down = ((_axis_number(axis), abs(_axis_number(axis)) - 1) for axis in axes)
     if (right[1] - forward[1]) % 3 == 0:
         return False
@@ -158,6 +158,6 @@ EMULATED = CalibrationValues(
 
 
 def record(calibration: Calibration) -> bytes:
-    """The bytes that a board keeps at `RECORD_ADDRESS`."""
+    """Return the record's bytes, which a board stores at `RECORD_ADDRESS`."""
     body = bytes([RECORD_VERSION]) + calibration.to_bytes()
     return body + crc32(body).to_bytes(4, "little")

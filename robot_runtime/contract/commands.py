@@ -8,7 +8,7 @@ performs commands in `robot_runtime.commands`.
 from collections.abc import Callable
 from dataclasses import MISSING, Field, asdict, dataclass, field, fields
 from enum import IntEnum
-from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform, get_type_hints
+from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform
 
 from robot_runtime.contract.calibration import CalibrationValues
 from robot_runtime.contract.declarations import Declarations
@@ -16,6 +16,7 @@ from robot_runtime.contract.documents import ParameterValue, Steering
 from robot_runtime.contract.limits import (
     SET_POINTS,
     AloneSeconds,
+    ArmedUnwatched,
     ConfigError,
     DepthSetPoint,
     ExperimentSeconds,
@@ -52,7 +53,7 @@ class CommandPolicy:
 
     `need`: the rights for its HTTP route; None: only the server and scenarios send it. `tunes`: it may
     change parameters, which the history notes. `in_scenarios`: a scenario may have it as an event.
-    `disturbs_experiment`: it is refused while an experiment measures a loop. `words`: its name for people,
+    `disturbs_experiment`: it is refused while an experiment measures a loop. `label`: its name for people,
     where that is not its summary.
     """
 
@@ -61,7 +62,7 @@ class CommandPolicy:
     tunes: bool
     in_scenarios: bool
     disturbs_experiment: bool
-    words: str
+    label: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,19 +74,19 @@ class RobotCommand:
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Callable[[Any], Any]) -> Any:
-        """The schema of the HTTP interface: as in the runtime's parser, `true` and "1" are no numbers."""
+        """Return the HTTP interface's schema: `true` and "1" are no numbers, as in the runtime's parser."""
         schema = handler(source)
         make_strict(schema)
         return schema
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The command in a few words, for a person."""
-        return self.policy.words or summary(type(self))
+        return self.policy.label or summary(type(self))
 
     def payload(self) -> dict[str, Any]:
-        """Its fields as a JSON object, without those that have their default value."""
-        given = {one.name for one in fields(self) if getattr(self, one.name) != _default(one)}
+        """Return the fields as a JSON object, without those that have their default value."""
+        given = {field.name for field in fields(self) if getattr(self, field.name) != _default(field)}
         return {name: value for name, value in asdict(self).items() if name in given}
 
 
@@ -101,9 +102,9 @@ def command(
     tunes: bool = False,
     in_scenarios: bool = False,
     disturbs_experiment: bool = False,
-    words: str = "",
+    label: str = "",
 ) -> Callable[[type[C]], type[C]]:
-    """Makes a class a command, which is a frozen dataclass; see `CommandPolicy`."""
+    """Make a class a command, which is a frozen dataclass; see `CommandPolicy`."""
 
     def declare(cls: type[C]) -> type[C]:
         made = dataclass(frozen=True, slots=True, kw_only=True)(cls)
@@ -113,7 +114,7 @@ def command(
             tunes=tunes,
             in_scenarios=in_scenarios,
             disturbs_experiment=disturbs_experiment,
-            words=words,
+            label=label,
         )
         COMMANDS.add(name, made, depth=1)
         return made
@@ -122,21 +123,28 @@ def command(
 
 
 def summary(cls: type[RobotCommand]) -> str:
-    """The first sentence of a command's description, without its full stop."""
+    """Return the first sentence of a command's description, without its full stop."""
     return (cls.__doc__ or "").partition(". ")[0].partition("\n")[0].removesuffix(".")
 
 
-@command("arm", Need.CONTROL, in_scenarios=True, words="Arm")
+@command("arm", Need.CONTROL, in_scenarios=True, label="Arm")
 class ArmCommand(RobotCommand):
-    """Arms the robot. It is refused with every reason that stands against it."""
+    """Arms the robot. It is refused with all reasons against arming."""
 
     mode: Piloting = field(default="automatic", metadata={"description": "who steers: controller or pilot"})
     alone: AloneSeconds = field(
         default=0.0, metadata={"description": "s for which it may go on without the server"}
     )
+    unwatched: ArmedUnwatched | None = field(
+        default=None,
+        metadata={
+            "description": "s for which it may go on while nobody watches; 0: without an end; "
+            "null: `[control] unwatched`"
+        },
+    )
 
 
-@command("stop", Need.VIEWER, in_scenarios=True, words="STOP")
+@command("stop", Need.VIEWER, in_scenarios=True, label="STOP")
 class StopCommand(RobotCommand):
     """Disarms the robot at once. It is never refused."""
 
@@ -153,7 +161,7 @@ class CheckFinsCommand(RobotCommand):
     """Arms for some seconds and moves each fin. An event says which fins followed; then it disarms."""
 
 
-@command("acknowledge", Need.CONTROL, in_scenarios=True, words="Alarms acknowledged")
+@command("acknowledge", Need.CONTROL, in_scenarios=True, label="Alarms acknowledged")
 class AcknowledgeCommand(RobotCommand):
     """Acknowledges all alarms. After a failsafe the robot may be armed again from then on."""
 
@@ -179,12 +187,12 @@ class SetPointsCommand(RobotCommand):
             raise ValueError("set_points needs default, detected or both")
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The command in a few words, for a person."""
         parts = [] if self.default is None else [f"set point {self.default:g} m"]
         parts += [] if self.detected is None else [f"{self.detected:g} m where the colour is seen"]
-        words = ", ".join(parts)
-        return words[0].upper() + words[1:]
+        text = ", ".join(parts)
+        return text[0].upper() + text[1:]
 
 
 @command("controller", None, tunes=True, in_scenarios=True, disturbs_experiment=True)
@@ -197,7 +205,7 @@ class ControllerCommand(RobotCommand):
     )
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The command in a few words, for a person."""
         gains = ", ".join(f"{name} {value:g}" for name, value in self.gains.items())
         return f"Controller {self.name}" + (f": {gains}" if gains else "")
@@ -220,11 +228,11 @@ class LoopCommand(RobotCommand):
             raise ValueError("loop needs on, set_point, controller or gains")
         span = SET_POINTS[self.name]
         if self.set_point is not None and not span.minimum <= self.set_point <= span.maximum:
-            low, high = (describe_value(self.name, one) for one in (span.minimum, span.maximum))
+            low, high = (describe_value(self.name, limit) for limit in (span.minimum, span.maximum))
             raise ValueError(f"set_point must lie between {low} and {high}")
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The command in a few words, for a person."""
         parts = [] if self.on is None else ["on" if self.on else "off"]
         parts += [] if self.set_point is None else [f"set point {self.set_point:g}"]
@@ -261,9 +269,9 @@ class MeasureGyroCommand(RobotCommand):
     """Measures the gyroscope's offset for three seconds at rest, and stores it. An event tells the result."""
 
 
-@command("zero_depth", Need.CONTROL, words="The depth is zero")
+@command("zero_depth", Need.CONTROL, label="The depth is zero")
 class ZeroDepthCommand(RobotCommand):
-    """Takes the pressure now for the surface's. It is refused while the robot is armed."""
+    """Sets the surface's pressure to the pressure now. It is refused while the robot is armed."""
 
 
 @command("steering", Need.CONTROL, tunes=True, in_scenarios=True, disturbs_experiment=True)
@@ -275,7 +283,7 @@ class SteeringCommand(RobotCommand):
     )
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The command in a few words, for a person."""
         return "Swim towards the light" if self.by == "beacons" else "Stay"
 
@@ -287,7 +295,7 @@ class CardCommand(RobotCommand):
     colour: str | None = field(default=None, metadata={"description": "the card's; null: no card"})
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The command in a few words, for a person."""
         return f"{self.colour.capitalize()} card" if self.colour else "Card away"
 
@@ -304,7 +312,7 @@ class VisionCommand(RobotCommand):
             raise ValueError("vision needs rate, colour or both")
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The command in a few words, for a person."""
         parts = [] if self.rate is None else [f"at {self.rate:g} Hz"]
         parts += [] if self.colour is None else [f"for {self.colour}"]
@@ -320,8 +328,8 @@ class VisionSettingsBase(RobotCommand):
 
     @property
     def settings(self) -> VisionSettings:
-        """The settings. Raises ConfigError where they contradict each other."""
-        return VisionSettings(**{one.name: getattr(self, one.name) for one in fields(VisionSettings)})
+        """The settings. Raise ConfigError where they contradict each other."""
+        return VisionSettings(**{field.name: getattr(self, field.name) for field in fields(VisionSettings)})
 
 
 # The fields of VisionSettings, without their defaults.
@@ -330,7 +338,7 @@ VisionSettingsCommand: type[VisionSettingsBase] = command("vision_settings", Nee
         "VisionSettingsCommand",
         (VisionSettingsBase,),
         {
-            "__annotations__": get_type_hints(VisionSettings, include_extras=True),
+            "__annotations__": {field.name: field.type for field in fields(VisionSettings)},
             "__doc__": VisionSettingsBase.__doc__,
             "__module__": __name__,
         },
@@ -350,13 +358,13 @@ class ExperimentCommand(RobotCommand):
 
     def __post_init__(self) -> None:
         if self.low >= self.high:
-            low, high = (describe_value(self.loop, one) for one in (self.low, self.high))
+            low, high = (describe_value(self.loop, limit) for limit in (self.low, self.high))
             raise ConfigError(f"low is {low} and high {high}; the limits must be apart")
 
     def _require_within(self, name: str, value: float) -> None:
         if not self.low < value < self.high:
-            found, low, high = (describe_value(self.loop, one) for one in (value, self.low, self.high))
-            raise ConfigError(f"{name} is {found}; it must lie between the limits {low} and {high}")
+            shown, low, high = (describe_value(self.loop, number) for number in (value, self.low, self.high))
+            raise ConfigError(f"{name} is {shown}; it must lie between the limits {low} and {high}")
 
     def _require_set_point(self, name: str, value: float) -> None:
         span = SET_POINTS[self.loop]
@@ -364,8 +372,8 @@ class ExperimentCommand(RobotCommand):
 
     def _require_between(self, name: str, value: float, low: float, high: float) -> None:
         if not low <= value <= high:
-            found, least, most = (describe_value(self.loop, one) for one in (value, low, high))
-            raise ConfigError(f"{name} is {found}; it must lie between {least} and {most}")
+            shown, least, most = (describe_value(self.loop, number) for number in (value, low, high))
+            raise ConfigError(f"{name} is {shown}; it must lie between {least} and {most}")
 
 
 @command("step_experiment", None, tunes=True)
@@ -419,9 +427,9 @@ class EndExperimentCommand(RobotCommand):
     """Ends the running experiment. The loop goes on as before it."""
 
 
-@command("mission", None, in_scenarios=True, words="Begin a mission")
+@command("mission", None, in_scenarios=True, label="Begin a mission")
 class MissionCommand(RobotCommand):
-    """Arms the robot and begins a mission. It is refused with every reason against either."""
+    """Arms the robot and begins a mission. It is refused with all reasons against either."""
 
     text: str = field(metadata={"description": "its TOML, docs/reference/missions.md"})
     library: dict[str, str] = field(
@@ -436,30 +444,30 @@ class MissionPauseCommand(RobotCommand):
     on: bool = field(default=True, metadata={"description": "false: go on"})
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The command in a few words, for a person."""
         return "Pause the mission" if self.on else "Go on with the mission"
 
 
-@command("mission_skip", Need.CONTROL, in_scenarios=True, words="Skip the mission's step")
+@command("mission_skip", Need.CONTROL, in_scenarios=True, label="Skip the mission's step")
 class MissionSkipCommand(RobotCommand):
-    """Ends the steps of the mission that run now, as a success."""
+    """Ends the running steps of the mission as a success."""
 
 
-@command("mission_end", Need.CONTROL, in_scenarios=True, words="End the mission")
+@command("mission_end", Need.CONTROL, in_scenarios=True, label="End the mission")
 class MissionEndCommand(RobotCommand):
     """Ends the mission: its changes are put back, and the robot is stopped."""
 
 
 def http_commands() -> list[type[RobotCommand]]:
-    """The commands with the common route `POST /api/robot/commands/NAME`; STOP has a faster one."""
+    """Return the commands with the common route `POST /api/robot/commands/NAME`; STOP has a faster one."""
     return [cls for cls in COMMANDS.values() if cls.policy.need is not None and cls is not StopCommand]
 
 
-def is_required(one: Field[Any]) -> bool:
-    """True if a command must have a value for this field."""
-    return one.default is MISSING and one.default_factory is MISSING
+def is_required(field: Field[Any]) -> bool:
+    """Return True if a command must have a value for this field."""
+    return field.default is MISSING and field.default_factory is MISSING
 
 
-def _default(one: Field[Any]) -> Any:
-    return one.default_factory() if one.default_factory is not MISSING else one.default
+def _default(field: Field[Any]) -> Any:
+    return field.default_factory() if field.default_factory is not MISSING else field.default

@@ -39,7 +39,7 @@ TITLE_MAX, ORIGIN_MAX = 100, 2000
 
 
 def _number(default: Any, unit: str, meaning: str, origin: str, spread: str) -> Any:
-    """A field whose unit, meaning, origin and spread the reference shows."""
+    """Return a field whose unit, meaning, origin and spread the reference shows."""
     return field(
         default=default, metadata={"unit": unit, "meaning": meaning, "origin": origin, "spread": spread}
     )
@@ -228,17 +228,17 @@ class Craft:
 
     @property
     def volume(self) -> float:
-        """m³ of fresh water that the hull displaces under water."""
+        """The volume, m³, of the fresh water that the hull displaces under water."""
         return self.mass * self.buoyancy / 1000
 
     @property
     def height(self) -> float:
-        """m, of the upright hull."""
+        """The height, m, of the upright hull."""
         return self.size[2]
 
     @property
     def total_mass(self) -> Six:
-        """kg and kg m²: the hull's own mass and inertia with the water that must move along."""
+        """The mass (kg) and inertia (kg m²) of the hull and the water that must move along."""
         own = (self.mass, self.mass, self.mass, *self.inertia)
         surge, sway, heave, roll, pitch, yaw = (a + b for a, b in zip(own, self.added_mass, strict=True))
         return surge, sway, heave, roll, pitch, yaw
@@ -255,7 +255,7 @@ class Craft:
 
     @property
     def fin_directions(self) -> tuple[tuple[float, float], ...]:
-        """From shaft to tip at angle 0, forward and right: outwards, and towards the middle of the hull."""
+        """Each fin's direction at angle 0 from shaft to tip, forward and right: outwards, to the middle."""
         along, across = cos(self.fin_mount), sin(self.fin_mount)
         return tuple(
             (-along if x > 0 else along, across if y > 0 else -across) for x, y in self.fin_positions
@@ -281,7 +281,7 @@ DEFAULT_DOCUMENT = CraftDocument(title="Default craft")
 
 
 def read_craft(text: str) -> CraftDocument:
-    """The craft that a TOML text says; missing entries are the default's. Raises ConfigError."""
+    """Return the craft in a TOML text; missing entries are the default craft's. Raise ConfigError."""
     try:
         table = read_toml(text)
     except TomlError as problem:
@@ -293,7 +293,7 @@ def read_craft(text: str) -> CraftDocument:
 
 
 def load_craft(path: Path) -> CraftDocument:
-    """Reads a craft file. Raises ConfigError where it cannot be read or used, with the file's name."""
+    """Read a craft file. Raise ConfigError where it cannot be read or used, with the file's name."""
     try:
         return read_craft(load_text(path))
     except OSError as problem:
@@ -302,12 +302,15 @@ def load_craft(path: Path) -> CraftDocument:
         raise ConfigError(f"the craft file {path} cannot be read: it {problem}") from problem
     except ConfigError as problem:
         file = DocumentEntry(path.name)
-        named = [one.within(file) if one.path else file.sentence(one.text) for one in problem.problems]
+        named = [
+            problem.within(file) if problem.path else file.sentence(problem.text)
+            for problem in problem.problems
+        ]
         raise ConfigError(*named) from problem
 
 
 def complete_sensors(plain: Craft, table: Mapping[str, Any]) -> dict[str, Any]:
-    """The table, with the entries that its sensors' tables lack taken from `plain`."""
+    """Return the table; entries that its sensors' tables lack are those of `plain`."""
     whole = dict(table)
     for name, value in table.items():
         default = getattr(plain, name, None)
@@ -317,14 +320,14 @@ def complete_sensors(plain: Craft, table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def craft_table(craft: Craft) -> dict[str, Any]:
-    """The entries of `craft` that differ from the default, as TOML has them."""
+    """Return the entries of `craft` that differ from the default, as TOML has them."""
     plain, table = Craft(), {}
-    for one in fields(Craft):
-        value, default = getattr(craft, one.name), getattr(plain, one.name)
+    for entry in fields(Craft):
+        value, default = getattr(craft, entry.name), getattr(plain, entry.name)
         if isinstance(value, SensorQuality):
             value, default = asdict(value), asdict(default)
             value = {name: number for name, number in value.items() if number != default[name]}
             default = {}
         if value != default:
-            table[one.name] = value
+            table[entry.name] = value
     return table

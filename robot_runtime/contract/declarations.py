@@ -18,15 +18,23 @@ class Declarations(dict[K, V]):
     def __init__(self, kind: str) -> None:
         super().__init__()
         self._kind = kind
-        self._places: dict[K, str] = {}
+        self._locations: dict[K, str] = {}
 
     def add(self, key: K, thing: V, depth: int = 0) -> None:
-        """Adds what is declared `depth` calls above the caller. Raises DeclaredTwiceError."""
+        """Add a thing that is declared `depth` calls above the caller. Raise DeclaredTwiceError."""
         frame = sys._getframe(depth + 1)
-        place = f"{frame.f_code.co_filename}:{frame.f_lineno}"
+        self.add_from(f"{frame.f_code.co_filename}:{frame.f_lineno}", key, thing)
+
+    def add_from(self, location: str, key: K, thing: V) -> None:
+        """Add a thing that is declared at this location. Raise DeclaredTwiceError."""
         if key in self:
             raise DeclaredTwiceError(
-                f"{self._kind} {key!r} is declared twice: at {self._places[key]} and at {place}. "
+                f"{self._kind} {key!r} is declared twice: at {self._locations[key]} and at {location}. "
                 "Choose another one."
             )
-        self[key], self._places[key] = thing, place
+        super().__setitem__(key, thing)
+        self._locations[key] = location
+
+    def __setitem__(self, key: K, thing: V) -> None:
+        """Add a thing that is declared here. Raise DeclaredTwiceError."""
+        self.add(key, thing, depth=1)

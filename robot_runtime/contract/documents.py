@@ -30,7 +30,7 @@ _TURNS = "heading, pitch, roll"
 
 @record()
 class Turning(Record):
-    """The same tick, for the angles; positive: to the right, nose up, right side down."""
+    """One tick of the control node, for the angles; positive: to the right, nose up, right side down."""
 
     set_point: Annotated[
         tuple[float, float, float],
@@ -41,6 +41,16 @@ class Turning(Record):
         tuple[float, float, float],
         Wire("f", count=3, meaning="commands yaw, pitch, roll, -1 to 1; NaN while not controlled"),
     ]
+
+
+@record()
+class Track(Record):
+    """The way since the robot was armed, by dead reckoning: an estimate whose error grows, not a position."""
+
+    x: Annotated[float, Wire("f", unit="m", meaning="along heading 0")]
+    y: Annotated[float, Wire("f", unit="m", meaning="along heading 90°")]
+    deviation_x: Annotated[float, Wire("f", unit="m", meaning="standard deviation of x")]
+    deviation_y: Annotated[float, Wire("f", unit="m", meaning="standard deviation of y")]
 
 
 @record()
@@ -66,7 +76,7 @@ class Document:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DebugLine(Document):
-    """A line of text that the firmware wrote; level as in DebugLevel."""
+    """An event of the board in words, or a line of text of its sketch; level as in DebugLevel."""
 
     level: int
     text: str
@@ -156,7 +166,7 @@ class VisionInForce(Document):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibrationKept(Document):
-    """The calibration that the board keeps; sent at every change and every ten seconds."""
+    """The calibration that the board stores; sent at every change and every ten seconds."""
 
     values: CalibrationValues | None = field(metadata={"meaning": "null until the board has told it"})
     missing: list[str] = field(metadata={"meaning": "the steps that are not done, in words"})
@@ -279,6 +289,24 @@ class State(Document):
     epoch: int | None
     set_point_default: float
     set_point_detected: float
+    unwatched: float = field(
+        default=0.0,
+        metadata={
+            "meaning": "s after which the armed robot is stopped if nobody watches, of this or the next "
+            "arming; 0: never, or by a mission's own limit"
+        },
+    )
+    deepest: float = field(default=10.0, metadata={"meaning": "m; no set point lies below"})
+    battery_left: float | None = field(
+        default=None,
+        metadata={
+            "meaning": "s until the low-battery alarm, estimated as if all fins swam at the most; null: "
+            "capacity or voltage not known"
+        },
+    )
+    buoyancy_known: bool = field(
+        default=True, metadata={"meaning": "false: nobody has said by how much this robot floats"}
+    )
     steering: Steering = field(default="none", metadata={"meaning": "course while the robot holds its depth"})
     control_rate: float
     profile: Literal["full", "lean"] = field(
@@ -293,6 +321,7 @@ class State(Document):
         default_factory=list, metadata={"meaning": "cards that can be shown to the camera; empty if none can"}
     )
     camera: str
+    stream_rate: float = field(default=15.0, metadata={"meaning": "Hz; of the camera's stream, at most"})
     loops: list[Loop] = field(default_factory=list)
     pilot_dropped: int = field(
         default=0,
@@ -356,4 +385,11 @@ class Mission(Document):
     steps: list[MissionStepState]
     document: str = field(
         default="", metadata={"meaning": "the mission's TOML; in its first and last document"}
+    )
+    surfaced: float | None = field(
+        default=None,
+        metadata={
+            "meaning": "s, steady clock, at which it was at the surface after its end: the last document "
+            "comes once more with it. null before, and where it did not dive"
+        },
     )

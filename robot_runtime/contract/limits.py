@@ -17,20 +17,23 @@ class ConfigError(ValueError):
     """
 
     def __init__(self, *problems: str | EntryProblem) -> None:
-        self.problems = tuple(EntryProblem((), one, one) if isinstance(one, str) else one for one in problems)
+        self.problems = tuple(
+            EntryProblem((), problem, problem) if isinstance(problem, str) else problem
+            for problem in problems
+        )
         super().__init__("; ".join(self.texts))
 
     @property
     def texts(self) -> list[str]:
         """The texts of the problems."""
-        return [one.text for one in self.problems]
+        return [problem.text for problem in self.problems]
 
 
 class StrictNumber:
-    """Has pydantic take numbers alone for numbers, as `contract.parsing` does: no `true`, and no "1"."""
+    """Annotation that makes pydantic accept only numbers, not `true` or "1", as `contract.parsing` does."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], Any]) -> Any:
-        """The schema of the annotated number."""
+        """Return the schema of the annotated number."""
         schema = handler(source)
         make_strict(schema)
         return schema
@@ -39,13 +42,13 @@ class StrictNumber:
 def make_strict(schema: Any) -> None:
     """Make the numbers in a schema of pydantic's core strict."""
     if isinstance(schema, list):
-        for one in schema:
-            make_strict(one)
+        for part in schema:
+            make_strict(part)
     elif isinstance(schema, dict):
         if schema.get("type") in ("float", "int"):
             schema["strict"] = True
-        for one in schema.values():
-            make_strict(one)
+        for part in schema.values():
+            make_strict(part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +72,8 @@ SCENE_HEIGHT = Range(16, 960)
 """Pixels of a rendered picture."""
 SET_POINT = Range(0, 10)
 """m, of the depth."""
+DEEPEST = Range(0.1, SET_POINT.maximum)
+"""m, of the greatest depth that a robot is allowed."""
 SET_POINTS: dict[LoopName, Range] = {
     "depth": SET_POINT,
     "heading": Range(-pi, pi),
@@ -79,18 +84,29 @@ SET_POINTS: dict[LoopName, Range] = {
 
 
 def describe_value(loop: LoopName, value: float) -> str:
-    """Returns a loop's value with its unit; of an angle, as people read it and as commands have it."""
+    """Return a loop's value with its unit; an angle in degrees, and in rad as commands have it."""
     return f"{value:.3g} m" if loop == "depth" else f"{degrees(value):.3g}° ({value:.3g} rad)"
 
 
+STREAM_HEIGHT = Range(16, 960)
+"""Pixels of the camera's stream."""
+STREAM_RATE = Range(2, 30)
+"""Hz of the camera's stream."""
 VISION_RATE = Range(2, 30)
 """Hz; a lower rate leaves the newest detection stale before the next one."""
 ALONE = Range(0, 3600)
 """s for which an armed robot may go on without a server."""
 
+UNWATCHED = Range(5, 300)
+"""s of the configuration; a page that is loaded again, or a network that is slow, stays below."""
+
 DepthSetPoint = Annotated[float, SET_POINT]
+DeepestDepth = Annotated[float, DEEPEST]
 VisionRate = Annotated[float, VISION_RATE]
 AloneSeconds = Annotated[float, ALONE]
+UnwatchedLimit = Annotated[float, UNWATCHED]
+ArmedUnwatched = Annotated[float, Range(0, 3600)]
+"""s for which an armed robot may swim while nobody watches; 0: without an end."""
 SettleSeconds = Annotated[float, Range(0, 120)]
 """Longest wait of an experiment for the loop to settle, in s."""
 ExperimentSeconds = Annotated[float, Range(2, 300)]

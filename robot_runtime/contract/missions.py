@@ -10,6 +10,8 @@ LEVELS_MAX = 8
 """Levels of branches, the first of the document included."""
 TIME_MAX = 3600.0
 """s; no mission lasts longer."""
+WET_DEPTH = 0.1
+"""m from which on the robot counts as under water; in an hour the weather changes the pressure by a tenth."""
 
 MissionSeconds = Annotated[float, Range(0.1, TIME_MAX)]
 """s, of one step."""

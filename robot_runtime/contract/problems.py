@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class EntryProblem:
-    """A reason why an entry cannot be used; `text` names the entry, `words` is the text without that name.
+    """A reason why an entry cannot be used; `text` names the entry, `words` is the text without its name.
 
     `path` leads to the entry from the document: keys, and indices from 0. It is empty where the problem is
     the whole document's.
@@ -15,11 +15,11 @@ class EntryProblem:
     text: str
     words: str
 
-    def within(self, place: "DocumentEntry") -> "EntryProblem":
-        """This problem of an entry below `place`; one without a path stays as it is."""
+    def within(self, entry: "DocumentEntry") -> "EntryProblem":
+        """Return this problem for an entry below `entry`; a problem without a path stays as it is."""
         if not self.path:
             return self
-        return EntryProblem((*place.path, *self.path), place.join(self.text), self.words)
+        return EntryProblem((*entry.path, *self.path), entry.join(self.text), self.words)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,25 +30,25 @@ class DocumentEntry:
     path: tuple[str | int, ...] = ()
 
     def field(self, name: str, shown: str = "") -> "DocumentEntry":
-        """The field of this name in the table here; messages show `shown` instead if it is given."""
+        """Return the field of this name in the table here; messages show `shown` instead if it is given."""
         return DocumentEntry(self.join(shown or name), (*self.path, name))
 
     def item(self, index: int) -> "DocumentEntry":
-        """An entry of the list here; `index` from 0."""
+        """Return an entry of the list here; `index` from 0."""
         return DocumentEntry(f"{self.name}[{index}]", (*self.path, index))
 
     def key(self, key: str) -> "DocumentEntry":
-        """The entry of this key in the dictionary here."""
+        """Return the entry of this key in the dictionary here."""
         return DocumentEntry(f"{self.name}.{key}", (*self.path, key))
 
     def join(self, text: str) -> str:
-        """Puts the name before a text."""
+        """Put the name before a text."""
         return f"{self.name}: {text}" if self.name else text
 
-    def problem(self, words: str) -> EntryProblem:
-        """A problem whose words continue the name: "is 5; it must be 4"."""
-        return EntryProblem(self.path, f"{self.name} {words}", words)
+    def problem(self, text: str) -> EntryProblem:
+        """Return a problem whose words continue the name: "is 5; it must be 4"."""
+        return EntryProblem(self.path, f"{self.name} {text}", text)
 
-    def sentence(self, words: str) -> EntryProblem:
-        """A problem whose words are a sentence of their own."""
-        return EntryProblem(self.path, self.join(words), words)
+    def sentence(self, text: str) -> EntryProblem:
+        """Return a problem whose words are a sentence of their own."""
+        return EntryProblem(self.path, self.join(text), text)

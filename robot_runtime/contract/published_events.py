@@ -19,7 +19,7 @@ PublishedKind = Literal[
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PublishedEvent:
-    """Something that happened to the robot, as other programs are told."""
+    """An event of the robot, as other programs receive it."""
 
     robot: str = field(metadata={"meaning": "its name"})
     event: PublishedKind

@@ -20,7 +20,7 @@ BYTE_MAX = 255
 class Request:
     """A request for a picture.
 
-    `card` is the blue, green and red of what is held before the camera, `marked` whether it shows the marker.
+    `card` is the blue, green and red of the card before the camera; `marked`: it shows the marker.
     """
 
     width: Annotated[int, SCENE_WIDTH]
@@ -41,13 +41,13 @@ class Picture(NamedTuple):
 
 
 def write_request(width: int, height: int, card: Paint | None, marked: bool = False) -> bytes:
-    """The question as bytes."""
+    """Return the request as bytes."""
     question = asdict(Request(width=width, height=height, card=card, marked=marked))
     return json.dumps({name: value for name, value in question.items() if value is not None}).encode()
 
 
 def read_request(data: bytes) -> Request:
-    """The question that these bytes are. Raises ConfigError where they are none."""
+    """Return the request in these bytes. Raise ConfigError where they are none."""
     try:
         question = json.loads(data)
     except ValueError as problem:
@@ -58,13 +58,13 @@ def read_request(data: bytes) -> Request:
 
 
 def write_picture(picture: Picture) -> bytes:
-    """The answer as bytes."""
+    """Return the answer as bytes."""
     height, width = picture.pixels.shape[:2]
     return HEADER.pack(picture.time, width, height) + picture.pixels.tobytes()
 
 
 def read_picture(data: bytes) -> Picture:
-    """The answer that these bytes are. Raises ValueError where they are none."""
+    """Return the answer in these bytes. Raise ValueError where they are none."""
     if len(data) < HEADER.size:
         raise ValueError(f"a picture of {len(data)} bytes")
     time, width, height = HEADER.unpack_from(data)

@@ -28,10 +28,13 @@ _SPACES = dict.fromkeys("\u00a0\u2007\u2009\u200a\u202f\u3000", "a plain space")
 _INVISIBLE = dict.fromkeys("\u200b\u200e\u200f\u2060\ufeff\u00ad", "")
 _DASHES = dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2212", "-")
 _LOOKALIKES: Mapping[str, tuple[str, str]] = {
-    **{one: (f"a typographic quotation mark {one}", plain) for one, plain in _QUOTES.items()},
-    **{one: ("a space that is not the plain one", plain) for one, plain in _SPACES.items()},
-    **{one: ("an invisible character", plain) for one, plain in _INVISIBLE.items()},
-    **{one: (f"a typographic dash {one}", plain) for one, plain in _DASHES.items()},
+    **{
+        character: (f"a typographic quotation mark {character}", plain)
+        for character, plain in _QUOTES.items()
+    },
+    **{character: ("a space that is not the plain one", plain) for character, plain in _SPACES.items()},
+    **{character: ("an invisible character", plain) for character, plain in _INVISIBLE.items()},
+    **{character: (f"a typographic dash {character}", plain) for character, plain in _DASHES.items()},
 }
 """Characters that text editors and chats put in place of the plain ones: what they are, and the plain one."""
 _DECIMAL_COMMA = re.compile(r"[=:]\s*+(?P<whole>[+-]?\d+),(?P<rest>\d+)\s*+")
@@ -45,12 +48,12 @@ class TextError(ValueError):
 
 
 def load_text(path: Path) -> str:
-    """The text in a file. Raises OSError, TextError."""
+    """Return a file's text. Raise OSError, TextError."""
     return decode_text(path.read_bytes())
 
 
 def decode_text(data: bytes) -> str:
-    """The text in UTF-8, without a byte order mark; its lines end as here. Raises TextError."""
+    """Return the text in UTF-8, without a byte order mark; its lines end as here. Raise TextError."""
     for mark, encoding in _MARKS:
         if data.startswith(mark):
             raise TextError(_saved_as(encoding))
@@ -67,7 +70,7 @@ def decode_text(data: bytes) -> str:
 
 
 def read_json(text: str | bytes) -> Any:
-    """Parses JSON in which no key of an object comes twice and every number is finite. Raises TextError."""
+    """Parse JSON in which no key of an object comes twice and every number is finite. Raise TextError."""
     text = decode_text(text) if isinstance(text, bytes) else text.removeprefix(MARK)
     if not text.strip():
         raise TextError("is empty")
@@ -81,14 +84,14 @@ def read_json(text: str | bytes) -> Any:
         raise TextError(f"names the key {key!r} twice, the second time in line {line}") from problem
     except json.JSONDecodeError as problem:
         slip = find_slip(text, problem.lineno, problem.colno)
-        place = f"{problem.msg} in line {problem.lineno}, column {problem.colno}"
-        raise TextError(slip or f"is not JSON: {place}") from problem
+        reason = f"{problem.msg} in line {problem.lineno}, column {problem.colno}"
+        raise TextError(slip or f"is not JSON: {reason}") from problem
     except (ValueError, RecursionError) as problem:
         raise TextError(f"is not JSON: {problem}") from problem
 
 
 def find_slip(text: str, line: int, column: int) -> str:
-    """The usual slip at a place where a parser of TOML or JSON gave up; empty where there is none.
+    """Return the usual slip where a parser of TOML or JSON gave up; empty if there is none.
 
     Line and column count from 1.
     """
@@ -96,23 +99,25 @@ def find_slip(text: str, line: int, column: int) -> str:
     if not 1 <= line <= len(lines):
         return ""
     there = lines[line - 1]
-    for found in _DECIMAL_COMMA.finditer(there):
-        if found.start() <= column <= found.end() + 1:
-            right = f"{found['whole']}.{found['rest']}"
-            wrong = f"{found['whole']},{found['rest']}"
+    for match in _DECIMAL_COMMA.finditer(there):
+        if match.start() <= column <= match.end() + 1:
+            right = f"{match['whole']}.{match['rest']}"
+            wrong = f"{match['whole']},{match['rest']}"
             return f"has {wrong} in line {line}; write {right} with a decimal point, not a comma"
     # A text that a typographic mark should have ended runs on to the end of its line.
-    candidates = there[column - 1 : column] + "".join(one for one in there if one in _QUOTES)
-    for one in candidates:
-        if one in _LOOKALIKES:
-            name, plain = _LOOKALIKES[one]
+    candidates = there[column - 1 : column] + "".join(
+        character for character in there if character in _QUOTES
+    )
+    for candidate in candidates:
+        if candidate in _LOOKALIKES:
+            name, plain = _LOOKALIKES[candidate]
             remedy = f"write {plain} instead" if plain else "remove it"
-            return f"has {name} (U+{ord(one):04X}) in line {line}; {remedy}"
+            return f"has {name} (U+{ord(candidate):04X}) in line {line}; {remedy}"
     return ""
 
 
 def find_repeated_key(text: str) -> tuple[str, int] | None:
-    """The first key of an object in JSON that comes twice, and the line of its second place."""
+    """Return the first key of an object in JSON that comes twice, and the line of its second place."""
     open_parts: list[set[str]] = []
     for token in _JSON_TOKENS.finditer(text):
         if token[0] in "{[":
@@ -166,9 +171,9 @@ _DECODER = json.JSONDecoder(object_pairs_hook=_object, parse_float=_float, parse
 
 
 def _line_of(word: str, text: str) -> int:
-    """The line in which a bare word of JSON stands first."""
-    found = next(one for one in _JSON_WORDS.finditer(text) if one["word"] == word)
-    return text.count("\n", 0, found.start()) + 1
+    """Return the number of the first line with this bare word of JSON."""
+    first = next(match for match in _JSON_WORDS.finditer(text) if match["word"] == word)
+    return text.count("\n", 0, first.start()) + 1
 
 
 def _saved_as(encoding: str) -> str:

@@ -35,7 +35,7 @@ class TomlError(TextError):
 
 
 def read_toml(text: str) -> dict[str, Any]:
-    """Parses a TOML text. Raises TomlError."""
+    """Parse a TOML text. Raise TomlError."""
     text = text.removeprefix(MARK)
     if len(text.encode("utf-8", "replace")) > BYTES_MAX:
         raise TomlError(f"is larger than {BYTES_MAX} bytes")
@@ -52,22 +52,22 @@ def read_toml(text: str) -> dict[str, Any]:
 
 
 def _explain(text: str, problem: str) -> str:
-    """The parser's problem in words that name the slip, where it is a usual one."""
-    found = _PLACE.fullmatch(problem)
-    if found is None:
+    """Return the parser's problem as text; it names the slip where it is a usual one."""
+    match = _PLACE.fullmatch(problem)
+    if match is None:
         return f"is not TOML: {problem}"
     lines = text.split("\n")
-    line = int(found["line"] or len(lines))
+    line = int(match["line"] or len(lines))
     there = lines[line - 1].strip()
-    if found["words"].startswith(_REPEATED):
-        return f"names {_repeated(found['words'], there)} twice, the second time in line {line}"
-    return find_slip(text, line, int(found["column"] or 1)) or f"is not TOML: {problem}"
+    if match["words"].startswith(_REPEATED):
+        return f"names {_repeated(match['words'], there)} twice, the second time in line {line}"
+    return find_slip(text, line, int(match["column"] or 1)) or f"is not TOML: {problem}"
 
 
-def _repeated(words: str, line: str) -> str:
-    """The key or table in a line that was there before; only a value of several lines hides its key."""
-    if words.startswith("Duplicate"):
-        return f"the key {words.rpartition('key ')[2]}"
+def _repeated(message: str, line: str) -> str:
+    """Return a line's key or table that exists before it; only a value of several lines hides its key."""
+    if message.startswith("Duplicate"):
+        return f"the key {message.rpartition('key ')[2]}"
     if line.startswith("["):
         return f"the table [{line.partition(']')[0].strip('[ ')}]"
     key, equals, _ = line.partition("=")

@@ -22,6 +22,14 @@ PICTURES_MAX = 10
 """Pictures that may vote on a sighting."""
 PictureCount = Annotated[int, Range(1, PICTURES_MAX)]
 WhiteBalance = Literal["none", "grey_world", "underwater"]
+Turn = Literal[0, 90, 180, 270]
+"""° clockwise by which the camera's picture is turned."""
+Exposure = Annotated[float, Range(0, 500)]
+"""ms; 0: automatic."""
+Gain = Annotated[float, Range(0, 1000)]
+"""Of the sensor, in the camera's own unit; 0: automatic."""
+ColourTemperature = Annotated[int, Range(0, 10_000)]
+"""K of the light that counts as white; 0: automatic."""
 MarkerDictionary = Literal["none", "4x4_50", "5x5_100", "6x6_250", "7x7_1000", "original", "april_36h11"]
 MARKER_COUNTS: Mapping[MarkerDictionary, int] = {
     "none": 0,
@@ -43,7 +51,7 @@ MARKERS_MAX = 64
 
 
 def marker_name(number: int) -> str:
-    """Returns the name of the marker with this number."""
+    """Return the name of the marker with this number."""
     return f"marker {number}"
 
 
@@ -89,7 +97,9 @@ class VisionSettings:
     of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
     perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary
     counts. `actions` are set points (m) while a colour or `marker 7` is seen. With `confirmation` (2, 3) it
-    is seen while at least 2 of the last 3 pictures show it. Raises ConfigError on settings that contradict
+    is seen while at least 2 of the last 3 pictures show it. The picture is turned clockwise by `turn` °,
+    then mirrored left to right. `exposure` (ms), `gain` and `colour_temperature` (K) fix what a Pi or USB
+    camera else chooses by itself; 0 leaves it to the camera. Raises ConfigError on settings that contradict
     each other.
     """
 
@@ -107,6 +117,11 @@ class VisionSettings:
     markers: MarkerDictionary = "none"
     marker_numbers: tuple[MarkerNumber, ...] = ()
     actions: dict[str, Annotated[float, SET_POINT]] = field(default_factory=dict)
+    turn: Turn = 0
+    mirror: bool = False
+    exposure: Exposure = 0.0
+    gain: Gain = 0.0
+    colour_temperature: ColourTemperature = 0
 
     def __post_init__(self) -> None:
         problems = [*self._colour_problems(), *self._filter_problems(), *self._action_problems()]
@@ -114,7 +129,7 @@ class VisionSettings:
             raise ConfigError(*(f"vision: {problem}" for problem in problems))
 
     def table(self) -> dict[str, Any]:
-        """The settings as a file has them, with lists and tables."""
+        """Return the settings as a file has them, with lists and tables."""
         table: dict[str, Any] = json.loads(json.dumps(asdict(self)))
         return table
 

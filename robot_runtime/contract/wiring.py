@@ -1,8 +1,8 @@
 """The robot's wiring: parts, supplies and every wire.
 
-The pages and the drawing of docs/run/hardware are written from these tables. A test compares the pins and
-addresses with those that the firmware uses on the emulated chip. Voltages are in V, and limits are those of
-the data sheets, for a supply of 5 V.
+The pages of docs/run/hardware are written from these tables. Tests compare their pins and addresses with the
+drawing, docs/pictures/wiring.svg, and with those that the firmware uses on the emulated chip. Voltages are in
+V, and limits are those of the data sheets, for a supply of 5 V.
 """
 
 from collections.abc import Iterable, Iterator
@@ -54,8 +54,8 @@ class Part:
     inputs: tuple[Input, ...] = ()
 
     def find_input(self, pin: str) -> Input | None:
-        """Returns the limits of a pin; None where it is no logic input."""
-        return next((one for one in self.inputs if pin.startswith(one.prefix)), None)
+        """Return the limits of a pin; None where it is no logic input."""
+        return next((limits for limits in self.inputs if pin.startswith(limits.prefix)), None)
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Conductor:
 class FinWiring:
     """Pins and address straps of one fin's encoder and H-bridge."""
 
-    place: str
+    position: str
     select: str
     address: int
     a1: Strap
@@ -138,6 +138,8 @@ PARTS = (
     Part("led", "LED", 1, None, None, "Any colour that shows through the hull", (Input("", 0.0, 5.5),)),
     Part("detector", "tone detector", 2, (4.75, 5.5), None,
          "Optional: light sensor with tone detector, whose output is high while it detects its tone"),
+    Part("leak_sensor", "leak sensor", 1, None, None,
+         "Optional: two wires whose last 5 mm are bare, 3 mm apart, at the lowest place in the hull"),
 )  # fmt: skip
 
 _DIVIDER = "1.8 kΩ in series, 3.3 kΩ to ground"
@@ -171,6 +173,7 @@ WIRES = (
     Conductor(Net.GROUND, "battery", "-", "bridge", "GND", 0),
     Conductor(Net.GROUND, "battery", "-", "led", "cathode", 0),
     Conductor(Net.GROUND, "battery", "-", "detector", "GND", 0),
+    Conductor(Net.GROUND, "battery", "-", "leak_sensor", "GND", 0),
     Conductor(Net.UART, "pi", "8", "board", "D0", 3.3, note="TXD, GPIO 14; high enough for the board"),
     Conductor(Net.UART, "board", "D1", "pi", "10", 3.24, _DIVIDER, note="RXD, GPIO 15; 5 V would damage it"),
     Conductor(Net.SIGNAL, "pi", "7", "shifter", "LV3", 3.3, note=f"GPIO {RESET_LINE}: `reset` in robot.toml"),
@@ -193,34 +196,36 @@ WIRES = (
     Conductor(Net.SIGNAL, "board", "A3", "motor_regulator", "EN", 5.0, pull=_OFF_PULL, note="high is on"),
     Conductor(Net.SIGNAL, "detector", "right", "board", "D4", 5.0, pull=_ABSENT_PULL),
     Conductor(Net.SIGNAL, "detector", "left", "board", "D5", 5.0, pull=_ABSENT_PULL),
+    Conductor(Net.SIGNAL, "leak_sensor", "wire", "board", "D2", 5.0, pull=_CHIP_PULL,
+             note="water pulls it low"),
     Conductor(Net.SIGNAL, "bridge", "OUT1, OUT2", "motor", "leads", 3.21, note="100 nF between the leads"),
 )  # fmt: skip
 
 SPARE_OUTPUTS = {"D11": "MOSI: the encoders have no data input"}
 """Pins that the firmware drives and that stay open."""
-SPARE_PINS = ("D2", "D3", "D6", "A0")
+SPARE_PINS = ("D3", "D6", "A0")
 """Pins that the firmware does not use; they stay open."""
 
 
 def find_part(name: str) -> Part:
-    """Returns the part of this name. Raises KeyError where there is none."""
+    """Return the part of this name. Raise KeyError where there is none."""
     parts = {part.name: part for part in PARTS}
     return parts[name]
 
 
 def bridge_address(a1: Strap, a0: Strap) -> int:
-    """Returns a DRV8830's I2C address (7 bits), by the data sheet's table of its two inputs."""
+    """Return a DRV8830's I2C address (7 bits), by the data sheet's table of its two inputs."""
     order = list(Strap)
     return 0x60 + 3 * order.index(a1) + order.index(a0)
 
 
 def imu_address(ad0: Strap) -> int:
-    """Returns an MPU-6050's I2C address (7 bits)."""
+    """Return an MPU-6050's I2C address (7 bits)."""
     return 0x68 + (ad0 is Strap.HIGH)
 
 
 def find_wiring_faults(wires: Iterable[Conductor] = WIRES) -> Iterator[str]:
-    """One line for each wire that damages the part at its end, or whose level that part does not read."""
+    """Yield a line for each wire that damages the part at its end, or has a level which it does not read."""
     for wire in wires:
         ends = [(wire.sink, wire.sink_pin)]
         if wire.net is Net.I2C:

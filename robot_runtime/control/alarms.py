@@ -30,9 +30,9 @@ class FaultText:
 
 
 def check_consequences(*lists: Mapping[str, FaultText]) -> None:
-    """Raises ValueError where a consequence is no fault of these lists, or follows from itself."""
+    """Raise ValueError where a consequence is no fault of these lists, or follows from itself."""
     follows: dict[str, set[str]] = {}
-    for name, fault in (one for faults in lists for one in faults.items()):
+    for name, fault in (entry for faults in lists for entry in faults.items()):
         follows.setdefault(name, set()).update(fault.consequences)
     if unknown := {name for names in follows.values() for name in names} - follows.keys():
         raise ValueError(f"consequences that are no faults: {', '.join(sorted(unknown))}")
@@ -63,12 +63,12 @@ class Alarms:
         self._last: dict[str, float] = {}
 
     def update(self, wrong: Mapping[str, str]) -> None:
-        """Sets the active faults: name and detail of each."""
+        """Set the active faults: name and detail of each."""
         for name in dict.fromkeys([*wrong, *self._alarms]):
             self.see(name, name in wrong, wrong.get(name, ""))
 
     def see(self, name: str, wrong: bool, detail: str = "") -> None:
-        """Sets whether this fault is active now; another detail of an active one is no new alarm."""
+        """Set the state of this fault; a new detail of an active fault is no new alarm."""
         now, alarm = self._clock.now(), self._alarms.get(name)
         active = alarm is not None and alarm.active
         if wrong:
@@ -82,7 +82,7 @@ class Alarms:
             self._end(alarm)
 
     def begin(self, name: str, detail: str = "", *, active: bool = True) -> None:
-        """Begins an alarm. It is active until `see` finds the fault gone; if not `active`, it is past."""
+        """Begin an alarm. It is active until `see` finds the fault gone; if not `active`, it is past."""
         fault, now = self._faults[name], self._clock.now()
         what = f"{fault.what} {detail}".strip()
         self._last[name] = now
@@ -103,19 +103,19 @@ class Alarms:
         self._changed()
 
     def begin_again(self, name: str, detail: str = "") -> None:
-        """Begins an acknowledged alarm again, because its fault has stopped the robot once more."""
+        """Begin an acknowledged alarm again, because its fault has stopped the robot once more."""
         if self._alarms[name].acknowledged:
             self.begin(name, detail)
 
     def acknowledge(self) -> None:
-        """Acknowledges all alarms; those that are over are removed."""
+        """Acknowledge all alarms; those that are over are removed."""
         self._alarms = {
             name: replace(alarm, acknowledged=True) for name, alarm in self._alarms.items() if alarm.active
         }
         self._changed()
 
     def listed(self) -> list[Alarm]:
-        """Returns all alarms, the newest last."""
+        """Return all alarms, the newest last."""
         return sorted(self._alarms.values(), key=lambda alarm: alarm.since)
 
     def _end(self, alarm: Alarm) -> None:

@@ -8,10 +8,10 @@ from robot_runtime.control.controllers.predictive import Predictive
 
 
 def craft_gains(craft: Craft) -> dict[str, float]:
-    """Returns the gains of the heave model for this craft, in the gains' units and within their limits.
+    """Return the gains of the heave model for this craft, in the gains' units and within their limits.
 
     A force over the moving mass, and the noise, is the default gain times the ratio of this craft's to the
-    default craft's. A delay is the default gain and what this craft has more.
+    default craft's. A delay is the default gain plus this craft's additional delay.
     """
     limits, plain = Predictive.limits, Craft()
     of_plain = _scales(plain)
@@ -29,7 +29,7 @@ def craft_gains(craft: Craft) -> dict[str, float]:
 
 
 def tune_to_craft(config: ControlConfig, craft: Craft) -> ControlConfig:
-    """Returns the configuration with the model-based controller's gains for this craft, unless it sets them.
+    """Return the configuration with the model-based controller's gains for this craft, unless it sets them.
 
     The default craft changes nothing.
     """
@@ -40,7 +40,7 @@ def tune_to_craft(config: ControlConfig, craft: Craft) -> ControlConfig:
 
 
 def _scales(craft: Craft) -> dict[str, float]:
-    """Numbers to which the gains of these names are proportional."""
+    """Return, by gain, the number of the craft to which it is proportional."""
     mass = craft.total_mass[2]
     return {
         "thrust": craft.thrust_coefficient * craft.fin_area * craft.fin_centre**2 / mass,

@@ -34,7 +34,10 @@ _END_REASONS: dict[Mode, str] = {
 
 
 class LoopExperiment(ABC):
-    """Base of both. Call `observe` before each tick until it is `over`; `text` explains an early end."""
+    """Base of the experiments.
+
+    Call `observe` before each tick until it is `over`; `text` explains an early end.
+    """
 
     kind: ClassVar[ExperimentKind]
 
@@ -57,7 +60,7 @@ class LoopExperiment(ABC):
     @property
     @abstractmethod
     def override(self) -> LoopOverride:
-        """Returns the override of the loop from now on."""
+        """The override of the loop from now on."""
 
     @property
     def over(self) -> bool:
@@ -65,9 +68,11 @@ class LoopExperiment(ABC):
         return self.phase in ("complete", "stopped", "failed")
 
     def observe(self, value: float) -> None:
-        """Takes the loop's measured value; ends the experiment beyond the limits."""
+        """Take the loop's measured value; end the experiment beyond the limits."""
         if self._inside and not self._low <= value <= self._high:
-            last, low, high = (describe_value(self._loop, one) for one in (value, self._low, self._high))
+            last, low, high = (
+                describe_value(self._loop, number) for number in (value, self._low, self._high)
+            )
             self.end("failed", f"It ended at {last}, which is beyond the limits, {low} to {high}.")
         # It may begin at a limit, such as the surface.
         margin = MARGIN * (self._high - self._low)
@@ -75,14 +80,14 @@ class LoopExperiment(ABC):
         self._observe(value)
 
     def end(self, phase: ExperimentPhase, text: str = "") -> None:
-        """Ends the experiment; the first reason counts."""
+        """End the experiment; the first reason counts."""
         if not self.over:
             self.text = text
             self._enter(phase)
 
     @abstractmethod
     def _observe(self, value: float) -> None:
-        """Takes the measured value; see `observe`."""
+        """Take the measured value; see `observe`."""
 
     def _enter(self, phase: ExperimentPhase) -> None:
         self.phase, self.phase_since = phase, self._clock.now()
@@ -100,7 +105,7 @@ class StepExperiment(LoopExperiment):
 
     @property
     def override(self) -> LoopOverride:
-        """Returns a set point for the loop's own controller."""
+        """A set point for the loop's own controller."""
         return LoopOverride(
             set_point=self._settings.start if self.phase == "settling" else self._settings.target
         )
@@ -141,11 +146,11 @@ class RelayExperiment(LoopExperiment):
 
     @property
     def override(self) -> LoopOverride:
-        """Returns the relay and its set point."""
+        """The relay and its set point."""
         return self._override
 
     def command(self, error: float) -> float:
-        """Returns the relay's command, -1 to 1, at this error."""
+        """Return the relay's command, -1 to 1, at this error."""
         side = self._side or (1.0 if error > 0 else -1.0)
         if error * side < -self._settings.hysteresis:
             side = -side
@@ -162,7 +167,7 @@ class RelayExperiment(LoopExperiment):
             self.end("failed", text)
 
     def _switch(self) -> None:
-        """Takes a switching of the relay; every second one completes a cycle."""
+        """Record a switching of the relay; every second switching completes a cycle."""
         now = self._clock.now()
         half, self._switched = now - self._switched, now
         if self.phase == "settling":
@@ -201,12 +206,12 @@ class _Relay(Controller):
         self._experiment = experiment
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:  # noqa: ARG002
-        """Returns the bias, plus or minus the amplitude."""
+        """Return the bias, plus or minus the amplitude."""
         return self._experiment.command(set_point - measured)
 
 
 class Experiments:
-    """Runs one experiment at a time. `tick` belongs to the control loop, the rest to any thread.
+    """The experiments of a robot, one at a time. `tick` belongs to the control loop, the rest to any thread.
 
     `on_report` takes each document.
     """
@@ -220,7 +225,7 @@ class Experiments:
         self._due = 0.0
 
     def require_none(self) -> None:
-        """Raises RefusedError while an experiment runs: its loop must not change meanwhile."""
+        """Raise RefusedError while an experiment runs: its loop must not change meanwhile."""
         running = self._running
         if running is not None:
             raise RefusedError(
@@ -228,19 +233,19 @@ class Experiments:
             )
 
     def begin(self, number: int, loop: ControlLoop, experiment: LoopExperiment) -> None:
-        """Starts an experiment at the next tick. Raises RefusedError while another runs."""
+        """Start an experiment at the next tick. Raise RefusedError while another runs."""
         with self._lock:
             self.require_none()
             self._running = number, loop, experiment
 
     def stop(self, text: str) -> None:
-        """Stops the running experiment, if any."""
+        """Stop the running experiment, if any."""
         running = self._running
         if running is not None:
             running[2].end("stopped", text)
 
     def tick(self, mode: Mode) -> None:
-        """Advances the experiment and overrides its loop; ends it when the robot leaves automatic."""
+        """Advance the experiment and override its loop; end it when the robot leaves automatic."""
         running = self._running
         if running is None:
             return

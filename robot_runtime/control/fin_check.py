@@ -21,17 +21,17 @@ _MOTION_MIN = 0.1
 
 
 class FinTracking:
-    """Judges whether a fin follows its set point, by samples of both (rad, -π to π)."""
+    """Judge of a fin that should follow its set point, by samples of both (rad, -π to π)."""
 
     def __init__(self) -> None:
         self._samples: list[tuple[float, float]] = []
 
     def see(self, set_point: float, angle: float) -> None:
-        """Takes a sample."""
+        """Take a sample."""
         self._samples.append((set_point, angle))
 
     def judge(self) -> str:
-        """Returns what is wrong with the fin; empty if it follows."""
+        """Return the fin's problem as text; empty if it follows."""
         samples = list(self._samples)
         motion = _deviation(set_point for set_point, _ in samples)
         if motion < _MOTION_MIN:
@@ -45,7 +45,7 @@ class FinTracking:
 
 
 def _deviation(angles: Iterable[float]) -> float:
-    """Returns the root mean square distance of angles from the one angle from which it is least (rad).
+    """Return the least root mean square distance (rad) of these angles from any one angle.
 
     The least of the variances with the circle cut open between any two of them: Hotz and Huckemann,
     Intrinsic means on the circle, 2015. 0 without angles.
@@ -63,31 +63,34 @@ def _deviation(angles: Iterable[float]) -> float:
 
 
 class FinCheck:
-    """Runs fin checks; `step` is called by the control loop, `see` by the receiver of messages."""
+    """The fin check; `step` is called by the control loop, `see` by the receiver of messages."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
         self.begin()
 
     def begin(self) -> None:
-        """Starts a new check."""
+        """Start a new check."""
         self._began = self._clock.now()
         self._fins = [FinTracking() for _ in range(FIN_COUNT)]
 
     def step(self) -> Navigation | None:
-        """Returns the present command; None when the check is over. It swims up, so as not to dive."""
+        """Return the present command; None when the check is over.
+
+        It points up, so that the robot does not dive.
+        """
         number = int((self._clock.now() - self._began) / _STEP)
         if number >= len(AXES):
             return None
         name = AXES[number]
-        axes = {one: getattr(NEUTRAL, one) for one in AXES}
+        axes = {axis: getattr(NEUTRAL, axis) for axis in AXES}
         return Navigation(**axes | {name: -_SHARE if name == "z" else _SHARE})
 
     def see(self, motor: Motor) -> None:
-        """Takes the fins' angles and their set points."""
+        """Take the fins' angles and their set points."""
         for fin, set_point, angle in zip(self._fins, motor.wanted, motor.angle, strict=True):
             fin.see(set_point, angle)
 
     def failed(self) -> dict[str, str]:
-        """Returns the fins that did not follow, by name, with what they did."""
-        return {name: words for fin, name in zip(self._fins, FINS, strict=True) if (words := fin.judge())}
+        """Return the fins that did not follow, by name, each with its problem."""
+        return {name: problem for fin, name in zip(self._fins, FINS, strict=True) if (problem := fin.judge())}

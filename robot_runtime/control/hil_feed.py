@@ -19,7 +19,10 @@ SILENCE = 0.5
 
 
 class HilFeed:
-    """Forwards simulated sensors. Any thread may call `forward`; `tick` runs under the supervisor's lock."""
+    """The feed of simulated sensor readings to the board.
+
+    Any thread may call `forward`; `tick` runs under the supervisor's lock.
+    """
 
     def __init__(
         self, clock: Clock, send: Callable[[Packet], object], on_event: Callable[[Event], None]
@@ -41,7 +44,7 @@ class HilFeed:
         return self._received > float("-inf") and not self.present
 
     def forward(self, data: bytes) -> None:
-        """Forwards a message of the simulator; an invalid one is dropped and logged."""
+        """Forward a message of the simulator; an invalid one is dropped and logged."""
         try:
             sense = Sense.from_bytes(data)
         except LayoutError as problem:
@@ -51,7 +54,7 @@ class HilFeed:
         self._send(sense)
 
     def tick(self) -> None:
-        """Publishes an event when the simulator connects; its loss is a fault."""
+        """Publish an event when the simulator connects; its loss is a fault."""
         if self.present and not self._reported:
             self._reported = True
             now, text = self._clock.now(), "The simulator is connected."
@@ -60,7 +63,7 @@ class HilFeed:
             self._reported = False
 
     def refusals(self) -> list[str]:
-        """Returns the reasons against arming now."""
+        """Return the reasons against arming now."""
         if self.present:
             return []
         return [

@@ -15,14 +15,16 @@ Axis = Literal["z", "yaw", "pitch", "roll"]
 
 @dataclass(frozen=True, slots=True)
 class LoopOverride:
-    """A controller and a set point that replace the loop's own; None keeps the own."""
+    """A controller and a set point that replace the loop's own; None: the loop's own stays."""
 
     controller: Controller | None = None
     set_point: float | None = None
 
 
 class ControlLoop:
-    """Steers one `axis` of the navigation command by one measured value, m or rad.
+    """The control of one `axis` of the navigation command by one measured value, m or rad.
+
+    No set point of the depth in force lies below its `limits`, not even an override's.
 
     `override` replaces its controller, its set point or both during an experiment or a mission, even while
     it is off.
@@ -55,7 +57,8 @@ class ControlLoop:
     def set_point_in_force(self) -> float:
         """The set point in force: the override's or the loop's own."""
         override = self.override
-        return self.set_point if override is None or override.set_point is None else override.set_point
+        chosen = self.set_point if override is None or override.set_point is None else override.set_point
+        return chosen if self._is_angle else min(chosen, self.limits.maximum)
 
     @property
     def controller_in_force(self) -> Controller:
@@ -64,7 +67,7 @@ class ControlLoop:
         return self.controller if override is None or override.controller is None else override.controller
 
     def step(self, seconds: float, heave_command: float = 0.0) -> None:
-        """Computes `output`; needs a measured value.
+        """Compute `output`; a measured value must be there.
 
         `seconds` is the time since the last step, `heave_command` the command downwards of this tick.
         """
@@ -84,23 +87,23 @@ class ControlLoop:
         self.output = min(max(controller.step(set_point, measured, seconds), -1.0), 1.0)
 
     def rest(self) -> None:
-        """Stops control; the controller is reset before it is used again."""
+        """Stop control; the controller is reset before it is used again."""
         self._running = self.output = None
 
     def follow(self) -> None:
-        """Sets the set point to the measured value, within the limits."""
+        """Set the set point to the measured value, within the limits."""
         if self.measured is not None:
             self.set_point = min(max(self.measured, self.limits.minimum), self.limits.maximum)
 
     def find(self, name: str) -> Controller:
-        """Returns the controller of this name. Raises RefusedError if there is none."""
+        """Return the controller of this name. Raise RefusedError if there is none."""
         controller = self.controllers.get(name)
         if controller is None:
             raise RefusedError(f"there is no controller {name!r}; there are {', '.join(self.controllers)}")
         return controller
 
     def check(self, set_point: float) -> None:
-        """Raises RefusedError for a set point out of range."""
+        """Raise RefusedError for a set point out of range."""
         low, high = self.limits.minimum, self.limits.maximum
         if not low <= set_point <= high:
             raise RefusedError(
@@ -108,7 +111,7 @@ class ControlLoop:
             )
 
     def describe(self, *values: float) -> str:
-        """Returns these values with their unit, as text."""
+        """Return these values with their unit, as text."""
         return f"{' and '.join(map(self._number, values))} {'°' if self._is_angle else 'm'}"
 
     def _number(self, value: float) -> str:

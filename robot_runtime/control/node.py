@@ -17,10 +17,13 @@ from robot_runtime.contract.documents import (
     Steering,
     Turning,
 )
-from robot_runtime.contract.packets import Beacon, Depth, Imu, Navigation
+from robot_runtime.contract.limits import SET_POINT, Range
+from robot_runtime.contract.packets import Beacon, Countdown, Depth, Imu, Navigation
 from robot_runtime.contract.topics import BEACON, CONTROL, DEPTH, DETECTION, EVENT, IMU, NAVIGATION, TURNING
 from robot_runtime.control.attitude import euler_angles, heave_acceleration
-from robot_runtime.control.faults import BY_NAME, CHECK_PERIOD
+from robot_runtime.control.battery import BatteryGauge
+from robot_runtime.control.dead_reckoning import DeadReckoning
+from robot_runtime.control.faults import CHECK_PERIOD, ROBOT_FAULTS
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.pilot import AXES, NEUTRAL, Pilot
 from robot_runtime.control.steering import STEERINGS, BeaconSteering
@@ -29,7 +32,7 @@ from robot_runtime.transport.bus import Bus
 
 BEACON_STALE = 0.5
 """s after which a reading of the beacon detectors is too old to use."""
-VISION_STALE = BY_NAME["vision_stale"].limit - CHECK_PERIOD
+VISION_STALE = ROBOT_FAULTS["vision_stale"].limit - CHECK_PERIOD
 """s after which, at a tick, a detection is too old to use."""
 STICK_MIDDLE = 0.05
 """Share of its travel within which a stick counts as centred."""
@@ -37,15 +40,19 @@ STICK_MIDDLE = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """A course that outranks the chosen steering until a time (s): surge and yaw, or to the light.
+    """A course that overrides the chosen steering until a time (s): surge and yaw, or to the light.
 
-    It outranks a heading hold that is on, too. Once it has expired the robot stays.
+    It overrides an active heading hold, too. Once it has expired the robot stays where it is. A `still` one
+    keeps every loop from steering, the depth's too: the fins rest until another course replaces it. Until
+    then the LED shows the `countdown`, s, if there is one.
     """
 
     until: float
     x: float = 0.0
     yaw: float = 0.0
     by: Steering = "none"
+    still: bool = False
+    countdown: float | None = None
 
 
 _DEPTHS_MAX, _IMUS_MAX = 50, 100
@@ -53,17 +60,28 @@ _DEPTHS_MAX, _IMUS_MAX = 50, 100
 
 
 class ControlNode:
-    """Steps the control loops in automatic, and those that hold an axis in manual.
+    """The control loops: all of them in automatic, in manual those that hold an axis.
 
     In automatic the depth is always held: at the default set point, or at the one of what the camera detects.
     Meanwhile the robot may swim towards a light beacon.
 
-    `send` takes the command to the board. `tick` belongs to the control loop; the rest may be called from any
-    thread. Changes under `tick_lock` take effect between two ticks.
+    `send` takes the commands to the board. `tick` belongs to the control loop; the rest may be called from
+    any thread. Changes under `tick_lock` take effect between two ticks. No set point is below `deepest`, m.
     """
 
-    def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], object], pilot: Pilot) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        clock: Clock,
+        send: Callable[[Navigation | Countdown], object],
+        pilot: Pilot,
+        deepest: float = SET_POINT.maximum,
+    ) -> None:
+        self.deepest = deepest
+        self.dead_reckoning = DeadReckoning(bus, clock)
+        self.battery = BatteryGauge(bus)
         self.depth, self.heading = ControlLoop("depth", "z"), ControlLoop("heading", "yaw")
+        self.depth.limits = Range(SET_POINT.minimum, deepest)
         self.attitude_loops = (self.heading, ControlLoop("pitch", "pitch"), ControlLoop("roll", "roll"))
         self.loops: dict[str, ControlLoop] = {loop.name: loop for loop in (self.depth, *self.attitude_loops)}
         self.tick_lock = threading.RLock()
@@ -98,8 +116,9 @@ class ControlNode:
         bus.on_document(DETECTION, self._take_detection)
 
     def change_mode(self, mode: Mode) -> None:
-        """Sets the robot's mode. It never blocks, because a STOP takes this way, too."""
+        """Set the robot's mode. It never blocks, because a STOP takes this way, too."""
         was, self.mode = self.mode, mode
+        self.dead_reckoning.change_mode(mode)
         for loop in self.loops.values():
             if "manual" in (was, mode):
                 loop.on = False
@@ -107,7 +126,7 @@ class ControlNode:
         self._course_override = None
 
     def override_course(self, course: Course | None) -> None:
-        """Steers this course in automatic until it expires or the mode changes; None: the chosen one."""
+        """Steer this course in automatic until it expires or the mode changes; None: the chosen one."""
         was, self._course_override = self._course_override, course
         if course is not None and course.by == "beacons" and (was is None or was.by != "beacons"):
             self._beacon_steering.start()
@@ -121,7 +140,7 @@ class ControlNode:
         controller: str | None = None,
         gains: Mapping[str, Any] | None = None,
     ) -> None:
-        """Changes a loop, or nothing if that raises RefusedError. `gains` are those of the named controller.
+        """Change a loop, or nothing if that raises RefusedError. `gains` are those of the named controller.
 
         A hold that is switched on in manual holds the measured value. While the depth is held in manual, its
         set point is that of the hold, otherwise the default one.
@@ -155,29 +174,31 @@ class ControlNode:
                 self._publish_event("loop", f"{loop.title} {change}.")
 
     def release(self, loop: ControlLoop, reason: str) -> None:
-        """Switches off the hold of a loop that cannot be controlled any more."""
+        """Switch off the hold of a loop that cannot be controlled any more."""
         if loop.on:
             loop.on = False
             self._publish_event("loop", f"{loop.title} no longer held. {reason}", "caution")
 
     def set_points(self, default: float, detected: float) -> None:
-        """Sets both set points of the depth, m. Raises RefusedError unless each is between 0 and 10."""
-        for depth in (default, detected):
-            self.depth.check(depth)
+        """Set both set points of the depth, m. Raise RefusedError for a new one below the greatest depth."""
+        for depth, now in ((default, self.set_point_default), (detected, self.set_point_detected)):
+            if depth != now:
+                self.depth.check(depth)
         self.set_point_default, self.set_point_detected = default, detected
 
     def steer(self, by: str) -> None:
-        """Chooses the steering in automatic. Raises RefusedError if there is no such steering."""
-        for one in STEERINGS:
-            if one == by:
-                self.steering = one
+        """Choose the steering in automatic. Raise RefusedError if there is no such steering."""
+        for steering in STEERINGS:
+            if steering == by:
+                self.steering = steering
                 return
         raise RefusedError(f"there is no steering {by!r}; there are {', '.join(STEERINGS)}")
 
     def tick(self) -> None:
-        """Steps the loops and sends the command if the robot is steered. The caller holds `tick_lock`."""
+        """Step the loops and send the command if the robot is steered. The caller holds `tick_lock`."""
         now, mode = self._clock.now(), self.mode
         taken = self._measure()
+        self.dead_reckoning.tick(mode)
         self._choose_set_point(now, mode)
         steered = mode == "manual" or (mode == "automatic" and taken is not None)
         if steered and self._ticked is None:
@@ -188,15 +209,16 @@ class ControlNode:
         if steered:
             self._course = self._find_course(now, seconds)
             self._send_newest(mode)
+            self._count_down(now)
         self._publish(now, taken)
 
     def drive(self) -> None:
-        """Sends the pilot's newest input with the outputs of the holds; the loops do not step."""
+        """Send the pilot's newest input with the outputs of the holds; the loops do not step."""
         if self.mode == "manual":
             self._send_newest("manual")
 
     def command(self, command: Navigation) -> None:
-        """Sends a command to the board and publishes it."""
+        """Send a command to the board and publish it."""
         self._send(command)
         self._bus.publish_row(NAVIGATION, self._clock.now(), command.to_bytes())
 
@@ -204,6 +226,11 @@ class ControlNode:
         # One at a time, so that no older input is sent after a newer one.
         with self._sending:
             self.command(Navigation(**self._axes(mode)))
+
+    def _count_down(self, now: float) -> None:
+        course = self._course_override
+        if course is not None and course.countdown is not None and now <= course.until:
+            self._send(Countdown(remaining=course.countdown))
 
     def _axes(self, mode: Mode) -> dict[str, float]:
         if mode == "automatic":
@@ -236,6 +263,8 @@ class ControlNode:
             return loop.on and not self._pilot.quiet
         if mode != "automatic":
             return False
+        if self._course_override is not None and self._course_override.still:
+            return False
         if loop is self.heading and self._steering_in_force == "beacons":
             return False
         if loop is self.heading and self._course_override is not None:
@@ -256,7 +285,7 @@ class ControlNode:
         return loop
 
     def _measure(self) -> float | None:
-        """Takes the newest measurements; returns the time of the newest depth, if there is one."""
+        """Take the newest measurements; return the time of the newest depth, None without one."""
         if self._imu is not None:
             angles = euler_angles(Imu.from_bytes(self._imu).attitude)
             for loop, angle in zip(self.attitude_loops, angles, strict=True):
@@ -333,6 +362,8 @@ class ControlNode:
                 set_point, reason = detection.set_point, f": {detection.target} is seen"
             elif detection.target == self.colour:
                 set_point, reason = self.set_point_detected, f": {self.colour} is seen"
+        if set_point > self.deepest:
+            set_point, reason = self.deepest, f"{reason}; it is the greatest depth"
         if detection is not None and detection is not self._used_detection:
             self._used_detection, self.picture_age = detection, now - detection.taken
         if set_point != self._announced_set_point:

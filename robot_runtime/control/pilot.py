@@ -29,7 +29,7 @@ NEUTRAL = Navigation(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
 
 
 class Pilot:
-    """Takes inputs from the server, from any thread; `dropped` counts the rejected ones by reason."""
+    """The pilot's newest input, taken from any thread; `dropped` counts the rejected ones by reason."""
 
     def __init__(self, clock: Clock) -> None:
         self.lease = 0
@@ -42,11 +42,11 @@ class Pilot:
         self._command = NEUTRAL
 
     def begin(self) -> None:
-        """Starts manual control with neutral sticks."""
+        """Start manual control with neutral sticks."""
         self.taken, self._command = self._clock.now(), NEUTRAL
 
     def change_lease(self, epoch: int) -> None:
-        """Accepts only input of this lease from now on. Raises RefusedError for an older or a future epoch.
+        """Accept only input of this lease from now on. Raise RefusedError for an older or a future epoch.
 
         An epoch of the far future would refuse every later one.
         """
@@ -58,9 +58,9 @@ class Pilot:
             self.lease, self._sequence, self._command = epoch, -1, NEUTRAL
 
     def take(self, payload: bytes) -> bool:
-        """Takes an input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1).
+        """Take an input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1).
 
-        Returns True if it is valid.
+        Return True if it is valid.
         """
         try:
             lease, sequence, taken, axes = _read(json.loads(payload))
@@ -86,25 +86,26 @@ class Pilot:
         return not self._clock.now() - self.taken <= PATIENCE
 
     @property
-    def until(self) -> float:
-        """s, steady clock, from which the newest input is too old."""
-        return self.taken + PATIENCE
+    def next_check(self) -> float:
+        """The time (s, steady clock) at which to look again whether the pilot is quiet."""
+        now = self._clock.now()
+        return now + PILOT_LOOK if self.quiet else min(now + PILOT_LOOK, self.taken + PATIENCE)
 
     def command(self) -> Navigation:
-        """Returns the newest input; neutral if it is too old."""
+        """Return the newest input; neutral if it is too old."""
         return NEUTRAL if self.quiet else self._command
 
 
 def _read(table: Any) -> tuple[int, int, float, list[float]]:
-    """Returns the fields of an input. Raises ValueError, TypeError, KeyError or OverflowError."""
+    """Return the fields of an input. Raise ValueError, TypeError, KeyError or OverflowError."""
     lease, sequence, taken, axes = (table[name] for name in ("lease", "sequence", "taken", "axes"))
     if type(lease) is not int or type(sequence) is not int or type(axes) is not list:
         raise TypeError("lease and sequence are whole numbers, axes a list")
     if not 0 <= sequence <= NUMBER_MAX:
         raise ValueError("sequence counts from 0")
     numbers = [taken, *axes]
-    if len(axes) != len(AXES) or not all(type(one) in (int, float) for one in numbers):
+    if len(axes) != len(AXES) or not all(type(number) in (int, float) for number in numbers):
         raise TypeError("taken and six axes are numbers")
-    if not all(math.isfinite(one) for one in numbers) or not all(abs(one) <= 1 for one in axes):
+    if not all(math.isfinite(number) for number in numbers) or not all(abs(axis) <= 1 for axis in axes):
         raise ValueError("taken and axes are finite, axes between -1 and 1")
-    return lease, sequence, float(taken), [float(one) for one in axes]
+    return lease, sequence, float(taken), [float(axis) for axis in axes]

@@ -21,18 +21,18 @@ SEARCH_SECONDS = 20.0
 
 
 class BeaconSteering:
-    """Steers by the newest readings of the detectors."""
+    """Steering towards a light beacon by the newest readings of the detectors."""
 
     def __init__(self) -> None:
         self.start()
 
     def start(self) -> None:
-        """Resets the search; it starts to the right."""
+        """Reset the search; it starts to the right."""
         self._side = 1.0
         self._searched = 0.0
 
     def step(self, right: bool, left: bool, seconds: float) -> tuple[float, float]:
-        """Returns the commands of surge and yaw, -1 to 1; `seconds` is the time since the last step."""
+        """Return the commands of surge and yaw, -1 to 1; `seconds` is the time since the last step."""
         if right or left:
             self._searched = 0.0
             if right and left:

@@ -3,13 +3,14 @@
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Alarm, Event, Mode, Severity
 from robot_runtime.contract.packets import Hello, Start, Status, StatusFlag, Stop
 from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
 from robot_runtime.control.fault_detector import BoardLink, FaultDetector
-from robot_runtime.control.faults import BY_NAME
+from robot_runtime.control.faults import ROBOT_FAULTS
 from robot_runtime.control.fin_check import FinCheck
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
@@ -45,6 +46,7 @@ class Arming:
     tries: int
     mode: Mode = "automatic"
     alone: float = 0.0
+    unwatched: float = 0.0
     on_armed: Callable[[], None] | None = None
     disarmed_seen: bool = False
     over: bool = False
@@ -52,12 +54,13 @@ class Arming:
 
 
 class Supervisor:
-    """Holds the robot's state, which changes only by the table in `transitions`.
+    """The robot's state, which changes only by the table in `transitions`.
 
     `tick` runs at least every `faults.CHECK_PERIOD` s; all may be called from any thread. With `hil` the
     board must run the firmware for hardware in the loop; with `heartbeat` (s) a server that is silent for
     longer is a fault. `on_mode` gets each new mode and must not block. `arming_obstacles` returns further
-    reasons against arming.
+    reasons against arming. `deepest`: the greatest depth, m. `unwatched`: s for which an
+    armed robot may swim while nobody watches, unless its arming says otherwise; 0: without an end.
     """
 
     def __init__(
@@ -69,19 +72,22 @@ class Supervisor:
         heartbeat: float | None = None,
         on_mode: Callable[[Mode], None] = lambda _: None,
         arming_obstacles: Callable[[], list[str]] = list,
+        deepest: float = inf,
+        unwatched: float = 0.0,
     ) -> None:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
         self.pilot = Pilot(clock)
-        self.detector = FaultDetector(clock, line, self.pilot, hil, heartbeat, arming_obstacles)
+        self.detector = FaultDetector(clock, line, self.pilot, hil, heartbeat, arming_obstacles, deepest)
         self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line
         self._on_event = on_event
         self._hil = hil
         self._heartbeat = heartbeat
+        self._unwatched = unwatched
         self._on_mode = on_mode
-        self._alarms = Alarms(clock, BY_NAME, on_event, clear_after=CLEAR_AFTER)
+        self._alarms = Alarms(clock, ROBOT_FAULTS, on_event, clear_after=CLEAR_AFTER)
         self._arming: Arming | None = None
         self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / ARM_WAIT)
         # Reentrant: a receiver of an event may read the state.
@@ -111,32 +117,40 @@ class Supervisor:
         return status is not None and status.flags & (_ARMED_FLAG | _BATTERY_LOW_FLAG) == _BATTERY_LOW_FLAG
 
     def see_status(self, status: Status) -> None:
-        """Takes the board's status."""
+        """Take the board's status."""
         with self._changed:
             old = self.detector.status
             self.detector.see_status(status)
             if self.mode != "disarmed" and old is not None and old.epoch != status.epoch:
                 # Its silence may have been detected first; this is the cause.
                 self._fail("board_restarted")
-            elif self.armed and not status.flags & _ARMED_FLAG:
+            elif self.armed and not status.flags & _ARMED_FLAG and not self.detector.board_says_why:
                 self._fail("board_disarmed")
             self._changed.notify_all()
 
     def refusals(self) -> list[str]:
-        """Returns the reasons against arming now; empty if there are none."""
+        """Return the reasons against arming now; empty if there are none."""
         with self._changed:
             failsafe = [_ACKNOWLEDGE] if self.mode == "failsafe" else []
             return [*failsafe, *self.detector.refusals()]
 
-    def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
-        """Arms the board and waits until it is armed.
+    @property
+    def unwatched(self) -> float:
+        """The time (s) for which it may swim while nobody watches: of this arming, else the configured one.
 
-        Raises RefusedError with all reasons if it must not be armed, or does not arm.
+        0: without an end.
         """
-        self.finish_arming(self.begin_arming(mode, alone))
+        return self.detector.watch_patience if self.armed else self._unwatched
+
+    def arm(self, mode: Mode = "automatic", alone: float = 0.0, unwatched: float | None = None) -> None:
+        """Arm the board and wait until it is armed.
+
+        Raise RefusedError with all reasons if it must not be armed, or does not arm.
+        """
+        self.finish_arming(self.begin_arming(mode, alone, unwatched))
 
     def finish_arming(self, arming: Arming) -> None:
-        """Waits until an attempt to arm is over. Raises RefusedError if the board did not arm."""
+        """Wait until an attempt to arm is over. Raise RefusedError if the board did not arm."""
         with self._changed:
             while not arming.over:
                 self._changed.wait_for(
@@ -147,12 +161,18 @@ class Supervisor:
                 raise RefusedError(arming.refusal)
 
     def begin_arming(
-        self, mode: Mode = "automatic", alone: float = 0.0, on_armed: Callable[[], None] | None = None
+        self,
+        mode: Mode = "automatic",
+        alone: float = 0.0,
+        unwatched: float | None = None,
+        on_armed: Callable[[], None] | None = None,
     ) -> Arming:
-        """Asks the board to arm; `continue_arming` completes it. Raises RefusedError with all reasons.
+        """Ask the board to arm; `continue_arming` completes it. Raise RefusedError with all reasons.
 
-        `alone`: s for which the robot may continue without the server. What begins by `on_armed` begins by an
-        arming of its own: it is refused where the robot is armed, or is being armed.
+        `alone`: s for which the robot may continue without the server. `unwatched`: s while nobody watches,
+        0: without an end, None: the configured ones. A longer `alone` counts for both, since without a server
+        nobody watches. What begins by `on_armed` begins by an arming of its own: it is refused where the
+        robot is armed, or is being armed.
         """
         with self._changed:
             if self.mode == mode != "test" and on_armed is None:
@@ -164,7 +184,9 @@ class Supervisor:
             if reasons or board is None:
                 raise RefusedError(" ".join(reasons))
             if self._arming is None:
-                self._arming = arming = Arming(board, self._arm_tries, mode, alone, on_armed)
+                patience = self._unwatched if unwatched is None else unwatched
+                patience = patience and max(patience, alone)
+                self._arming = arming = Arming(board, self._arm_tries, mode, alone, patience, on_armed)
                 arming.disarmed_seen = not self.board_armed
                 self._ask_to_arm(arming)
                 return arming
@@ -173,7 +195,7 @@ class Supervisor:
             return self._arming
 
     def continue_arming(self) -> None:
-        """Completes arming when the board is armed, or asks again; call it every `ARM_WAIT` at least."""
+        """Complete arming when the board is armed, or ask again; call it every `ARM_WAIT` at least."""
         with self._changed:
             arming = self._arming
             if arming is None:
@@ -190,7 +212,7 @@ class Supervisor:
                 self._end_arming("The board did not arm; the console shows the reason. Try again.")
 
     def change_mode(self, mode: Mode) -> None:
-        """Changes between manual and automatic while armed. Raises RefusedError with all reasons."""
+        """Change between manual and automatic while armed. Raise RefusedError with all reasons."""
         with self._changed:
             if self.mode == mode:
                 return
@@ -204,27 +226,27 @@ class Supervisor:
             self._event("mode", "info", text)
 
     def acknowledge(self) -> None:
-        """Acknowledges the alarms; after a failsafe the robot may be armed again."""
+        """Acknowledge the alarms; after a failsafe the robot may be armed again."""
         with self._changed:
             self._alarms.acknowledge()
             if self._go("acknowledge"):
                 self._event("mode", "info", "The failsafe is acknowledged; the robot is disarmed.")
 
     def stop(self, why: str) -> None:
-        """Disarms at once, in any state."""
+        """Disarm at once, in any state."""
         with self._changed:
             # Before STOP is sent, so that the board's report of it is no fault.
             self._leave("stop", "info", why)
         self._line.send(Stop())
 
     def fail(self, fault: str) -> None:
-        """Stops the robot for this fault, which is over at once."""
+        """Stop the robot for this fault, which is over at once."""
         with self._changed:
             if self.armed:
                 self._fail(fault)
 
     def end_fin_check(self) -> None:
-        """Disarms after a fin check and publishes its result."""
+        """Disarm after a fin check and publish its result."""
         with self._changed:
             failed = self.fin_check.failed()
             if failed:
@@ -235,7 +257,7 @@ class Supervisor:
         self._line.send(Stop())
 
     def tick(self) -> None:
-        """Checks for faults and takes their actions; repeats STOP until the board is disarmed."""
+        """Check for faults and take their actions; repeat STOP until the board is disarmed."""
         with self._changed:
             if self._hil is not None:
                 self._hil.tick()
@@ -245,7 +267,7 @@ class Supervisor:
             wrong = self.detector.active_faults(self.mode, active)
             self._alarms.update(wrong)
             for name, detail in wrong.items():
-                if BY_NAME[name].stops(self.mode):
+                if ROBOT_FAULTS[name].stops(self.mode):
                     if self.armed:
                         self._alarms.begin_again(name, detail)
                     self._all_stop()
@@ -255,14 +277,22 @@ class Supervisor:
     def _become_armed(self, arming: Arming) -> None:
         self._end_arming("")
         self.detector.server_patience = self._heartbeat and max(self._heartbeat, arming.alone)
-        self.detector.note_armed()
+        self.detector.note_armed(arming.unwatched)
         self.pilot.begin()
         self.fin_check.begin()
         self.armed_since = self._clock.now()
         if arming.on_armed is not None:
             arming.on_armed()
         self._go(_ARM[arming.mode])
-        self._event("armed", "info", _ARMED_WORDS[arming.mode])
+        self._event("armed", "info", _ARMED_WORDS[arming.mode] + self._unwatched_words(arming))
+
+    def _unwatched_words(self, arming: Arming) -> str:
+        """Return how long it may swim while nobody watches, where this arming says so."""
+        if arming.unwatched == self._unwatched or arming.on_armed is not None:
+            return ""
+        if not arming.unwatched:
+            return " It goes on while nobody watches."
+        return f" It goes on for {arming.unwatched:g} s while nobody watches."
 
     def _ask_to_arm(self, arming: Arming) -> None:
         # Repeated because the board requires half a second of steady traffic first. It ignores repetitions,
@@ -280,19 +310,19 @@ class Supervisor:
         self._changed.notify_all()
 
     def _fail(self, name: str) -> None:
-        """Adds an alarm for a fault that is over already, and stops the robot."""
+        """Add an alarm for a fault that is over already, and stop the robot."""
         self._alarms.begin(name, active=False)
         self._all_stop()
 
     def _all_stop(self) -> None:
-        left = self._leave("fault", "alarm", f"All-stop: the fins are stopped. {_ACKNOWLEDGE}")
+        was_armed = self._leave("fault", "alarm", f"All-stop: the fins are stopped. {_ACKNOWLEDGE}")
         # A board that a low battery disarmed turns the fins down, and cannot be armed before its next reset.
         # STOP would cut the motor power before they are down.
-        if left and not self._low_battery_disarmed:
+        if was_armed and not self._low_battery_disarmed:
             self._line.send(Stop())
 
     def _leave(self, trigger: Trigger, severity: Severity, why: str, kind: str = "disarmed") -> bool:
-        """Leaves any armed state; returns True if it was in one."""
+        """Leave any armed state; return True if it was in one."""
         was_armed = self.armed
         self._end_arming("Stopped before the board was armed.")
         self._go(trigger)

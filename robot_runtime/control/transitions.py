@@ -37,9 +37,9 @@ TRANSITIONS = (
     Transition("test", "fault", "failsafe", "the same"),
     Transition("failsafe", "acknowledge", "disarmed", "the operator has seen the alarms"),
 )
-_AFTER = {(one.before, one.trigger): one.after for one in TRANSITIONS}
+_AFTER = {(transition.before, transition.trigger): transition.after for transition in TRANSITIONS}
 
 
 def follow(mode: Mode, trigger: Trigger) -> Mode | None:
-    """Returns the state after the trigger; None if it cannot happen in this state."""
+    """Return the state after the trigger; None if it cannot happen in this state."""
     return _AFTER.get((mode, trigger))

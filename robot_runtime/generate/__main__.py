@@ -6,8 +6,10 @@ from pathlib import Path
 
 from robot_runtime.generate import cpp, hardware, json_schema, reference, typescript
 from robot_runtime.generate.craft import craft_page
+from robot_runtime.generate.hull import hull_page
+from robot_runtime.generate.hull_drawing import hull_drawing
 from robot_runtime.generate.missions import missions_page
-from robot_runtime.generate.wiring_picture import wiring_picture
+from robot_runtime.generate.trim import trim_page
 
 SOURCES = Path(__file__).resolve().parents[2]
 ROOT = SOURCES
@@ -15,7 +17,7 @@ ROOT = SOURCES
 
 
 def main() -> int:
-    """Exit status: 1 where --check finds a file that is not current."""
+    """Write the files. Return the exit status: 1 where --check finds a file that is not current."""
     parser = argparse.ArgumentParser(prog="python -m robot_runtime.generate", description=__doc__)
     parser.add_argument(
         "--check", action="store_true", help="write nothing; fail where a file is not current"
@@ -28,7 +30,6 @@ def main() -> int:
         "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
         "robot_runtime/contract/published_events.schema.json": json_schema.event_schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
-        "frontend/src/generated/commands.ts": typescript.commands_module(),
         "docs/reference/commands.md": reference.commands_page(),
         "docs/reference/craft.md": craft_page(),
         "docs/reference/events.md": reference.events_page(),
@@ -37,9 +38,11 @@ def main() -> int:
         "docs/reference/packets.md": reference.packets_page(),
         "docs/reference/parameters.md": reference.parameters_page(),
         "docs/reference/topics.md": reference.topics_page(),
+        "docs/pictures/hull.svg": hull_drawing(),
+        "docs/run/hardware/hull.md": hull_page(),
         "docs/run/hardware/parts.md": hardware.parts_page(),
+        "docs/run/hardware/trim.md": trim_page(),
         "docs/run/hardware/wiring.md": hardware.wiring_page(),
-        "docs/pictures/wiring.svg": wiring_picture(),
     }
     old = [name for name, text in files.items() if _read(ROOT / name) != text]
     for name in old:

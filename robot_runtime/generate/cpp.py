@@ -1,4 +1,4 @@
-"""The firmware's headers: packets, and what may be tuned."""
+"""The firmware's headers: packets and tunable parameters."""
 
 from enum import IntEnum, IntFlag
 
@@ -19,6 +19,8 @@ _HEAD = """\
 // Written by `make generate` from robot_runtime/contract/packets/definitions.py. Do not edit.
 #pragma once
 #include <stdint.h>
+
+#include "board/flash.h"
 
 namespace mucat {
 
@@ -74,20 +76,20 @@ const ParameterLimits kParameterLimits[kParameterCount] PROGMEM = {
 
 
 def parameters() -> str:
-    """The whole text of parameters.gen.h."""
+    """Return the whole text of parameters.gen.h."""
     numbers = "".join(
-        f"  k{_camel(one.name.replace('.', '_'))},  // {one.meaning}; {one.unit or 'a ratio'}\n"
-        for one in CHIP_PARAMETERS
+        f"  k{_camel(entry.name.replace('.', '_'))},  // {entry.meaning}; {entry.unit or 'a ratio'}\n"
+        for entry in CHIP_PARAMETERS
     )
     rows = ""
-    for one in CHIP_PARAMETERS:
-        limits = (round(value * 1000) for value in (one.default, one.minimum, one.maximum))
-        rows += f"    {{{', '.join(map(str, limits))}, {str(one.while_armed).lower()}}},\n"
+    for entry in CHIP_PARAMETERS:
+        limits = (round(value * 1000) for value in (entry.default, entry.minimum, entry.maximum))
+        rows += f"    {{{', '.join(map(str, limits))}, {str(entry.while_armed).lower()}}},\n"
     return _PARAMETERS % (numbers, len(CHIP_PARAMETERS), rows)
 
 
 def calibration() -> str:
-    """The whole text of the emulator's calibration.gen.h."""
+    """Return the whole text of the emulator's calibration.gen.h."""
     stored = record(EMULATED.packet())
     rows = [stored[start : start + 12] for start in range(0, len(stored), 12)]
     text = "".join("    " + " ".join(f"0x{byte:02x}," for byte in row) + "\n" for row in rows)
@@ -95,7 +97,7 @@ def calibration() -> str:
 
 
 def header() -> str:
-    """The whole text of packets.gen.h."""
+    """Return the whole text of packets.gen.h."""
     head = _HEAD % (DEFINITIONS_HASH, FIN_COUNT, FRAME_BYTES_MAX, NOT_READY, RECORD_VERSION)
     enums = [_enum(enum) for enum in ENUMERATIONS]
     structs = [_struct(cls) for _, cls in sorted(PACKETS.items())]
@@ -104,7 +106,7 @@ def header() -> str:
 
 def _enum(enum: type[IntEnum] | type[IntFlag]) -> str:
     members = "".join(f"  k{_camel(member.name or '')} = {member.value},\n" for member in enum)
-    size = 8 if max(enum) < 256 else 16
+    size = 8 if max(enum) < 1 << 8 else 16 if max(enum) < 1 << 16 else 32
     return f"enum class {enum.__name__} : uint{size}_t {{\n{members}}};\n"
 
 
@@ -135,12 +137,15 @@ def _field(name: str, wire: Wire) -> str:
 
 
 def _sizes() -> str:
-    fixed = [cls for _, cls in sorted(PACKETS.items()) if cls.tail is None]
-    cases = "".join(f"    case {cls.__name__}::kType: return {cls.layout.size};\n" for cls in fixed)
+    fixed = {type_: cls.layout.size for type_, cls in PACKETS.items() if cls.tail is None}
+    sizes = ", ".join(str(fixed.get(type_, -1)) for type_ in range(max(fixed) + 1))
     return (
+        "// Payload bytes by type, in flash: the compiler puts the table of a switch into RAM.\n"
+        f"const int8_t kPayloadBytes[] PROGMEM = {{{sizes}}};\n\n"
         "// Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.\n"
-        "inline int8_t payload_bytes(uint8_t type) {\n  switch (type) {\n"
-        f"{cases}    default: return -1;\n  }}\n}}\n"
+        "inline int8_t payload_bytes(uint8_t type) {\n"
+        "  if (type >= sizeof kPayloadBytes) return -1;\n"
+        "  return static_cast<int8_t>(pgm_read_byte(&kPayloadBytes[type]));\n}\n"
     )
 
 

@@ -1,9 +1,10 @@
 """docs/reference/craft.md: every entry of a craft file."""
 
 from dataclasses import fields
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Any
 
 from robot_runtime.contract.craft import Craft, SensorQuality
+from robot_runtime.contract.hints import Hint, read_fields
 from robot_runtime.generate.markdown import page, table
 
 SOURCE = "robot_runtime/contract/craft.py"
@@ -50,28 +51,33 @@ _ENTRIES = {
 
 
 def craft_page() -> str:
-    """The whole text of craft.md."""
-    hints, plain = get_type_hints(Craft, include_extras=True), Craft()
-    numbers = [one for one in fields(Craft) if one.metadata]
+    """Return the whole text of craft.md."""
+    hints, plain = read_fields(Craft), Craft()
+    numbers = [field for field in fields(Craft) if field.metadata]
     rows = [
         (
-            f"`{one.name}`",
-            _ranges(hints[one.name]),
-            _shown(getattr(plain, one.name)),
-            one.metadata["unit"],
-            one.metadata["meaning"],
+            f"`{number.name}`",
+            _ranges(hints[number.name]),
+            _shown(getattr(plain, number.name)),
+            number.metadata["unit"],
+            number.metadata["meaning"],
         )
-        for one in numbers
+        for number in numbers
     ]
-    sensors = [one.name for one in fields(Craft) if not one.metadata]
+    sensors = [field.name for field in fields(Craft) if not field.metadata]
     defaults = [
-        (f"`{name}`", meaning, *(_shown(getattr(getattr(plain, one), name)) for one in sensors))
+        (f"`{name}`", meaning, *(_shown(getattr(getattr(plain, sensor), name)) for sensor in sensors))
         for name, meaning in _ENTRIES.items()
     ]
-    assert set(_ENTRIES) == {one.name for one in fields(SensorQuality)}
+    assert set(_ENTRIES) == {field.name for field in fields(SensorQuality)}
     origins = [
-        (f"`{one.name}`", _shown(getattr(plain, one.name)), one.metadata["origin"], one.metadata["spread"])
-        for one in numbers
+        (
+            f"`{number.name}`",
+            _shown(getattr(plain, number.name)),
+            number.metadata["origin"],
+            number.metadata["spread"],
+        )
+        for number in numbers
     ]
     return page(
         "Craft",
@@ -88,12 +94,11 @@ def craft_page() -> str:
     )
 
 
-def _ranges(hint: Any) -> str:
-    """The range of a number, or those of a list's numbers without repetition."""
-    if get_origin(hint) is Annotated:
-        limits = get_args(hint)[1]
-        return f"{limits.minimum:g} to {limits.maximum:g}"
-    return "; ".join(dict.fromkeys(_ranges(one) for one in get_args(hint)))
+def _ranges(hint: Hint) -> str:
+    """Return the range of a number, or those of a list's numbers without repetition."""
+    if hint.limits is not None:
+        return f"{hint.limits.minimum:g} to {hint.limits.maximum:g}"
+    return "; ".join(dict.fromkeys(map(_ranges, hint.parts)))
 
 
 def _shown(value: Any) -> str:

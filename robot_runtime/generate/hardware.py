@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from robot_runtime.contract.wiring import (
     BATTERY_MAX,
+    FINS,
     IMU_ADDRESS,
     PARTS,
     PRESSURE_ADDRESS,
@@ -17,13 +18,12 @@ from robot_runtime.contract.wiring import (
     find_wiring_faults,
 )
 from robot_runtime.generate.markdown import page, table
-from robot_runtime.generate.wiring_drawing import strap_rows
 
 SOURCE = "robot_runtime/contract/wiring.py"
 
 PARTS_INTRODUCTION = """\
 One robot. Limits are those of the data sheets, in V; pins that are not named bear no more than their part's
-supply. **No robot was built from this list yet** ([why](index.md)).
+supply. **No robot was built from this list yet** ([why](index.md)). What carries it all: [Hull](hull.md).
 
 ## What to buy
 """
@@ -107,23 +107,25 @@ input: **that puts 8.4 V on A3**. Take that resistor off, or choose another boar
 
 
 def parts_page() -> str:
-    """The whole text of docs/run/hardware/parts.md."""
-    shopping = table(("part", "how many", "what"), ((one.title, str(one.count), one.choice) for one in PARTS))
+    """Return the whole text of docs/run/hardware/parts.md."""
+    shopping = table(
+        ("part", "how many", "what"), ((part.title, str(part.count), part.choice) for part in PARTS)
+    )
     supplies = table(
         ("part", "works from", "to", "at most", f"at {BATTERY_MAX:g} V"),
-        (row for one in PARTS for row in _supply_row(one)),
+        (row for part in PARTS for row in _supply_row(part)),
     )
     inputs = table(
         ("part", "pins", "high from", "at most"),
         (
             (
-                one.title,
-                limits.prefix or ("others" if len(one.inputs) > 1 else "all"),
+                part.title,
+                limits.prefix or ("others" if len(part.inputs) > 1 else "all"),
                 _volts(limits.high_from),
                 _volts(limits.maximum),
             )
-            for one in PARTS
-            for limits in one.inputs
+            for part in PARTS
+            for limits in part.inputs
             if limits.high_from
         ),
     )
@@ -138,13 +140,19 @@ def parts_page() -> str:
 
 
 def wiring_page() -> str:
-    """The whole text of docs/run/hardware/wiring.md. Raises ValueError where a wire would damage a part."""
+    """Return the whole text of docs/run/hardware/wiring.md.
+
+    Raise ValueError where a wire would damage a part.
+    """
     faults = list(find_wiring_faults())
     if faults:
         raise ValueError("the wiring is wrong: " + "; ".join(faults))
     fins = table(
         ("fin", "place", "CSn of its encoder", "address of its H-bridge", "A1", "A0"),
-        strap_rows(),
+        (
+            (str(number), fin.position, fin.select, f"0x{fin.address:02x}", fin.a1.value, fin.a0.value)
+            for number, fin in enumerate(FINS)
+        ),
     )
     sensors = (
         f"\nOn the same bus: the IMU at 0x{IMU_ADDRESS:02x} (AD0 high) and the pressure sensor at "
@@ -162,7 +170,7 @@ def wiring_page() -> str:
 
 
 def chip_pin(pin: str) -> str:
-    """Returns the ATmega328P's name, such as PD7, of an Arduino's pin, such as D7."""
+    """Return the ATmega328P's name, such as PD7, of an Arduino's pin, such as D7."""
     kind, number = pin[0], int(pin[1:])
     if kind == "A":
         return f"PC{number}"
@@ -173,7 +181,9 @@ def _pin_rows() -> Iterator[tuple[str, ...]]:
     pins = [f"D{number}" for number in range(14)] + [f"A{number}" for number in range(6)]
     for pin in pins:
         wires = [
-            one for one in WIRES if ("board", pin) in ((one.source, one.source_pin), (one.sink, one.sink_pin))
+            wire
+            for wire in WIRES
+            if ("board", pin) in ((wire.source, wire.source_pin), (wire.sink, wire.sink_pin))
         ]
         if pin in SPARE_OUTPUTS:
             yield pin, chip_pin(pin), "output", "nothing", SPARE_OUTPUTS[pin]
@@ -184,7 +194,7 @@ def _pin_rows() -> Iterator[tuple[str, ...]]:
                 pin,
                 chip_pin(pin),
                 _direction(wires[0]),
-                ", ".join(_far_end(one) for one in wires),
+                ", ".join(_far_end(wire) for wire in wires),
                 _notes(wires),
             )
 
@@ -201,7 +211,7 @@ def _far_end(wire: Conductor) -> str:
 
 
 def _notes(wires: list[Conductor]) -> str:
-    return "; ".join(dict.fromkeys(text for one in wires for text in (one.through, one.pull) if text))
+    return "; ".join(dict.fromkeys(text for wire in wires for text in (wire.through, wire.pull) if text))
 
 
 def _wire_row(wire: Conductor) -> tuple[str, ...]:

@@ -1,20 +1,21 @@
 """JSON Schemas: of every packet and topic, and of the events that other programs are sent."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import fields
-from types import NoneType
-from typing import Any, Literal, get_args, get_origin, get_type_hints
+from typing import Any
 
+from robot_runtime.contract.hints import Form, Hint, read_fields
 from robot_runtime.contract.packets import DEFINITIONS_HASH, PACKETS
 from robot_runtime.contract.packets.layout import Record, Wire
 from robot_runtime.contract.published_events import PublishedEvent
 from robot_runtime.contract.topics import TOPICS
 
-PLAIN_TYPES = {str: "string", int: "integer", NoneType: "null"}
+PLAIN_TYPES: Mapping[Form, str] = {"text": "string", "whole number": "integer", "nothing": "null"}
 
 
 def schema() -> str:
-    """The whole text of packets.schema.json."""
+    """Return the whole text of packets.schema.json."""
     definitions = {cls.__name__: _object(cls) for cls in PACKETS.values()}
     records = [topic.record for topic in TOPICS]
     definitions |= {cls.__name__: _object(cls) for cls in records if issubclass(cls, Record)}
@@ -28,17 +29,17 @@ def schema() -> str:
 
 
 def event_schema() -> str:
-    """The whole text of published_events.schema.json."""
-    hints = get_type_hints(PublishedEvent)
+    """Return the whole text of published_events.schema.json."""
+    hints = read_fields(PublishedEvent)
     document = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "µ-CAT events",
         "description": PublishedEvent.__doc__,
         "type": "object",
         "properties": {
-            one.name: _plain(hints[one.name])
-            | ({"description": one.metadata["meaning"]} if one.metadata else {})
-            for one in fields(PublishedEvent)
+            field.name: _plain(hints[field.name])
+            | ({"description": field.metadata["meaning"]} if field.metadata else {})
+            for field in fields(PublishedEvent)
         },
         "required": [*hints],
         "additionalProperties": False,
@@ -46,10 +47,10 @@ def event_schema() -> str:
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
 
-def _plain(hint: Any) -> dict[str, Any]:
-    if get_origin(hint) is Literal:
-        return {"enum": [*get_args(hint)]}
-    types = [PLAIN_TYPES[one] for one in get_args(hint) or (hint,)]
+def _plain(hint: Hint) -> dict[str, Any]:
+    if hint.form == "choice":
+        return {"enum": [*hint.choices]}
+    types = [PLAIN_TYPES[part.form] for part in hint.parts or (hint,)]
     return {"type": types if len(types) > 1 else types[0]}
 
 
@@ -66,11 +67,11 @@ def _object(cls: type[Record]) -> dict[str, Any]:
 
 
 def _number(wire: Wire) -> dict[str, Any]:
-    one: dict[str, Any] = {"type": "integer" if wire.integral else "number"}
+    number: dict[str, Any] = {"type": "integer" if wire.integral else "number"}
     if wire.count > 1:
-        one = {"type": "array", "items": one, "minItems": wire.count, "maxItems": wire.count}
+        number = {"type": "array", "items": number, "minItems": wire.count, "maxItems": wire.count}
     if wire.meaning:
-        one["description"] = wire.meaning
+        number["description"] = wire.meaning
     if wire.unit:
-        one["unit"] = wire.unit
-    return one
+        number["unit"] = wire.unit
+    return number

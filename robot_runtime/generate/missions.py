@@ -5,6 +5,7 @@ import typing
 from collections.abc import Iterator
 from dataclasses import MISSING, Field, fields
 
+from robot_runtime.contract.hints import read_fields
 from robot_runtime.contract.missions import LEVELS_MAX, NODES_MAX
 from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.generate.markdown import page, table
@@ -49,7 +50,7 @@ heading or course. A [swim](#swim) without `yaw` leaves the heading alone.
 
 
 def missions_page() -> str:
-    """Returns the whole text of missions.md."""
+    """Return the whole text of missions.md."""
     leaves = [cls for cls in NODES.values() if issubclass(cls, Leaf)]
     branches = [cls for cls in NODES.values() if issubclass(cls, Branch)]
     parts = [
@@ -81,20 +82,20 @@ def _branch_row(cls: type[Branch]) -> tuple[str, ...]:
 
 
 def _field_rows(cls: type[MissionNode]) -> Iterator[tuple[str, ...]]:
-    hints = typing.get_type_hints(cls, include_extras=True)
-    for one in fields(cls):
-        if one.name != "note":
-            unit, meaning = one.metadata.get("unit", ""), one.metadata.get("description", "")
-            yield f"`{one.name}`", describe_type(hints[one.name]), unit, _default(one), meaning
+    hints = read_fields(cls)
+    for field in fields(cls):
+        if field.name != "note":
+            unit, meaning = field.metadata.get("unit", ""), field.metadata.get("description", "")
+            yield f"`{field.name}`", describe_type(hints[field.name]), unit, _default(field), meaning
 
 
-def _default(one: "Field[typing.Any]") -> str:
-    if one.default is MISSING:
+def _default(field: "Field[typing.Any]") -> str:
+    if field.default is MISSING:
         return "required"
-    if one.default is None:
+    if field.default is None:
         return ""
     # Texts and switches as in TOML, which here are those of JSON.
-    return f"{one.default:g}" if isinstance(one.default, float) else json.dumps(one.default)
+    return f"{field.default:g}" if isinstance(field.default, float) else json.dumps(field.default)
 
 
 def _meaning(cls: type[MissionNode]) -> str:

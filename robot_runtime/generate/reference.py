@@ -1,25 +1,25 @@
 """The pages of docs/reference that describe commands, topics, packets, faults and parameters."""
 
-import types
-import typing
 from collections.abc import Iterator
 from dataclasses import fields
+from functools import partial
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config
 from robot_runtime.contract.commands import COMMANDS, RobotCommand, StopCommand, http_commands, is_required
 from robot_runtime.contract.documents import Document, TunableParameter
-from robot_runtime.contract.limits import Range
+from robot_runtime.contract.hints import Hint, read_fields
 from robot_runtime.contract.packets import DEFINITIONS_HASH, ENUMERATIONS, FRAME_BYTES_MAX, PACKETS, Packet
 from robot_runtime.contract.packets.layout import C_TYPES, Record, Text, Wire
 from robot_runtime.contract.published_events import PublishedEvent
 from robot_runtime.contract.topics import TOPICS, AnyTopic, Kind
-from robot_runtime.control.faults import FAULTS, FaultRule
+from robot_runtime.control.faults import ROBOT_FAULTS, FaultRule
 from robot_runtime.control.transitions import TRANSITIONS
 from robot_runtime.core import Core
 from robot_runtime.generate.markdown import page, table
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox
+from robot_runtime.vision.node import VisionNode
 
 COMMANDS_SOURCE = "robot_runtime/contract/commands.py"
 COMMANDS_INTRODUCTION = """\
@@ -32,7 +32,6 @@ sent it, and can be undone. While an experiment measures a loop, commands that w
 The runtime checks every command again and answers why it refuses one. Between server and runtime a command
 travels as a Zenoh query to `command/NAME`.
 """
-_WORDS = {float: "number", int: "whole number", str: "text", bool: "true or false"}
 TOPICS_SOURCE = "robot_runtime/contract/topics.py"
 TOPICS_INTRODUCTION = """\
 A topic is a stream of samples that one process sends and the others receive over Zenoh; the page receives it
@@ -105,7 +104,7 @@ is its value at the start of the runtime.
 
 
 def commands_page() -> str:
-    """The whole text of commands.md."""
+    """Return the whole text of commands.md."""
     head = ("command", "HTTP", "needs", "scenarios", "history", "during an experiment")
     parts = [COMMANDS_INTRODUCTION, table(head, map(_command_row, COMMANDS.values()))]
     for name, cls in COMMANDS.items():
@@ -129,33 +128,35 @@ def _command_row(cls: type[RobotCommand]) -> tuple[str, ...]:
 
 
 def _command_fields(cls: type[RobotCommand]) -> Iterator[tuple[str, ...]]:
-    hints = typing.get_type_hints(cls, include_extras=True)
-    for one in fields(cls):
-        need = "" if is_required(one) else "optional"
-        yield f"`{one.name}`", describe_type(hints[one.name]), need, one.metadata.get("description", "")
+    hints = read_fields(cls)
+    for field in fields(cls):
+        need = "" if is_required(field) else "optional"
+        yield f"`{field.name}`", describe_type(hints[field.name]), need, field.metadata.get("description", "")
 
 
-def describe_type(hint: typing.Any) -> str:
-    """A field's type in words, with its limits."""
-    origin, inner = typing.get_origin(hint), typing.get_args(hint)
-    if origin is typing.Annotated:
-        span = next((one for one in inner[1:] if isinstance(one, Range)), None)
-        limits = f", {span.minimum:.4g} to {span.maximum:.4g}" if span else ""
-        return describe_type(inner[0]) + limits
-    if origin is typing.Literal:
-        return " or ".join(f"`{one}`" for one in inner)
-    if origin in (types.UnionType, typing.Union):
-        return " or ".join(dict.fromkeys(describe_type(one) for one in inner if one is not types.NoneType))
-    if origin in (list, tuple):
-        kinds = dict.fromkeys(describe_type(one) for one in inner if one is not Ellipsis)
-        return f"list of {' and '.join(kinds)}"
-    if origin is dict:
-        return f"{describe_type(inner[1])}, by name"
-    return _WORDS.get(hint) or f"`{hint.__name__}`"
+def describe_type(hint: Hint) -> str:
+    """Return a field's type in words, with its limits."""
+    limits = f", {hint.limits.minimum:.4g} to {hint.limits.maximum:.4g}" if hint.limits else ""
+    match hint.form:
+        case "choice":
+            text = " or ".join(f"`{choice}`" for choice in hint.choices)
+        case "union":
+            text = " or ".join(dict.fromkeys(map(describe_type, hint.members)))
+        case "list" | "tuple":
+            text = f"list of {' and '.join(dict.fromkeys(map(describe_type, hint.parts)))}"
+        case "table":
+            text = f"{describe_type(hint.parts[0])}, by name"
+        case "object" | "class":
+            text = f"`{hint.cls.__name__}`"
+        case "switch":
+            text = "true or false"
+        case form:
+            text = form
+    return text + limits
 
 
 def topics_page() -> str:
-    """The whole text of topics.md."""
+    """Return the whole text of topics.md."""
     head = ("topic", "number", "kind", "sender", "recorded", "", "meaning")
     parts = [TOPICS_INTRODUCTION, table(head, map(_topic_row, TOPICS))]
     for topic in TOPICS:
@@ -167,7 +168,7 @@ def topics_page() -> str:
 
 def _topic_row(topic: AnyTopic) -> tuple[str, ...]:
     name = f"`{topic.name}`" if topic.kind is Kind.PICTURE else f"[{topic.name}](#{topic.name})"
-    rules = [words for words, holds in (("newest only", topic.newest_only), ("lines", topic.lines)) if holds]
+    rules = [rule for rule, holds in (("newest only", topic.newest_only), ("lines", topic.lines)) if holds]
     return (
         name,
         str(topic.id),
@@ -185,20 +186,20 @@ def _topic_fields(record: type[Record] | type[Document] | type[PublishedEvent]) 
             count = f" × {wire.count}" if wire.count > 1 else ""
             yield f"`{name}`", f"number{count}", ", ".join(part for part in (wire.unit, wire.meaning) if part)
         return
-    hints = typing.get_type_hints(record, include_extras=True)
-    for one in fields(record):
-        yield f"`{one.name}`", describe_type(hints[one.name]), one.metadata.get("meaning", "")
+    hints = read_fields(record)
+    for field in fields(record):
+        yield f"`{field.name}`", describe_type(hints[field.name]), field.metadata.get("meaning", "")
 
 
 def events_page() -> str:
-    """The whole text of events.md."""
+    """Return the whole text of events.md."""
     rows = [*_topic_fields(PublishedEvent)]
     fields_table = table(("field", "type", "meaning"), rows)
     return page("Events", EVENTS_SOURCE, EVENTS_INTRODUCTION, "## Fields\n", fields_table, EVENTS_RULES)
 
 
 def packets_page() -> str:
-    """The whole text of packets.md."""
+    """Return the whole text of packets.md."""
     parts = [
         PACKETS_INTRODUCTION,
         table(("type", "packet", "bytes", "reliable"), map(_packet_row, PACKETS.values())),
@@ -211,7 +212,7 @@ def packets_page() -> str:
             parts.append(table(("field", "on the wire", "one count is", "meaning"), rows))
     parts.append("## Flags and codes\n")
     for enumeration in ENUMERATIONS:
-        members = ((str(one.value), f"`{one.name}`") for one in enumeration)
+        members = ((str(member.value), f"`{member.name}`") for member in enumeration)
         parts += [f"### {enumeration.__name__}\n", f"{enumeration.__doc__}\n"]
         parts.append(table(("value", "name"), members))
     return page("Packets", PACKETS_SOURCE, *parts)
@@ -234,7 +235,7 @@ def _text_row(name: str, text: Text) -> tuple[str, ...]:
 
 
 def faults_page() -> str:
-    """The whole text of faults.md."""
+    """Return the whole text of faults.md."""
     return page(
         "States and faults",
         FAULTS_SOURCE,
@@ -244,32 +245,38 @@ def faults_page() -> str:
         "## Transitions\n",
         table(
             ("from", "trigger", "to", "why"),
-            ((f"`{one.before}`", one.trigger, f"`{one.after}`", one.why) for one in TRANSITIONS),
+            (
+                (f"`{transition.before}`", transition.trigger, f"`{transition.after}`", transition.why)
+                for transition in TRANSITIONS
+            ),
         ),
         "## Faults\n",
         FAULTS_INTRODUCTION,
-        table(("fault", "within", "action", "alarm", "message", "consequences"), map(_fault_row, FAULTS)),
+        table(
+            ("fault", "within", "action", "alarm", "message", "consequences"),
+            (_fault_row(name, fault) for name, fault in ROBOT_FAULTS.items()),
+        ),
     )
 
 
 def _states() -> str:
-    """One row for each state, one column for each trigger, and the next state where they meet."""
-    states = list(dict.fromkeys(one.before for one in TRANSITIONS))
-    triggers = list(dict.fromkeys(one.trigger for one in TRANSITIONS))
-    after = {(one.before, one.trigger): one.after for one in TRANSITIONS}
-    rows = [(f"`{state}`", *(after.get((state, one), "") for one in triggers)) for state in states]
+    """Return one row for each state, one column for each trigger, and the next state where they meet."""
+    states = list(dict.fromkeys(transition.before for transition in TRANSITIONS))
+    triggers = list(dict.fromkeys(transition.trigger for transition in TRANSITIONS))
+    after = {(transition.before, transition.trigger): transition.after for transition in TRANSITIONS}
+    rows = [(f"`{state}`", *(after.get((state, trigger), "") for trigger in triggers)) for state in states]
     return table(("state", *triggers), rows)
 
 
-def _fault_row(fault: FaultRule) -> tuple[str, ...]:
+def _fault_row(name: str, fault: FaultRule) -> tuple[str, ...]:
     action = f"{fault.action}; alarm only in manual" if fault.automatic_only else fault.action
     message = f"{fault.what} {fault.cause} *{fault.remedy}*"
-    consequences = ", ".join(f"`{one}`" for one in fault.consequences)
-    return f"`{fault.name}`", f"{fault.limit:g} s", action, fault.severity, message, consequences
+    consequences = ", ".join(f"`{consequence}`" for consequence in fault.consequences)
+    return f"`{name}`", f"{fault.limit:g} s", action, fault.severity, message, consequences
 
 
 def parameters_page() -> str:
-    """The whole text of parameters.md."""
+    """Return the whole text of parameters.md."""
     rows = map(_parameter_row, _registered())
     return page(
         "Parameters",
@@ -283,20 +290,29 @@ def _registered() -> list[TunableParameter]:
     clock, config = SimulatedClock(), Config()
     line = LinkDriver("", config.link.baud, clock, 1, lambda _: None, lambda: None)
     outbox = Outbox(lambda *_: None, lambda _: False)
-    robot = Core(config, clock, "", line, outbox, watched=lambda _: False)
+    open_vision = partial(VisionNode, config.vision, clock)
+    robot = Core(
+        config,
+        clock,
+        "",
+        line,
+        outbox,
+        watched=lambda _: False,
+        open_vision=open_vision,
+    )
     return robot.parameters.listed()
 
 
-def _parameter_row(one: TunableParameter) -> tuple[str, ...]:
-    if one.type == "choice":
-        span = ", ".join(one.choices)
-    elif one.type == "switch":
+def _parameter_row(parameter: TunableParameter) -> tuple[str, ...]:
+    if parameter.type == "choice":
+        span = ", ".join(parameter.choices)
+    elif parameter.type == "switch":
         span = "on, off"
     else:
-        span = f"{one.minimum:g} to {one.maximum:g} {one.unit}".strip()
-    default = f"{one.default:g}" if isinstance(one.default, float) else str(one.default)
-    only = "" if one.while_armed else "; only while disarmed"
-    return f"`{one.name}`", span, default, f"{one.meaning}{only}"
+        span = f"{parameter.minimum:g} to {parameter.maximum:g} {parameter.unit}".strip()
+    default = f"{parameter.default:g}" if isinstance(parameter.default, float) else str(parameter.default)
+    only = "" if parameter.while_armed else "; only while disarmed"
+    return f"`{parameter.name}`", span, default, f"{parameter.meaning}{only}"
 
 
 def _one_line(cls: type) -> str:

@@ -1,13 +1,12 @@
 """The page's types: rows with their layouts, documents as interfaces."""
 
-import dataclasses
 import json
-import types
 import typing
+from collections.abc import Mapping
 from enum import IntEnum, IntFlag
 
 from robot_runtime.contract import documents
-from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
+from robot_runtime.contract.hints import Form, Hint, read_fields, read_hint
 from robot_runtime.contract.packets import DEFINITIONS_HASH, ENUMERATIONS
 from robot_runtime.contract.packets.layout import Record, Wire
 from robot_runtime.contract.topics import TIME, TOPICS, AnyTopic, Kind
@@ -42,10 +41,8 @@ export interface RowTopic {{
 
 
 def module() -> str:
-    """The whole text of topics.ts."""
+    """Return the whole text of topics.ts."""
     rows = [topic for topic in TOPICS if topic.kind is Kind.ROWS]
-    others = [topic for topic in TOPICS if topic.kind is not Kind.ROWS]
-    ids = "\n".join(f"  {topic.name}: {topic.id}," for topic in others)
     documents = {topic.name: topic.record for topic in TOPICS if topic.kind is Kind.DOCUMENTS}
     names = "\n".join(f"  {name}: {_name(record)};" for name, record in documents.items())
     parts = [
@@ -54,36 +51,17 @@ def module() -> str:
         "export const ROW_TOPICS = {\n" + "\n".join(_row_topic(topic) for topic in rows) + "\n} as const;\n",
         *(_row_interface(topic) for topic in rows),
         "export interface Rows {\n" + "\n".join(f"  {t.name}: {_row_name(t)};" for t in rows) + "\n}\n",
-        f"export const OTHER_TOPICS = {{\n{ids}\n}} as const;\n",
+        _numbers("DOCUMENT_TOPICS", Kind.DOCUMENTS),
+        _numbers("PICTURE_TOPICS", Kind.PICTURE),
         *(_interface(cls) for cls in _documents()),
         f"export interface Documents {{\n{names}\n}}\n",
     ]
     return "\n".join(parts)
 
 
-def commands_module() -> str:
-    """The whole text of commands.ts."""
-    parts = [
-        "// Written by `make generate` from robot_runtime/contract/commands.py. Do not edit.\n"
-        "import type { CalibrationValues, ColourRange } from './topics';\n",
-        *(_command(cls) for cls in http_commands()),
-        "/** The body of each command, by its name. */\nexport interface Commands {\n"
-        + "".join(f"  {cls.policy.name}: {cls.__name__};\n" for cls in http_commands())
-        + "}\n",
-    ]
-    return "\n".join(parts)
-
-
-def _command(cls: type[RobotCommand]) -> str:
-    hints = typing.get_type_hints(cls)
-    lines = []
-    for one in dataclasses.fields(cls):
-        note = one.metadata.get("description", "")
-        lines += [f"  /** {note} */"] if note else []
-        lines.append(f"  {one.name}{'' if is_required(one) else '?'}: {_type(hints[one.name])};")
-    if not lines:
-        return f"/** {cls.__doc__} */\nexport type {cls.__name__} = Record<string, never>;\n"
-    return f"/** {cls.__doc__} */\nexport interface {cls.__name__} {{\n" + "\n".join(lines) + "\n}\n"
+def _numbers(name: str, kind: Kind) -> str:
+    members = "\n".join(f"  {topic.name}: {topic.id}," for topic in TOPICS if topic.kind is kind)
+    return f"export const {name} = {{\n{members}\n}} as const;\n"
 
 
 def _enum(enum: type[IntEnum] | type[IntFlag]) -> str:
@@ -135,26 +113,25 @@ def _row_name(topic: AnyTopic) -> str:
 
 
 def _documents() -> list[type]:
-    """The documents, and before each one the dataclasses that it has as fields."""
-    found: dict[type, None] = {}
+    """Return the documents, and before each one the dataclasses that it has as fields."""
+    ordered: dict[type, None] = {}
 
-    def add(hint: typing.Any) -> None:
-        for part in typing.get_args(hint):
+    def add(hint: Hint) -> None:
+        for part in hint.parts:
             add(part)
-        if dataclasses.is_dataclass(hint) and isinstance(hint, type) and hint not in found:
-            for part in typing.get_type_hints(hint).values():
+        if hint.form == "object" and hint.cls not in ordered:
+            for part in read_fields(hint.cls).values():
                 add(part)
-            found[hint] = None
+            ordered[hint.cls] = None
 
     for topic in TOPICS:
         if topic.kind is Kind.DOCUMENTS:
-            add(topic.record)
-    return list(found)
+            add(read_hint(topic.record))
+    return list(ordered)
 
 
 def _interface(cls: type) -> str:
-    hints = typing.get_type_hints(cls)
-    lines = [f"  {field.name}: {_type(hints[field.name])};" for field in dataclasses.fields(cls)]
+    lines = [f"  {name}: {_type(hint)};" for name, hint in read_fields(cls).items()]
     return f"/** {cls.__doc__} */\nexport interface {_name(cls)} {{\n" + "\n".join(lines) + "\n}\n"
 
 
@@ -163,26 +140,31 @@ def _name(cls: type | None) -> str:
     return "RobotEvent" if cls is documents.Event else getattr(cls, "__name__", "")
 
 
-def _type(hint: typing.Any) -> str:
-    origin = typing.get_origin(hint)
-    if origin is typing.Literal:
-        return " | ".join(f"'{value}'" for value in typing.get_args(hint))
-    if origin is types.UnionType:
-        return " | ".join(dict.fromkeys(_type(part) for part in typing.get_args(hint)))
-    if origin is list:
-        return _array(typing.get_args(hint)[0])
-    if origin is tuple:
-        first, *others = typing.get_args(hint)
-        return _array(first) if Ellipsis in others else f"[{', '.join(map(_type, [first, *others]))}]"
-    if origin is dict:
-        return f"Record<string, {_type(typing.get_args(hint)[1])}>"
-    simple = {float: "number", int: "number", str: "string", bool: "boolean", types.NoneType: "null"}
-    return simple.get(hint) or _name(hint)
+PLAIN_TYPES: Mapping[Form, str] = {
+    "number": "number",
+    "whole number": "number",
+    "text": "string",
+    "switch": "boolean",
+    "nothing": "null",
+}
 
 
-def _array(hint: typing.Any) -> str:
-    one = _type(hint)
-    return f"({one})[]" if " | " in one else f"{one}[]"
+def _type(hint: Hint) -> str:
+    match hint.form:
+        case "choice":
+            return " | ".join(
+                f"'{value}'" if isinstance(value, str) else f"{value}" for value in hint.choices
+            )
+        case "union":
+            return " | ".join(dict.fromkeys(map(_type, hint.parts)))
+        case "list":
+            entry = _type(hint.parts[0])
+            return f"({entry})[]" if " | " in entry else f"{entry}[]"
+        case "tuple":
+            return f"[{', '.join(map(_type, hint.parts))}]"
+        case "table":
+            return f"Record<string, {_type(hint.parts[0])}>"
+    return PLAIN_TYPES.get(hint.form) or _name(hint.cls)
 
 
 def _quoted(text: str) -> str:

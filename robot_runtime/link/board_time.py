@@ -25,7 +25,7 @@ _AHEAD = 60_000_000  # µs by which a message may be newer than the arrival of t
 
 
 class BoardTime:
-    """Maps one boot's stamps (µs, 32 bits, wrapping) to host seconds."""
+    """The map of one boot's stamps (µs, 32 bits, wrapping) to host seconds."""
 
     def __init__(self) -> None:
         self.drift = 0.0
@@ -41,7 +41,7 @@ class BoardTime:
         self._window_least: tuple[float, float] | None = None
 
     def to_host(self, stamp: int, arrival: float) -> float:
-        """Host time, s, at which the board stamped telemetry that arrived at `arrival` (s)."""
+        """Return the host time, s, at which the board stamped telemetry that arrived at `arrival` (s)."""
         # Stamps of one frame may lie a little before the last one seen.
         self._unwrapped = self._unwrap(stamp, arrival, _WRAP // 2)
         self._arrival = arrival
@@ -54,7 +54,7 @@ class BoardTime:
         return self._mapped(board, self._window_least)
 
     def to_host_waiting(self, stamp: int, arrival: float) -> float:
-        """Host time, s, at which the board stamped a message that may have waited before it was sent.
+        """Return the host time, s, at which the board stamped a message that may have waited to be sent.
 
         It leaves the clock as it is. Before any telemetry nothing but the arrival is known.
         """
@@ -64,7 +64,7 @@ class BoardTime:
         return min(self._mapped(board, self._window_least), arrival)
 
     def _unwrap(self, stamp: int, arrival: float, ahead: int) -> int:
-        """The newest time (µs) of this stamp that is at most `ahead` µs later than the arrival shows."""
+        """Return this stamp's newest time (µs) that is at most `ahead` µs later than the arrival shows."""
         if self._unwrapped is None:
             return stamp
         latest = self._unwrapped + round((arrival - self._arrival) * 1e6) + ahead
@@ -78,7 +78,7 @@ class BoardTime:
         return board + self._fitted(board) + early
 
     def _slope(self, board: float) -> float:
-        """The drift between the window's least delayed packet and this one."""
+        """Return the drift between the window's least delayed packet and this one."""
         return self.drift * (board - self._window_least[0]) if self._window_least else 0.0
 
     def _fitted(self, board: float) -> float:
@@ -101,7 +101,7 @@ class BoardTime:
         self._fit(inliers)
 
     def _fit(self, points: list[tuple[float, float]]) -> None:
-        """Least squares, about the points' middle so that little is lost to rounding."""
+        """Fit by least squares, about the points' middle so that little is lost to rounding."""
         count = len(points)
         self._middle = sum(board for board, _ in points) / count
         mean = sum(offset for _, offset in points) / count

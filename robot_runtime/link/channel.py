@@ -35,11 +35,11 @@ wait: on a slow line they would fill it alone.
 """
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import islice
 
-from robot_runtime.contract.packets import NOT_READY, PACKETS, Acknowledge, Packet
+from robot_runtime.contract.packets import NOT_READY, Acknowledge
 from robot_runtime.link.framing import (
     MESSAGES_BYTES_MAX,
     OPEN,
@@ -112,13 +112,11 @@ class Channel:
         credit: int,
         key: int = OPEN,
         counters: Counters | None = None,
-        packets: Mapping[int, type[Packet]] = PACKETS,
     ) -> None:
         self.counters = counters or Counters()
         self.round_trip = RoundTrip(baud)
         self.credit = credit
         self.key = key
-        self._packets = packets
         self._second_per_byte = _BITS_PER_BYTE / baud
         self._line_free = float("-inf")
         self._waiting: deque[bytes] = deque()
@@ -147,7 +145,7 @@ class Channel:
         return bool(self._flights or self._waiting) or self._acknowledge_at < _NEVER
 
     def pending(self) -> list[bytes]:
-        """The reliable messages that are not acknowledged, oldest first."""
+        """Return the reliable messages that are not acknowledged, oldest first."""
         return [message for flight in self._flights for message in flight.messages] + list(self._waiting)
 
     def queue(self, message: bytes) -> None:
@@ -159,17 +157,17 @@ class Channel:
         self._latest[message[0]] = (message, now)
 
     def replace(self, old: bytes, new: bytes) -> None:
-        """Replaces every unacknowledged copy of a message by another of the same length."""
-        self._waiting = deque(new if one == old else one for one in self._waiting)
+        """Replace every unacknowledged copy of a message by another of the same length."""
+        self._waiting = deque(new if message == old else message for message in self._waiting)
         for flight in self._flights:
-            flight.messages = [new if one == old else one for one in flight.messages]
+            flight.messages = [new if message == old else message for message in flight.messages]
 
     def timeout(self) -> float:
-        """s after which an unacknowledged frame is sent again."""
+        """Return the time (s) after which an unacknowledged frame is sent again."""
         return self.round_trip.timeout(self._in_flight() * self._second_per_byte)
 
     def due(self) -> float:
-        """Returns the time of the next `poll` if nothing else happens; infinity for none."""
+        """Return the time of the next `poll` if nothing else happens; infinity for none."""
         if self._latest or self._may_send_new():
             return self._line_free
         if self._ready and any(flight.lost for flight in self._flights):
@@ -179,19 +177,21 @@ class Channel:
         return max(min(self._acknowledge_at, *timers, _NEVER), self._line_free)
 
     def receive(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
-        """Takes a frame of the session; returns the messages that it completes, in order."""
+        """Take a frame of the session; return the messages that it completes, in order."""
         self.counters.frames_received += 1
         held = next((payload[0] for type_, payload in frame.messages if type_ == Acknowledge.type), None)
         self._take_acknowledgement(frame.acknowledged, held or 0, now)
         if held is not None:
             self._take_readiness(held & NOT_READY == 0)
         accepted = self._take_reliable(frame, now) if frame.reliable else self._take_unreliable(frame)
-        messages = [one for each in accepted for one in each.messages if one[0] != Acknowledge.type]
+        messages = [
+            message for each in accepted for message in each.messages if message[0] != Acknowledge.type
+        ]
         self.counters.bytes_delivered += sum(len(payload) for _, payload in messages)
         return messages
 
     def poll(self, now: float) -> bytes:
-        """Returns the frame that is due, or no bytes. Call it again until it returns no bytes."""
+        """Return the frame that is due, or no bytes. Call it again until it returns no bytes."""
         if now < self._line_free:
             return b""
         reliable_first, self._reliable_next = self._reliable_next, False
@@ -208,11 +208,11 @@ class Channel:
         return data
 
     def forget_number(self) -> None:
-        """Takes the next unreliable frame whatever its number: the numbers may have gone round."""
+        """Accept the next unreliable frame with any number: the numbers may have gone round."""
         self._last_number = None
 
     def note_sent(self, size: int, now: float) -> None:
-        """Notes that a frame of this size was written to the line."""
+        """Note that a frame of this size was written to the line."""
         self._line_free = max(now, self._line_free) + size * self._second_per_byte
         self.counters.frames_sent += 1
         self.counters.bytes_sent += size
@@ -220,7 +220,7 @@ class Channel:
     # Sending
 
     def _patience(self) -> float:
-        """s to wait for news of a frame: less than the timeout where the line would idle."""
+        """Return the time (s) to wait for an acknowledgement: below the timeout where the line would idle."""
         if not self._ready:
             return _PROBE
         if self._waiting and self.round_trip.mean > 0 and not self._may_send_new():
@@ -241,7 +241,7 @@ class Channel:
         return in_flight == 0 or in_flight + size <= self.credit
 
     def _gather(self, take: bool) -> list[bytes]:
-        """As many of the waiting messages as fit a frame beside what is to be acknowledged; one at least."""
+        """Return the waiting messages that fit a frame beside its acknowledgements; one at least."""
         room = min(self._limit, MESSAGES_BYTES_MAX - len(self._acknowledge_held()))
         chosen: list[bytes] = []
         for message in self._waiting:
@@ -276,7 +276,7 @@ class Channel:
 
     def _send_lost(self, now: float) -> bytes:
         wait = self._patience()
-        for place, flight in enumerate(self._repeatable()):
+        for index, flight in enumerate(self._repeatable()):
             if flight.held or not ((flight.lost and self._ready) or now >= flight.sent + wait):
                 continue
             flight.sent, flight.order = now, self._next_order()
@@ -284,7 +284,7 @@ class Channel:
                 flight.first_order, flight.lost = flight.order, False
             self._limit = max(self._limit - _LIMIT_LOSS, _LIMIT_MIN)
             self.counters.frames_repeated += 1
-            return self._frame(place)
+            return self._frame(index)
         return b""
 
     def _send_new(self, now: float) -> bytes:
@@ -298,12 +298,12 @@ class Channel:
         self._order += 1
         return self._order
 
-    def _frame(self, place: int) -> bytes:
-        messages = b"".join(self._flights[place].messages)
+    def _frame(self, index: int) -> bytes:
+        messages = b"".join(self._flights[index].messages)
         held = self._acknowledge_held()
         if len(messages) + len(held) <= MESSAGES_BYTES_MAX:
             messages += held
-        number = (self._base + place) % RELIABLE_NUMBERS
+        number = (self._base + index) % RELIABLE_NUMBERS
         return assemble(messages, True, number, self._expected, self.key)
 
     def _acknowledge_held(self) -> bytes:
@@ -311,7 +311,7 @@ class Channel:
 
     def _acknowledge(self) -> bytes:
         ahead = ((number - self._expected - 1) % RELIABLE_NUMBERS for number in self._held)
-        return bytes([Acknowledge.type, sum(1 << place for place in ahead)])
+        return bytes([Acknowledge.type, sum(1 << index for index in ahead)])
 
     # Receiving
 
@@ -324,8 +324,8 @@ class Channel:
         self._base = expected
         if self._flights:
             self._flights[0].held = False
-        for place, flight in enumerate(self._flights):
-            if place > 0 and held >> (place - 1) & 1 and not flight.held:
+        for index, flight in enumerate(self._flights):
+            if index > 0 and held >> (index - 1) & 1 and not flight.held:
                 self._note_arrival(flight, now)
                 flight.held = True
         for flight in self._flights:

@@ -36,7 +36,7 @@ class Dissection:
 
 
 def dissect(frame: RecordedFrame) -> Dissection:
-    """Returns the contents of a frame; never raises."""
+    """Return the contents of a frame; never raises."""
     try:
         content = cobs.decode(frame.stuffed)
     except cobs.DecodeError:
@@ -69,7 +69,7 @@ def dissect(frame: RecordedFrame) -> Dissection:
 
 
 def _kinds(messages: bytes) -> tuple[list[str], bool]:
-    """Returns the names of these messages as far as known, and True if they fill the bytes exactly."""
+    """Return the names of these messages as far as known, and True if they fill the bytes exactly."""
     kinds: list[str] = []
     at = 0
     while at < len(messages):

@@ -55,14 +55,14 @@ class Frame(NamedTuple):
 
 
 def build(packets: Iterable[Packet], number: int, acknowledged: int, key: int = OPEN) -> bytes:
-    """The bytes of a frame. Raises LayoutError where the packets do not fit one."""
+    """Return the bytes of a frame. Raise LayoutError where the packets do not fit one."""
     some = list(packets)
     messages = b"".join(map(encode, some))
-    return assemble(messages, any(one.reliable for one in some), number, acknowledged, key)
+    return assemble(messages, any(packet.reliable for packet in some), number, acknowledged, key)
 
 
 def assemble(messages: bytes, reliable: bool, number: int, acknowledged: int, key: int) -> bytes:
-    """The same, of packets that are bytes already."""
+    """Return the bytes of a frame of packets that are bytes already."""
     room = MESSAGES_BYTES_MAX if reliable else MESSAGES_BYTES_MAX - 1
     if len(messages) > room:
         raise LayoutError(f"{len(messages)} bytes of packets do not fit a frame, which takes {room}")
@@ -76,7 +76,7 @@ def assemble(messages: bytes, reliable: bool, number: int, acknowledged: int, ke
 
 
 def _residue(key: int) -> int:
-    """The CRC of anything that is followed by its own CRC, combined with this key.
+    """Return the CRC of anything that is followed by its own CRC, combined with this key.
 
     A CRC is linear, so that what stands before has no part in it: this takes the CRC of nothing, which is 0.
     """
@@ -87,7 +87,7 @@ _OPEN_RESIDUE = _residue(OPEN)
 
 
 class Decoder:
-    """Cuts a stream of bytes into frames; what is not a valid frame is dropped and counted.
+    """Decoder of a stream of bytes into frames; invalid frames are dropped and counted.
 
     `key` is that of the session; `seen` is shown every frame's bytes, valid or not.
     """
@@ -115,7 +115,7 @@ class Decoder:
         self._residues = {_residue(OPEN), _residue(key)}
 
     def feed(self, data: bytes) -> Iterator[Frame]:
-        """The frames that these bytes complete, in order; another key counts from the next one on."""
+        """Yield the frames that these bytes complete, in order; another key counts from the next one on."""
         parts = (self._pending + data).split(b"\0")
         # Of what is too long for a frame the head is enough to tell; garbage must not fill the memory.
         self._pending = parts.pop()[:FRAME_BYTES_MAX]
@@ -131,7 +131,7 @@ class Decoder:
                 yield frame
 
     def _parse(self, stuffed: bytes) -> Frame | None:
-        """The frame between two zeros; None where it is damaged in any way."""
+        """Return the frame between two zeros; None where it is damaged in any way."""
         if len(stuffed) >= FRAME_BYTES_MAX:
             return None
         try:

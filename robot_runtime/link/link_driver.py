@@ -3,12 +3,14 @@
 import logging
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.link_statistics import LinkStatistics
-from robot_runtime.contract.packets import Hello, Packet, Status, Stop
+from robot_runtime.contract.packets import Hello, Packet, Stop
 from robot_runtime.contract.packets.layout import LayoutError
+from robot_runtime.link.dissection import dissect
 from robot_runtime.link.frame_ring import RecordedFrame
 from robot_runtime.link.session import BoardMessage, LinkSession, SessionStage
 from robot_runtime.places import UPLOAD_REMEDY
@@ -37,7 +39,7 @@ class LinkFailure:
 
 
 class LinkDriver:
-    """Drives the session with the board, from one opening of the line to the next.
+    """Driver of the session with the board, from one opening of the line to the next.
 
     `on_messages` gets every batch of messages, `on_change` is called when the connection was established or
     lost, both in the thread that calls `poll` and `receive`. `send`, `statistics` and `frames` may be called
@@ -83,7 +85,7 @@ class LinkDriver:
         return self.connected and not self._session.urgent
 
     def send(self, *packets: Packet) -> bool:
-        """Sends these packets; returns False when there is no connection.
+        """Send these packets; return False when there is no connection.
 
         Reliable ones arrive, once and in order, for as long as the connection lives. Of unreliable ones the
         newest of each type goes out once. STOP goes out at once, and also where no board has answered yet.
@@ -101,17 +103,31 @@ class LinkDriver:
         return True
 
     def statistics(self) -> LinkStatistics:
-        """Returns the counters since the line was opened."""
+        """Return the counters since the line was opened."""
         with self._writing:
             return self._session.statistics()
 
     def frames(self) -> list[RecordedFrame]:
-        """Returns the last frames in both directions since the line was opened, in order of time."""
+        """Return the last frames in both directions since the line was opened, in order of time."""
         with self._writing:
             return self._session.ring.frames()
 
+    def describe_frames(self) -> dict[str, Any]:
+        """Return the last frames, now and at the last failure, as a JSON object."""
+        fault = self.fault
+        return {
+            "time": self._clock.now(),
+            "frames": [asdict(dissect(frame)) for frame in self.frames()],
+            "fault": fault
+            and {
+                "time": fault.time,
+                "text": fault.text,
+                "frames": [asdict(dissect(frame)) for frame in fault.frames],
+            },
+        }
+
     def attach(self, write: Write) -> None:
-        """Starts a session on a line that `write` sends bytes to; `write` may raise PortError."""
+        """Start a session on a line that `write` sends bytes to; `write` may raise PortError."""
         with self._writing:
             # A new epoch each time: the board must not take this for the session before.
             self._epoch = (self._epoch + 1) & 0xFFFF
@@ -120,61 +136,59 @@ class LinkDriver:
         self._stage = None
 
     def detach(self) -> None:
-        """Ends the use of the line."""
+        """End the use of the line."""
         with self._writing:
             self._write = None
 
     def record_loss(self) -> None:
-        """Records the last frames when the port goes away while connected."""
+        """Record the last frames when the port goes away while connected."""
         if self._stage is SessionStage.ESTABLISHED:
             self._dump("the port went away")
 
     def poll(self) -> None:
-        """Updates the state and sends what is due. Raises PortError."""
+        """Update the state and send what is due. Raise PortError."""
         if self._session.stage is not self._stage:
             if self._stage is SessionStage.ESTABLISHED:
                 self._dump("the connection was lost")
             self._stage = self._session.stage
-        self.report(_words(self._stage, self._session))
+        self.report(_describe(self._stage, self._session))
         with self._writing:
             data = self._session.poll(self._clock.now())
             if data and self._write is not None:
                 self._write(data)
 
     def wait(self) -> float:
-        """Returns the s until `poll` must be called, unless bytes come."""
+        """Return the s until `poll` must be called, unless bytes come."""
         with self._writing:
             due = self._session.due()
         return max(min(due - self._clock.now(), _POLL), 0.0)
 
     def receive(self, data: bytes) -> None:
-        """Handles received bytes."""
+        """Handle received bytes."""
         with self._writing:
             discarded = self._session.counters.messages_discarded
             messages = self._session.receive(data, self._clock.now())
             discarded = self._session.counters.messages_discarded - discarded
         if discarded:
             log.warning("link: the board restarted; %d messages to it were not acknowledged", discarded)
-        for message in messages:
-            if message.type == Status.type:
-                self._see_faults(Status.from_bytes(message.payload).faults)
         if messages:
             try:
                 self._on_messages(messages)
             except LayoutError:
                 log.exception("a packet could not be understood")
 
+    def see_faults(self, faults: int) -> None:
+        """Keep the last frames where the board reports a new fault of a device."""
+        if faults & ~self._faults:
+            self._dump("the board reports a fault")
+        self._faults = faults
+
     def report(self, text: str) -> None:
-        """Reports the state if it has changed."""
+        """Report the state if it has changed."""
         if text != self.text:
             self.text = text
             log.info("link: %s", text)
             self._on_change()
-
-    def _see_faults(self, faults: int) -> None:
-        if faults & ~self._faults:
-            self._dump("the board reports a fault")
-        self._faults = faults
 
     def _dump(self, why: str) -> None:
         with self._writing:
@@ -184,7 +198,7 @@ class LinkDriver:
         log.info("link: %s; the last frames, bytes as on the line:\n%s", why, dump)
 
 
-def _words(stage: SessionStage, session: LinkSession) -> str:
+def _describe(stage: SessionStage, session: LinkSession) -> str:
     if stage is SessionStage.GREETING and session.garbled:
         return (
             "bytes come from the board, but no valid frame: its firmware may run at another speed than"

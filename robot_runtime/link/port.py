@@ -33,14 +33,14 @@ class Port:
         self.path = path
 
     def wait(self, seconds: float) -> bool:
-        """Wait for bytes; whether some came. Raises PortError where the port is gone."""
+        """Wait for bytes; return True if some came. Raise PortError where the port is gone."""
         try:
             return bool(select.select([self._serial.fileno()], [], [], max(seconds, 0.0))[0])
         except (OSError, ValueError) as problem:
             raise PortError(f"{self.path} was closed") from problem
 
     def read(self) -> bytes:
-        """Everything that has come. Raises PortError where the port is gone."""
+        """Return all received bytes. Raise PortError where the port is gone."""
         try:
             data = os.read(self._serial.fileno(), _READ_BYTES)
         except BlockingIOError:
@@ -54,13 +54,13 @@ class Port:
         return data
 
     def write(self, data: bytes) -> None:
-        """Hand all bytes to the line. Raises PortError where it does not take them in time."""
-        left = memoryview(data)
+        """Hand all bytes to the line. Raise PortError where it does not take them in time."""
+        unwritten = memoryview(data)
         end = time.monotonic() + _WRITE_SECONDS
         try:
-            while left:
+            while unwritten:
                 self._wait_for_room(end)
-                left = left[os.write(self._serial.fileno(), left) :]
+                unwritten = unwritten[os.write(self._serial.fileno(), unwritten) :]
         except (OSError, ValueError) as problem:
             raise PortError(f"{self.path} takes no more bytes: {problem}") from problem
 
@@ -70,7 +70,7 @@ class Port:
             raise TimeoutError(f"it stayed full for {_WRITE_SECONDS} s")
 
     def close(self) -> None:
-        """Give the port back; closing twice does nothing."""
+        """Close the port; closing twice does nothing."""
         self._serial.close()
 
     def __enter__(self) -> Self:
@@ -81,11 +81,11 @@ class Port:
 
 
 def list_ports(devices: Path = Path("/dev")) -> list[str]:
-    """The serial ports of this computer, each once: by the name that stays the same, where it has one."""
+    """Return the serial ports of this computer, each once, by its lasting name where it has one."""
     names: dict[Path, str] = {}
     for pattern in _PORTS:
-        for one in sorted(devices.glob(pattern)):
-            names.setdefault(one.resolve(), str(one))
+        for path in sorted(devices.glob(pattern)):
+            names.setdefault(path.resolve(), str(path))
     return list(names.values())
 
 

@@ -25,7 +25,7 @@ class RoundTrip:
         self._cap = _CAP + frames_airtime(2, baud)
 
     def measure(self, seconds: float) -> None:
-        """Take in the round trip of one frame."""
+        """Update the estimates by the round trip of one frame."""
         if not self._measured:
             self._measured = True
             self.mean, self.deviation = seconds, seconds / 2
@@ -34,6 +34,6 @@ class RoundTrip:
         self.mean += _MEAN_GAIN * (seconds - self.mean)
 
     def timeout(self, airtime: float) -> float:
-        """s to wait for an acknowledgement while bytes that take this long are in flight."""
+        """Return the time (s) to wait for an acknowledgement while bytes of this airtime are in flight."""
         wait = self.mean + 4 * self.deviation if self._measured else self._cap
         return min(wait, self._cap) + airtime

@@ -16,7 +16,7 @@ _RETRY = 0.25
 
 
 class SerialLink(LinkDriver):
-    """Keeps the serial link to the board alive; its callbacks run on its own thread."""
+    """The thread that keeps the serial link to the board alive; its callbacks run on that thread."""
 
     def __init__(
         self,

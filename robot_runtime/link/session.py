@@ -72,7 +72,7 @@ class BoardMessage(NamedTuple):
 
 
 def session_key(host_epoch: int, board_epoch: int) -> int:
-    """The key of the frames between these two: both epochs, mixed by MurmurHash3's finaliser.
+    """Return the key of the frames between these two: both epochs, mixed by MurmurHash3's finaliser.
 
     Like epochs differ in few bits, and bit errors must not make up for it. Mixing by a CRC would not do, as
     some bit errors have the same effect. It is `OPEN` for epochs of 0 alone, and no boot is numbered 0.
@@ -118,7 +118,7 @@ class LinkSession:
         return self._channel.urgent
 
     def receive(self, data: bytes, now: float) -> list[BoardMessage]:
-        """The messages that these bytes complete; greetings are handled here and passed on as well."""
+        """Return the messages that these bytes complete; greetings are handled here and passed on as well."""
         self._now = now
         self._bytes_received += len(data)
         messages: list[BoardMessage] = []
@@ -141,7 +141,7 @@ class LinkSession:
         return messages
 
     def poll(self, now: float) -> bytes:
-        """Returns the bytes to send now: a greeting, queued messages, a heartbeat, or none."""
+        """Return the bytes to send now: a greeting, queued messages, a heartbeat, or none."""
         self._measure_goodput(now)
         if self.stage is SessionStage.ESTABLISHED and now - self._last_frame_at > self._silence:
             self.stage = SessionStage.GREETING
@@ -157,14 +157,14 @@ class LinkSession:
         return data
 
     def due(self) -> float:
-        """Returns the time of the next `poll` if nothing else happens."""
+        """Return the time of the next `poll` if nothing else happens."""
         if self.stage is not SessionStage.ESTABLISHED:
             return self._greeted_at + _GREETING if self._greeted_at is not None else float("-inf")
         heartbeat = max(self._sent + _HEARTBEAT, self._channel.free_at)
         return min(self._last_frame_at + self._silence, heartbeat, self._channel.due())
 
     def send(self, packets: Iterable[Packet], now: float) -> bytes:
-        """Queues these packets; returns the bytes to send now. Without a session only STOP is accepted."""
+        """Queue these packets; return the bytes to send now. Without a session only STOP is accepted."""
         data = b""
         for packet in packets:
             if isinstance(packet, Stop):
@@ -175,7 +175,7 @@ class LinkSession:
         return data + self.poll(now) if self.stage is SessionStage.ESTABLISHED else data
 
     def statistics(self) -> LinkStatistics:
-        """The counters as a record."""
+        """Return the counters as a record."""
         trip = self._channel.round_trip
         return LinkStatistics(
             **asdict(self.counters),
@@ -226,7 +226,7 @@ class LinkSession:
 
     def _take_open(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
         self.counters.frames_received += 1
-        greetings = [one for one in frame.messages if one[0] == Hello.type]
+        greetings = [message for message in frame.messages if message[0] == Hello.type]
         for _, payload in greetings:
             self._greet(Hello.from_bytes(payload), now)
         if not greetings and self.stage is SessionStage.ESTABLISHED:

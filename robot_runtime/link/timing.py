@@ -19,17 +19,17 @@ _SAMPLES_IN_THREE = {packet: samples.in_three for packet, samples in _TELEMETRY}
 
 
 def airtime(size: int, baud: int) -> float:
-    """s that so many bytes take on the line."""
+    """Return the time (s) that so many bytes take on the line."""
     return size * _BITS_PER_BYTE / baud
 
 
 def frames_airtime(count: int, baud: int) -> float:
-    """s that so many frames of the largest size take on the line."""
+    """Return the time (s) that so many frames of the largest size take on the line."""
     return count * airtime(FRAME_BYTES_MAX, baud)
 
 
 def periods(baud: int) -> dict[type[Packet], float]:
-    """s between two packets of each kind of telemetry."""
+    """Return the time (s) between two packets of each kind of telemetry."""
     ticks, slots, samples = _slot_ticks(_SAMPLES_IN_TEN, 11, 10, baud), 10, _SAMPLES_IN_TEN
     if ticks > _SLOT_TICKS_MAX:
         ticks, slots, samples = _slot_ticks(_SAMPLES_IN_THREE, 3, 3, baud), 3, _SAMPLES_IN_THREE
@@ -37,12 +37,12 @@ def periods(baud: int) -> dict[type[Packet], float]:
 
 
 def stale_after(least: float, packet: type[Packet], baud: int) -> float:
-    """s after which a packet of this kind is missing, but `least` at least."""
+    """Return the age (s) at which a packet of this kind is missing; `least` at least."""
     return max(least, PERIODS_MISSED * periods(baud)[packet])
 
 
 def _slot_ticks(samples: dict[type[Packet], int], frames: int, slots: int, baud: int) -> int:
-    """The board's own sum, in its whole numbers: a quarter of the line is to spare."""
+    """Return a slot's ticks as the board computes them: in whole numbers, a quarter of the line spare."""
     size = sum(count * (1 + packet.layout.size) for packet, count in samples.items())
     bits = (size + frames * _FRAME_OVERHEAD) * _BITS_PER_BYTE * round(1 / TICK) * 5 // 4 // slots
     return -(-bits // baud)

@@ -20,7 +20,7 @@ class FirstOfBranch(Branch):
     """One step after the other until one succeeds. It fails when all failed."""
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return "First that succeeds of"
 
@@ -36,7 +36,7 @@ class WhileTrueBranch(Branch):
     least = 2
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return "While"
 
@@ -48,14 +48,14 @@ class AllBranch(Branch):
     least = 2
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return "All side by side"
 
 
 @mission_node("race")
 class RaceBranch(Branch):
-    """All steps side by side until the first ends, as which it ends; the others are stopped."""
+    """All steps side by side until the first ends. It ends with that step's status, and stops the others."""
 
     least = 2
 
@@ -67,7 +67,7 @@ class RepeatBranch(Branch):
     times: Times
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Repeat {self.times} times"
 
@@ -83,14 +83,14 @@ class UntilBranch(Branch):
     timeout: MissionSeconds = field(metadata={"description": "after which it fails", "unit": "s"})
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return "Repeat until"
 
 
 @mission_node("try")
 class TryBranch(Branch):
-    """Its steps in a sequence; it succeeds even when one fails, which ends them."""
+    """Its steps in a sequence; it succeeds even when a step fails, which ends them."""
 
 
 @mission_node("invert")
@@ -100,7 +100,7 @@ class InvertBranch(Branch):
     most = 1
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return "Not"
 
@@ -112,7 +112,7 @@ class TimeoutBranch(Branch):
     seconds: MissionSeconds = field(metadata={"description": "after which it fails", "unit": "s"})
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"At most {self.seconds:g} s"
 
@@ -125,6 +125,6 @@ class CallBranch(Branch):
     mission: str = field(metadata={"description": "its name"})
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Mission {self.mission}"

@@ -1,4 +1,4 @@
-"""The document of a mission: TOML, read strictly, with all its problems at once by the path of their step.
+"""The document of a mission: TOML, read strictly; it reports all problems at once, by path of their step.
 
 A step's path counts from 1 along the branches: "3.1.2" is the second step of the first step of the third.
 docs/reference/missions.md lists everything that a document may contain.
@@ -7,6 +7,7 @@ docs/reference/missions.md lists everything that a document may contain.
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields
+from math import ceil
 from typing import Any, Literal
 
 from robot_runtime.contract.limits import ConfigError
@@ -38,6 +39,7 @@ from robot_runtime.missions.branches import (
 )
 from robot_runtime.missions.leaf import INSTANT, NODES, Branch, Claim, Leaf, MissionNode
 from robot_runtime.missions.leaves.asking import IsLeaf
+from robot_runtime.missions.leaves.waiting import WaitUntilWetLeaf
 
 NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,59}")
 TITLE_MAX, DESCRIPTION_MAX = 100, 2000
@@ -56,7 +58,7 @@ class OwnLimits:
 
 @dataclass(frozen=True, slots=True)
 class MissionStep:
-    """A step with those below it; `called` is the name of the mission that it is the first step of."""
+    """A step with the steps below it; `called` is the name of the mission whose first step it is."""
 
     path: tuple[int, ...]
     node: MissionNode
@@ -64,12 +66,12 @@ class MissionStep:
     called: str = ""
 
     @property
-    def place(self) -> str:
+    def number(self) -> str:
         """The path as a person reads it; empty for the first step of a document."""
         return ".".join(map(str, self.path))
 
     def walk(self) -> Iterator["MissionStep"]:
-        """This step and all below it, in the order of the document."""
+        """Yield this step and all below it, in the order of the document."""
         yield self
         for step in self.steps:
             yield from step.walk()
@@ -78,14 +80,14 @@ class MissionStep:
     def steers(self) -> frozenset[Claim]:
         """The parts of the steering that this step or one below it takes."""
         own = self.node.steers if isinstance(self.node, Leaf) else frozenset()
-        return own.union(*(one.steers for one in self.steps))
+        return own.union(*(step.steers for step in self.steps))
 
     @property
     def longest(self) -> float:
-        """s that it takes at most."""
+        """The longest duration (s)."""
         if isinstance(self.node, Leaf):
             return self.node.longest
-        below = [one.longest for one in self.steps]
+        below = [step.longest for step in self.steps]
         match self.node:
             case UntilBranch(timeout=timeout):
                 return timeout + INSTANT
@@ -112,7 +114,7 @@ class MissionDocument:
 
     @property
     def longest(self) -> float:
-        """s that it takes at most, without pauses."""
+        """The longest duration (s), without pauses."""
         return self.root.longest
 
 
@@ -130,8 +132,8 @@ class _Head:
     def __post_init__(self) -> None:
         problems = []
         if not NAME.fullmatch(self.name):
-            words = f"is {self.name!r}; it is 1 to 60 small letters, digits, - and _, as it names a file"
-            problems.append(TOP.field("name").problem(words))
+            text = f"is {self.name!r}; it is 1 to 60 small letters, digits, - and _, as it names a file"
+            problems.append(TOP.field("name").problem(text))
         if len(self.title) > TITLE_MAX:
             problems.append(TOP.field("title").problem(f"has more than {TITLE_MAX} characters"))
         if len(self.description) > DESCRIPTION_MAX:
@@ -143,7 +145,7 @@ class _Head:
 def read_mission(
     text: str, library: Mapping[str, str] | None = None, limits: MissionLimits = NO_LIMITS
 ) -> MissionDocument:
-    """The mission that a TOML text says. Raises ConfigError with all problems.
+    """Return the mission in a TOML text. Raise ConfigError with all problems.
 
     `library` has the texts of the missions that it may call, by name; `limits` are the robot's.
     """
@@ -151,8 +153,8 @@ def read_mission(
 
 
 def called_by(text: str, library: Mapping[str, str]) -> dict[str, str]:
-    """The texts of the missions that this one calls, and those that they call, as far as there are any."""
-    found: dict[str, str] = {}
+    """Return the texts of the existing missions that this one calls, directly or through others."""
+    called: dict[str, str] = {}
     waiting = [text]
     while waiting:
         try:
@@ -160,10 +162,10 @@ def called_by(text: str, library: Mapping[str, str]) -> dict[str, str]:
         except TomlError:
             continue
         for name in _calls(table.get("mission"), 0):
-            if name in library and name not in found:
-                found[name] = library[name]
+            if name in library and name not in called:
+                called[name] = library[name]
                 waiting.append(library[name])
-    return found
+    return called
 
 
 def _calls(step: Any, level: int) -> Iterator[str]:
@@ -172,8 +174,8 @@ def _calls(step: Any, level: int) -> Iterator[str]:
     if step.get("do") == CallBranch.do and isinstance(step.get("mission"), str):
         yield step["mission"]
     steps = step.get("steps")
-    for one in steps if isinstance(steps, list) else ():
-        yield from _calls(one, level + 1)
+    for step in steps if isinstance(steps, list) else ():
+        yield from _calls(step, level + 1)
 
 
 class _Reading:
@@ -187,7 +189,7 @@ class _Reading:
         self._calling: list[str] = []
 
     def read(self, text: str) -> MissionDocument:
-        """The document. Raises ConfigError with all problems."""
+        """Return the document. Raise ConfigError with all problems."""
         try:
             table = read_toml(text)
         except TomlError as problem:
@@ -199,8 +201,8 @@ class _Reading:
         if not isinstance(trial, dict):
             self._problems.append(TOP.field("trial").problem("must be a table"))
         if self._nodes > NODES_MAX:
-            words = f"has more than {NODES_MAX} steps, with those of the missions that it calls"
-            self._problems.append(_ROOT.problem(words))
+            text = f"has more than {NODES_MAX} steps, with those of the missions that it calls"
+            self._problems.append(_ROOT.problem(text))
         if root is not None and not self._problems:
             self._check_limits(root)
         if head is None or root is None or self._problems:
@@ -215,7 +217,7 @@ class _Reading:
         )
 
     def _read_head(self, table: Mapping[str, Any]) -> _Head | None:
-        """The head, whose limits count from now on."""
+        """Return the head, whose limits count from now on."""
         known = {name: value for name, value in table.items() if name not in ("limits", "mission", "trial")}
         head, limits = None, OwnLimits()
         try:
@@ -224,7 +226,7 @@ class _Reading:
             own = {"alone": head.alone, "pause": head.pause}
             self._tighten({name: own[name] for name in own if name in table or not self._is_called})
         except ConfigError as problem:
-            self._problems += [_name_all(one) for one in problem.problems]
+            self._problems += [_name_all(problem) for problem in problem.problems]
         try:
             limits = read_value(OwnLimits, table.get("limits", {}), TOP.field("limits"))
         except ConfigError as problem:
@@ -233,7 +235,7 @@ class _Reading:
         return head
 
     def _tighten(self, own: Mapping[str, float | None]) -> None:
-        """Applies a document's limits; one that is looser than the robot's is a problem."""
+        """Apply a document's limits; one that is looser than the robot's is a problem."""
         values = asdict(self._limits)
         for name, value in own.items():
             if value is None:
@@ -244,8 +246,9 @@ class _Reading:
             if name == "unwatched":
                 looser = robot > 0 and not 0 < value <= robot
             if looser and not self._is_called:
-                words = f"is {value:g} {unit}; robot.toml allows {robot:g} {unit} ([missions] {name})"
-                self._problems.append(entry.problem(words))
+                where = "[missions] depth, [control] deepest" if name == "depth" else f"[missions] {name}"
+                text = f"is {value:g} {unit}; robot.toml allows {robot:g} {unit} ({where})"
+                self._problems.append(entry.problem(text))
             elif not looser and not (name == "unwatched" and value == 0):
                 # 0: any time, which tightens nothing.
                 values[name] = value
@@ -300,7 +303,7 @@ class _Reading:
         where: DocumentEntry,
         level: int,
     ) -> tuple[MissionStep, ...] | None:
-        """The steps below; None where they cannot be used."""
+        """Return the steps below this one; None where they cannot be used."""
         if not issubclass(cls, Branch) or cls is CallBranch:
             if "steps" in table:
                 self._problems.append(where.field("steps").problem(f"is not known here: {cls.do} has none"))
@@ -318,14 +321,14 @@ class _Reading:
             self._problems.append(entry.problem(f"has {len(steps)}; {cls.do} needs {span}"))
             return None
         read = []
-        for index, one in enumerate(steps):
+        for index, table in enumerate(steps):
             below = (*path, index + 1)
             name = f"step {'.'.join(map(str, below))}"
-            read.append(self._read_step(one, below, DocumentEntry(name, (*entry.path, index)), level + 1))
+            read.append(self._read_step(table, below, DocumentEntry(name, (*entry.path, index)), level + 1))
             if self._nodes > NODES_MAX:
                 return None
-        found = tuple(one for one in read if one is not None)
-        return found if len(found) == len(steps) else None
+        valid = tuple(step for step in read if step is not None)
+        return valid if len(valid) == len(steps) else None
 
     def _read_called(
         self, name: str, path: tuple[int, ...], where: DocumentEntry, level: int
@@ -374,62 +377,74 @@ class _Reading:
 
     def _check_claims(self, step: MissionStep, where: DocumentEntry) -> None:
         claimed: dict[Claim, str] = {}
-        for one in step.steps:
-            for claim in sorted(one.steers):
+        for child in step.steps:
+            for claim in sorted(child.steers):
                 if claim in claimed:
-                    words = (
-                        f"steps {claimed[claim]} and {one.place} would both steer the {claim}, side by side"
-                    )
-                    self._problems.append(where.sentence(words))
-                claimed.setdefault(claim, one.place)
+                    both = f"steps {claimed[claim]} and {child.number}"
+                    text = f"{both} would both steer the {claim}, side by side"
+                    self._problems.append(where.sentence(text))
+                claimed.setdefault(claim, child.number)
 
     def _check_limits(self, root: MissionStep) -> None:
         limits = self._limits
-        self._problems += [entry.problem(words) for entry, words in _find_deep(root, limits.depth)]
+        self._problems += [entry.problem(text) for entry, text in _find_deep(root, limits.depth)]
         if root.longest > limits.time:
-            words = (
+            text = (
                 f"may take {root.longest:.0f} s, and limits.time is {limits.time:g} s; "
                 "shorten its timeouts and repetitions"
             )
-            self._problems.append(_ROOT.problem(words))
+            self._problems.append(_ROOT.problem(text))
+        self._check_unwatched(root)
+
+    def _check_unwatched(self, root: MissionStep) -> None:
+        """Check that a mission that begins on immersion may reach its end without a page."""
+        waits = [step.node.longest for step in root.walk() if isinstance(step.node, WaitUntilWetLeaf)]
+        dive, limit = root.longest - sum(waits), self._limits.unwatched
+        if waits and 0 < limit < dive:
+            text = (
+                f"is {limit:g} s: that long after the last page it would come up, and once it is wet the "
+                f"mission may take {ceil(dive)} s. "
+                "Allow so much, here and in robot.toml ([missions] unwatched)"
+            )
+            self._problems.append(TOP.field("limits").key("unwatched").problem(text))
 
 
 def _find_deep(step: MissionStep, limit: float, base: int = 0) -> Iterator[tuple[DocumentEntry, str]]:
-    """The entries of steps that go deeper than this (m), with the words; `base` is their mission's level.
+    """Yield the entries of steps deeper than this (m), with the text; `base` is their mission's level.
 
-    What a called mission does is a problem of the call: no other step of it is in this document.
+    A problem of a called mission is a problem of the call, the only step of it in this document.
     """
     path = step.path[base:]
     name = f"step {'.'.join(map(str, path))}" if path else "mission"
     entry = DocumentEntry(name, _entry_path(path))
     if isinstance(step.node, Leaf) and step.node.deepest > limit:
         yield entry, f"goes to {step.node.deepest:g} m, and the depth is limited to {limit:g} m"
-    for one in step.steps:
-        if not one.called:
-            yield from _find_deep(one, limit, base)
+    for child in step.steps:
+        if not child.called:
+            yield from _find_deep(child, limit, base)
             continue
-        for below, words in _find_deep(one, limit, len(one.path)):
-            yield entry.field("mission"), f"is {one.called!r}: {below.problem(words).text}"
+        for below, text in _find_deep(child, limit, len(child.path)):
+            yield entry.field("mission"), f"is {child.called!r}: {below.problem(text).text}"
 
 
 def is_condition(step: MissionStep) -> bool:
-    """True for a step that only asks: `is`, or an `invert` of one."""
+    """Return True for a step that only asks: `is`, or an `invert` of one."""
     if isinstance(step.node, InvertBranch):
         return is_condition(step.steps[0])
     return isinstance(step.node, IsLeaf)
 
 
 def _entry_path(path: tuple[int, ...]) -> tuple[str | int, ...]:
-    return ("mission", *(part for one in path for part in ("steps", one - 1)))
+    return ("mission", *(part for index in path for part in ("steps", index - 1)))
 
 
 def _name_all(problem: EntryProblem) -> EntryProblem:
-    """Names the tables of the steps, too, among what is known."""
+    """Return the problem with all known names: the tables of steps are read apart."""
     if "known are" not in problem.words:
         return problem
-    known = ", ".join([one.name for one in fields(_Head)] + ["limits", "mission", "trial"])
-    words = f"is not known here; known are {known}" if len(problem.path) == 1 else problem.words
-    return EntryProblem(problem.path, problem.text.replace(problem.words, words), words)
+    known = ", ".join([field.name for field in fields(_Head)] + ["limits", "mission", "trial"])
+    text = f"is not known here; known are {known}" if len(problem.path) == 1 else problem.words
+    return EntryProblem(problem.path, problem.text.replace(problem.words, text), text)
 
 
 def _short(value: object) -> str:

@@ -16,7 +16,7 @@ NOTE_MAX = 200
 
 
 class MissionRobot(Protocol):
-    """The robot as a leaf sees it. Depths in m, angles in rad, times in s."""
+    """The robot as seen by a leaf. Depths in m, angles in rad, times in s."""
 
     @property
     def now(self) -> float:
@@ -31,8 +31,12 @@ class MissionRobot(Protocol):
         """The newest heading, -π to π."""
 
     @property
+    def way(self) -> tuple[float, float]:
+        """The way since arming by dead reckoning, m along headings 0 and 90°: an estimate."""
+
+    @property
     def battery(self) -> float | None:
-        """V; None where it is not measured."""
+        """The battery's voltage, V; None where it is not measured."""
 
     @property
     def light(self) -> bool:
@@ -47,45 +51,51 @@ class MissionRobot(Protocol):
         """The heading that the mission holds now; None where it holds none."""
 
     def sees(self, what: str) -> bool:
-        """True if a fresh picture shows the colour or the marker ("marker 7"), or for "light" as `light`."""
+        """Return True if a fresh picture shows the colour or the marker ("marker 7"); "light" is `light`."""
 
     def hold_depth(self, depth: float) -> None:
-        """Holds this depth from now on."""
+        """Hold this depth from now on."""
 
     def hold_heading(self, heading: float | None) -> None:
-        """Holds this heading from now on, or none."""
+        """Hold this heading from now on, or none."""
 
     def swim(self, x: float, yaw: float) -> None:
-        """Sets the course, shares of the full command; it expires, so that each tick must set it anew."""
+        """Set the course, shares of the full command; it expires, so that each tick must set it anew."""
 
     def swim_to_light(self) -> None:
-        """Sets the course to the light that the detectors see, as `swim` does."""
+        """Set the course to the light that the detectors see, as `swim` does."""
+
+    def keep_still(self) -> None:
+        """Rest the fins, so that it holds no depth and floats; each tick must say it anew."""
+
+    def count_down(self, remaining: float) -> None:
+        """Keep still, and show the remaining time (s) by the LED; each tick must say it anew."""
 
     def set_parameter(self, name: str, value: ParameterValue) -> None:
-        """Sets a parameter; the mission's end puts it back. Raises RefusedError."""
+        """Set a parameter; the mission's end puts it back. Raise RefusedError."""
 
     def is_pending(self, name: str) -> bool:
-        """True until the board confirms a parameter."""
+        """Return True until the board confirms a parameter."""
 
     def mark(self, text: str) -> None:
-        """Puts a marker into the session."""
+        """Put a marker into the session."""
 
     def surface(self) -> None:
-        """Ends the mission as a success after this tick; the fins stop, and the robot rises."""
+        """End the mission as a success after this tick; the fins stop, and the robot rises."""
 
 
 class MissionStart(Protocol):
-    """The robot as a leaf may ask it before the start."""
+    """The robot's answers to a leaf before the start."""
 
     def check_parameter(self, name: str, value: object) -> str:
-        """The reason why a mission cannot set this value; empty if it can."""
+        """Return the reason why a mission cannot set this value; empty if it can."""
 
     def check_sight(self, what: str) -> str:
-        """The reason why the camera cannot see this; empty if it can."""
+        """Return the reason why the camera cannot see this; empty if it can."""
 
     @property
     def battery(self) -> float | None:
-        """V; None where it is not measured."""
+        """The battery's voltage, V; None where it is not measured."""
 
 
 @dataclass(kw_only=True)
@@ -101,7 +111,7 @@ class MissionNode:
             raise ValueError(f"note has more than {NOTE_MAX} characters")
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return self.do.replace("_", " ").capitalize()
 
@@ -110,7 +120,7 @@ class Leaf(MissionNode, ABC):
     """A step without steps below it. One instance belongs to one run of a mission.
 
     `begin` comes at its start, `tick` at each control tick until it ends, `resume` after a pause. It may end
-    at any time without a word: what it steers and sets is taken back by the mission.
+    at any time without notice: the mission takes back what it steers and sets.
     """
 
     claims: ClassVar[frozenset[Claim]] = frozenset()
@@ -118,35 +128,35 @@ class Leaf(MissionNode, ABC):
 
     @property
     def steers(self) -> frozenset[Claim]:
-        """Those that this one takes."""
+        """The parts of the steering that this leaf takes."""
         return self.claims
 
     @property
     def longest(self) -> float:
-        """s that the step takes at most; its `timeout` or `seconds` where it has one, and a tick."""
-        for one in fields(self):
-            if one.name in ("timeout", "seconds"):
-                return float(getattr(self, one.name)) + INSTANT
+        """The longest duration (s) of the step: its `timeout` or `seconds` where it has one, and a tick."""
+        for entry in fields(self):
+            if entry.name in ("timeout", "seconds"):
+                return float(getattr(self, entry.name)) + INSTANT
         return INSTANT
 
     @property
     def deepest(self) -> float:
-        """m; the greatest depth that the step asks for."""
+        """The greatest depth (m) that the step asks for."""
         return 0.0
 
     def check(self, robot: MissionStart) -> str:  # noqa: ARG002 - most leaves need nothing
-        """The reason why this robot cannot do the step; empty if it can."""
+        """Return the reason why this robot cannot do the step; empty if it can."""
         return ""
 
     def begin(self, robot: MissionRobot) -> None:
-        """Starts the step."""
+        """Start the step."""
 
     def resume(self, robot: MissionRobot) -> None:
-        """Goes on after a pause, in which somebody may have moved the robot."""
+        """Go on after a pause, in which somebody may have moved the robot."""
 
     @abstractmethod
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Goes on: False. The step is done: True. It failed: a text with the reason."""
+        """Return False to go on, True when the step is done, and the reason as text when it failed."""
 
 
 class Branch(MissionNode):
@@ -164,7 +174,7 @@ NODES: Declarations[str, type[MissionNode]] = Declarations("the name of a missio
 
 @dataclass_transform(kw_only_default=True, field_specifiers=(field,))
 def mission_node(do: str) -> Callable[[type[N]], type[N]]:
-    """Makes a class a leaf or a branch of documents under this name."""
+    """Make a class a leaf or a branch of documents under this name."""
 
     def declare(cls: type[N]) -> type[N]:
         made = dataclass(kw_only=True)(cls)

@@ -4,11 +4,12 @@ from functools import cache
 from importlib.resources import files
 
 SHIPPED = (
+    "first_dive",
     "two_depths",
     "follow_colour",
     "search_marker",
     "light_and_back",
-    "pool_survey",
+    "three_lanes",
     "endurance",
 )
 """The shipped missions, the simplest first."""
@@ -16,6 +17,6 @@ SHIPPED = (
 
 @cache
 def shipped_missions() -> dict[str, str]:
-    """Returns their texts by name."""
+    """Return the texts of the shipped missions by name."""
     folder = files("robot_runtime.missions") / "shipped"
     return {name: (folder / f"{name}.toml").read_text(encoding="utf-8") for name in SHIPPED}

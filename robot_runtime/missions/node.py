@@ -7,15 +7,21 @@ ends, sets parameters through the registry, and says STOP. Supervisor and board 
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Event, Mission, Mode, ParameterValue, Severity
 from robot_runtime.contract.limits import ConfigError
-from robot_runtime.contract.missions import MissionLimits, MissionPhase
+from robot_runtime.contract.missions import WET_DEPTH, MissionLimits, MissionPhase
+from robot_runtime.contract.topics import MISSION
+from robot_runtime.control.node import ControlNode
+from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.errors import RefusedError
 from robot_runtime.missions.senses import MissionSenses
 from robot_runtime.parameters.registry import Registry
+from robot_runtime.transport.bus import Bus
+from robot_runtime.vision.interface import Vision
 
 if TYPE_CHECKING:
     from robot_runtime.missions.document import MissionDocument
@@ -29,6 +35,8 @@ BATTERY_SAG = 2.0
 """s for which the battery may be under its limit, as it sags under load."""
 LATE = 1.0
 """s that a tick may take of the mission's clock at most; a longer one stops the robot anyway."""
+SURFACED_FOR = 2.0
+"""s at the surface after which a mission's robot counts as surfaced."""
 _SWIMS_IN: tuple[Mode, ...] = ("automatic", "manual")
 """The modes in which a mission runs or is paused; any other one ends it."""
 _ERROR = "An error in the software ended it; see the runtime's log."
@@ -37,6 +45,16 @@ _ENDS: dict[Mode, str] = {
     "failsafe": "The robot was stopped for a fault; see its alarms.",
     "test": "The fins are checked.",
 }
+
+
+@dataclass(slots=True)
+class _Ascent:
+    """A mission that has ended and whose robot rises; `since`: it is at the surface since then (s)."""
+
+    run: "MissionRun"
+    phase: MissionPhase
+    text: str
+    since: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +66,7 @@ class LoadedMission:
 
 
 class MissionRunner:
-    """Runs missions. `tick` belongs to the control loop, whose lock it holds; the rest to any thread.
+    """Runner of missions. `tick` belongs to the control loop, whose lock it holds; the rest to any thread.
 
     `stop` stops the robot. `on_mission` takes each document, `on_event` each event.
     """
@@ -72,6 +90,7 @@ class MissionRunner:
         self._on_event = on_event
         self._loaded: LoadedMission | None = None
         self._run: MissionRun | None = None
+        self._ascent: _Ascent | None = None
         self._ended_in: Mode | None = None
         """The mode that ended it, which the next tick sees to, whatever followed."""
         self._number = 0
@@ -89,19 +108,19 @@ class MissionRunner:
         return self._run is not None or self._loaded is not None
 
     def require_none(self) -> None:
-        """Raises RefusedError while a mission runs: nothing else may tune the robot meanwhile."""
+        """Raise RefusedError while a mission runs: nothing else may tune the robot meanwhile."""
         if self.active:
             raise RefusedError("A mission runs. Wait for its end, or end it first.")
 
     def see_pages(self, count: int) -> None:
-        """Takes the number of operators' pages."""
+        """Take the number of operators' pages."""
         if count > 0:
             self._watched = self._clock.now()
 
     def load(self, text: str, library: dict[str, str]) -> LoadedMission:
-        """Reads a mission and asks its steps whether this robot can do them.
+        """Read a mission and ask its steps whether this robot can do them.
 
-        Raises RefusedError with all reasons.
+        Raise RefusedError with all reasons.
         """
         # With the tree's library, which takes its time on a small Pi.
         from robot_runtime.missions.checks import check_start
@@ -117,11 +136,11 @@ class MissionRunner:
         return LoadedMission(document, text)
 
     def prepare(self, mission: LoadedMission) -> None:
-        """Has the mission begin with the next tick: the robot has been armed for it. Never blocks."""
+        """Have the mission begin with the next tick: the robot has been armed for it. It never blocks."""
         self._loaded, self._ended_in = mission, None
 
     def change_mode(self, mode: Mode) -> None:
-        """Takes each new mode of the robot. Never blocks, because a STOP takes this way, too.
+        """Take each new mode of the robot. Never blocks, because a STOP takes this way, too.
 
         A mode that ends a mission ends it for good, also one that has not begun yet, and also where the robot
         is armed again before the next tick.
@@ -130,26 +149,27 @@ class MissionRunner:
             self._ended_in = mode
 
     def pause(self, on: bool) -> None:
-        """Pauses, or goes on. Raises RefusedError where no mission runs."""
+        """Pause, or go on. Raise RefusedError where no mission runs."""
         self._require()
         self._held = on
 
     def skip(self) -> None:
-        """Ends the running steps as a success. Raises RefusedError where no mission runs."""
+        """End the running steps as a success. Raise RefusedError where no mission runs."""
         self._require().skip()
 
     def end(self, why: str) -> None:
-        """Ends the mission with the next tick. Raises RefusedError where no mission runs."""
+        """End the mission with the next tick. Raise RefusedError where no mission runs."""
         self._require()
         self._ending = why
 
     def tick(self, mode: Mode) -> None:
-        """Advances the mission in this mode of the robot; begins a prepared one."""
+        """Advance the mission in this mode of the robot; begin a prepared one."""
         mode = self._ended_in or mode
         if self._loaded is not None and (mode in _SWIMS_IN or self._ended_in is not None):
             self._begin(self._loaded)
         run = self._run
         if run is None:
+            self._watch_ascent()
             return
         try:
             self._advance(run, mode)
@@ -178,7 +198,7 @@ class MissionRunner:
             self._parameters,
             self._on_event,
         )
-        self._run, self._loaded = run, None
+        self._run, self._loaded, self._ascent = run, None, None
         self._say(f"Mission “{mission.document.title}” begins.")
         self._report(run, "running", "", whole=True)
 
@@ -210,8 +230,8 @@ class MissionRunner:
         self._was_paused = True
         run.paused += seconds
         if run.paused > run.document.limits.pause:
-            words = f"It was paused for longer than {run.document.limits.pause:g} s."
-            self._finish(run, "failed", words, mode)
+            text = f"It was paused for longer than {run.document.limits.pause:g} s."
+            self._finish(run, "failed", text, mode)
             return
         if mode == "manual":
             run.release()
@@ -236,9 +256,9 @@ class MissionRunner:
         return ""
 
     def _finish(self, run: "MissionRun", phase: MissionPhase, text: str, mode: Mode) -> None:
-        left: dict[str, ParameterValue] = {}
+        unrestored: dict[str, ParameterValue] = {}
         try:
-            left = run.end()
+            unrestored = run.end()
         except Exception:
             log.exception("a mission could not be ended in order")
             phase, text = "failed", _ERROR
@@ -247,12 +267,29 @@ class MissionRunner:
             self._run = None
             if mode in _SWIMS_IN:
                 self._stop(f"The mission is over: {text}")
-        if left:
-            names = ", ".join(f"{name} to {value}" for name, value in left.items())
+        if unrestored:
+            names = ", ".join(f"{name} to {value}" for name, value in unrestored.items())
             self._say(f"Some parameters are not put back: set {names}.", caution=True)
-        words = {"succeeded": "succeeded", "failed": "failed"}.get(phase, "was ended")
-        self._say(f"Mission “{run.document.title}” {words}. {text}", caution=phase == "failed")
+        outcome = {"succeeded": "succeeded", "failed": "failed"}.get(phase, "was ended")
+        self._say(f"Mission “{run.document.title}” {outcome}. {text}", caution=phase == "failed")
         self._on_mission(run.describe(phase, text, whole=True))
+        if run.deepest > WET_DEPTH:
+            self._ascent = _Ascent(run, phase, text)
+
+    def _watch_ascent(self) -> None:
+        """Publish the end once more, with its time, when the robot has come up."""
+        ascent, now = self._ascent, self._clock.now()
+        if ascent is None:
+            return
+        if self._senses.depth > WET_DEPTH:
+            ascent.since = None
+        elif ascent.since is None:
+            ascent.since = now
+        elif now - ascent.since >= SURFACED_FOR:
+            self._ascent = None
+            self._say("The robot is at the surface.")
+            end = ascent.run.describe(ascent.phase, ascent.text, whole=True, surfaced=ascent.since)
+            self._on_mission(end)
 
     def _report(self, run: "MissionRun", phase: MissionPhase, text: str, *, whole: bool = False) -> None:
         now = self._clock.now()
@@ -264,3 +301,19 @@ class MissionRunner:
     def _say(self, text: str, *, caution: bool = False) -> None:
         severity: Severity = "caution" if caution else "info"
         self._on_event(Event(time=self._clock.now(), kind="mission", severity=severity, text=text))
+
+
+def make_runner(
+    bus: Bus,
+    clock: Clock,
+    limits: MissionLimits,
+    control: ControlNode,
+    supervisor: Supervisor,
+    vision: Vision,
+    parameters: Registry,
+    on_event: Callable[[Event], None],
+) -> MissionRunner:
+    """Return the runner of a robot's missions, which publishes them on the bus."""
+    senses = MissionSenses(bus, clock, control, supervisor.detector, vision)
+    publish = partial(bus.publish_document, MISSION)
+    return MissionRunner(clock, limits, senses, parameters, supervisor.stop, publish, on_event)

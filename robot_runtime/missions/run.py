@@ -36,7 +36,7 @@ COURSE_LEASE = 0.3
 
 @dataclass(slots=True)
 class _Record:
-    """The status of a step; s that it takes at most, the mission's clock at its start, and s that it took."""
+    """The status of a step; its longest duration (s), the clock at its start, and its duration (s)."""
 
     longest: float
     status: MissionStatus = "waiting"
@@ -83,7 +83,7 @@ class MissionRun:
         self._progress = 0.0
         self._records = {step.path: _Record(step.longest) for step in document.root.walk()}
         self._alternatives = {
-            step.path: tuple(one.path for one in branch.steps[number:])
+            step.path: tuple(following.path for following in branch.steps[number:])
             for branch in document.root.walk()
             if isinstance(branch.node, FirstOfBranch)
             for number, step in enumerate(branch.steps, 1)
@@ -93,22 +93,27 @@ class MissionRun:
 
     @property
     def now(self) -> float:
-        """s since it began, without its pauses."""
+        """The time (s) since its start, without its pauses."""
         return self.elapsed
 
     @property
     def depth(self) -> float:
-        """m."""
+        """The depth, m."""
         return self._senses.depth
 
     @property
     def heading(self) -> float:
-        """rad."""
+        """The heading, rad."""
         return self._senses.heading
 
     @property
+    def way(self) -> tuple[float, float]:
+        """The way since arming by dead reckoning, m along headings 0 and 90°."""
+        return self._senses.way
+
+    @property
     def battery(self) -> float | None:
-        """V; None where it is not measured."""
+        """The battery's voltage, V; None where it is not measured."""
         return self._senses.battery
 
     @property
@@ -118,55 +123,63 @@ class MissionRun:
 
     @property
     def depth_held(self) -> float:
-        """m."""
+        """The depth, m."""
         return self._depth
 
     @property
     def heading_held(self) -> float | None:
-        """rad; None where none is held."""
+        """The held heading, rad; None where none is held."""
         return self._heading
 
     def sees(self, what: str) -> bool:
-        """True if it is seen now."""
+        """Return True if this colour, marker or light is seen now."""
         return self._senses.sees(what)
 
     def hold_depth(self, depth: float) -> None:
-        """Holds this depth, m, from now on."""
+        """Hold this depth, m, from now on."""
         self._depth = depth
 
     def hold_heading(self, heading: float | None) -> None:
-        """Holds this heading, rad, or none, from now on."""
+        """Hold this heading, rad, or none, from now on."""
         self._heading = heading
 
     def swim(self, x: float, yaw: float) -> None:
-        """Sets the course until it expires."""
+        """Set the course until it expires."""
         self._course = Course(self._clock.now() + COURSE_LEASE, x, yaw)
 
     def swim_to_light(self) -> None:
-        """Sets the course to the light until it expires."""
+        """Set the course to the light until it expires."""
         self._course = Course(self._clock.now() + COURSE_LEASE, by="beacons")
 
+    def keep_still(self) -> None:
+        """Rest the fins until the next tick."""
+        self._course = Course(self._clock.now() + COURSE_LEASE, still=True)
+
+    def count_down(self, remaining: float) -> None:
+        """Rest the fins, and show the remaining time (s) by the LED, until the next tick."""
+        self._course = Course(self._clock.now() + COURSE_LEASE, still=True, countdown=remaining)
+
     def set_parameter(self, name: str, value: ParameterValue) -> None:
-        """Sets a parameter and notes its value before. Raises RefusedError."""
+        """Set a parameter and record its previous value. Raise RefusedError."""
         before = self._parameters.values().get(name, value)
         self._parameters.apply({name: value})
         first, _ = self._before.get(name, (before, value))
         self._before[name] = first, self._parameters.values()[name]
 
     def is_pending(self, name: str) -> bool:
-        """True until the board confirms a parameter."""
+        """Return True until the board confirms a parameter."""
         return self._parameters.is_pending(name)
 
     def mark(self, text: str) -> None:
-        """Publishes the marker, which the server puts into the session."""
+        """Publish the marker, which the server puts into the session."""
         self._on_event(Event(time=self._clock.now(), kind=MISSION_MARK, severity="info", text=text))
 
     def surface(self) -> None:
-        """Ends the mission after this tick."""
+        """End the mission after this tick."""
         self.surfaced = True
 
     def tick(self, seconds: float) -> MissionStatus:
-        """Advances by `seconds`; overrides loops and course. Returns the root's status."""
+        """Advance by `seconds`; override loops and course. Return the root's status."""
         self.elapsed += seconds
         self._course = Course(self._clock.now() + COURSE_LEASE)
         status = self._tree.tick()
@@ -178,28 +191,28 @@ class MissionRun:
         return status
 
     def rest(self) -> None:
-        """Holds the depth and stays, while it is paused in automatic."""
+        """Hold the depth and stay, or keep still as before, while the mission is paused in automatic."""
         control = self._senses.control
         control.depth.override = LoopOverride(set_point=self._depth)
         control.heading.override = None
-        control.override_course(Course(self._clock.now() + COURSE_LEASE))
+        control.override_course(Course(self._clock.now() + COURSE_LEASE, still=self._course.still))
 
     def see_depth(self) -> None:
-        """Notes the deepest point."""
+        """Note the deepest point."""
         self.deepest = max(self.deepest, self.depth)
 
     def skip(self) -> None:
-        """Has the running leaves succeed."""
+        """Have the running leaves succeed."""
         self._tree.skip()
 
     def resume(self) -> None:
-        """Has the running leaves go on after a pause."""
+        """Have the running leaves go on after a pause."""
         self._tree.resume()
 
     def end(self) -> dict[str, ParameterValue]:
-        """Stops the tree, takes back the overrides, and puts the parameters back.
+        """Stop the tree, take back the overrides, and put the parameters back.
 
-        Returns those that could not be put back with the values they should have. A parameter that somebody
+        Return those that could not be put back with the values they should have. A parameter that somebody
         else has changed meanwhile stays.
         """
         self._update()
@@ -214,13 +227,15 @@ class MissionRun:
         return {name: back[name] for name in problems}
 
     def release(self) -> None:
-        """Takes back the overrides."""
+        """Take back the overrides."""
         control = self._senses.control
         control.depth.override = control.heading.override = None
         control.override_course(None)
 
-    def describe(self, phase: MissionPhase, text: str, *, whole: bool) -> Mission:
-        """The mission as it stands; `whole`: with its text."""
+    def describe(
+        self, phase: MissionPhase, text: str, *, whole: bool, surfaced: float | None = None
+    ) -> Mission:
+        """Return the mission's present state; `whole`: with its text."""
         going = phase in ("running", "paused")
         if going:
             self._update()
@@ -246,11 +261,12 @@ class MissionRun:
             deepest=round(self.deepest, 3),
             steps=list(self._states()),
             document=self._text if whole else "",
+            surfaced=surfaced,
         )
 
     @property
     def failure(self) -> str:
-        """The reason why it failed: the step by which it failed, with its words."""
+        """The reason of the failure: the step that failed, with its text."""
         self._update()
         step = find_failed(list(self._states()))
         if step is None or not step.text:
@@ -260,9 +276,9 @@ class MissionRun:
 
     @property
     def statuses(self) -> tuple[object, ...]:
-        """The statuses of all steps, which change where the next document is due."""
+        """The statuses of all steps; a change makes the next document due."""
         self._update()
-        return *(one.status for one in self._records.values()), *self._tree.all_rounds
+        return *(record.status for record in self._records.values()), *self._tree.all_rounds
 
     def _update(self) -> None:
         behaviours = self._tree.behaviours
@@ -283,12 +299,12 @@ class MissionRun:
             record.status = status
 
     def _find_past(self, path: tuple[int, ...], record: _Record) -> MissionStatus:
-        """The status of a step whose behaviour is reset: how it ended, until its branch begins anew."""
+        """Return the last status of a step whose behaviour is reset, until its branch begins anew."""
         branch = self._records[path[:-1]].status if path else "running"
         if record.status in ("running", "stopped"):
             return "waiting" if branch == "waiting" else "stopped"
         later = self._alternatives.get(path, ())
-        if branch in ("done", "failed") or any(self._tree.status(one) != "waiting" for one in later):
+        if branch in ("done", "failed") or any(self._tree.status(path) != "waiting" for path in later):
             return record.status
         return "waiting"
 
@@ -297,9 +313,9 @@ class MissionRun:
             record = self._records[step.path]
             elapsed = self.elapsed - record.began if record.status == "running" else record.took
             yield MissionStepState(
-                path=step.place,
+                path=step.number,
                 do=step.node.do,
-                words=step.node.words,
+                words=step.node.label,
                 note=step.node.note,
                 status=record.status,
                 elapsed=round(elapsed, 3),
@@ -309,7 +325,7 @@ class MissionRun:
             )
 
     def _remaining(self, step: MissionStep) -> float:
-        """s that a step takes at most from now on."""
+        """Return the longest remaining duration (s) of a step."""
         record = self._records[step.path]
         if record.status == "waiting":
             return record.longest
@@ -318,12 +334,12 @@ class MissionRun:
         own = max(record.longest - (self.elapsed - record.began), 0.0)
         if isinstance(step.node, Leaf | UntilBranch):
             return own
-        below = [self._remaining(one) for one in step.steps]
+        below = [self._remaining(child) for child in step.steps]
         if isinstance(step.node, AllBranch | RaceBranch):
             return max(below)
         if isinstance(step.node, RepeatBranch):
             rounds = step.node.times - self._tree.rounds(step.path)
-            if any(self._records[one.path].status in ("waiting", "running") for one in step.steps):
+            if any(self._records[child.path].status in ("waiting", "running") for child in step.steps):
                 # The round that is under way; between two, the one before is counted already.
                 rounds -= 1
             return rounds * record.longest / step.node.times + sum(below)

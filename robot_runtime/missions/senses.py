@@ -1,17 +1,15 @@
-"""Everything that missions know of the robot: depth, attitude, light, battery and camera."""
+"""The readings that missions use: depth, attitude, way, light, battery and camera."""
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Detection
 from robot_runtime.contract.packets import Beacon
 from robot_runtime.contract.topics import BEACON, DETECTION
+from robot_runtime.control.battery import MEASURED
 from robot_runtime.control.fault_detector import FaultDetector
 from robot_runtime.control.node import BEACON_STALE, VISION_STALE, ControlNode
 from robot_runtime.missions.sights import LIGHT, find_sight_problem
 from robot_runtime.transport.bus import Bus
 from robot_runtime.vision.interface import Vision
-
-MEASURED = 1.0
-"""V; a battery that shows less has no divider on the board's input, so that it is not measured."""
 
 
 class MissionSenses:
@@ -31,19 +29,29 @@ class MissionSenses:
 
     @property
     def depth(self) -> float:
-        """m."""
+        """The depth, m."""
         return self.control.depth.measured or 0.0
 
     @property
     def heading(self) -> float:
-        """rad."""
+        """The heading, rad."""
         return self.control.heading.measured or 0.0
 
     @property
+    def way(self) -> tuple[float, float]:
+        """The way since arming by dead reckoning, m along headings 0 and 90°."""
+        return self.control.dead_reckoning.way
+
+    @property
     def battery(self) -> float | None:
-        """V; None where it is not measured."""
+        """The battery's voltage, V; None where it is not measured."""
         status = self._detector.status
         return status.battery if status is not None and status.battery >= MEASURED else None
+
+    @property
+    def battery_left(self) -> float | None:
+        """The time until the low-battery alarm, s; None where it cannot be estimated."""
+        return self.control.battery.left
 
     @property
     def light(self) -> bool:
@@ -52,7 +60,7 @@ class MissionSenses:
         return seen and self._clock.now() - time <= BEACON_STALE
 
     def sees(self, what: str) -> bool:
-        """True if this colour or marker is confirmed by a fresh picture, or a detector sees the light."""
+        """Return True if a fresh picture confirms this colour or marker, or a detector sees the light."""
         if what == LIGHT:
             return self.light
         seen = self._detection
@@ -61,7 +69,7 @@ class MissionSenses:
         return what in seen.confirmed
 
     def check_sight(self, what: str) -> str:
-        """The reason why this cannot be seen; empty if it can."""
+        """Return the reason why this cannot be seen; empty if it can."""
         return find_sight_problem(what, self._vision.settings)
 
     def _take_beacon(self, time: float, record: bytes) -> None:

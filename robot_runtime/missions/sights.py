@@ -7,7 +7,7 @@ LIGHT = "light"
 
 
 def find_sight_problem(what: str, settings: VisionSettings) -> str:
-    """Returns the reason why a robot with these settings cannot see this; empty if it can."""
+    """Return the reason why a robot with these settings cannot see this; empty if it can."""
     if what == LIGHT or what in settings.colours:
         return ""
     if (marker := MARKER.fullmatch(what)) is None:

@@ -46,21 +46,21 @@ class LeafBehaviour(Behaviour):
         self._skipped = False
 
     def skip(self) -> None:
-        """Has the running leaf succeed at the next tick."""
+        """Have the running leaf succeed at the next tick."""
         self._skipped = self.status == Status.RUNNING
 
     def resume(self) -> None:
-        """Has the running leaf go on after a pause."""
+        """Have the running leaf go on after a pause."""
         if self.status == Status.RUNNING:
             self._leaf.resume(self._robot)
 
     def initialise(self) -> None:
-        """Begins the leaf."""
+        """Begin the leaf."""
         self.text, self._skipped = "", False
         self._leaf.begin(self._robot)
 
     def update(self) -> Status:
-        """Ticks the leaf."""
+        """Tick the leaf."""
         if self._skipped:
             self.text = "It was skipped."
             return Status.SUCCESS
@@ -72,21 +72,21 @@ class LeafBehaviour(Behaviour):
 
 
 class InvertBehaviour(Inverter):
-    """Fails where the child succeeds, and the other way round."""
+    """A behaviour that fails where the child succeeds, and the other way round."""
 
     def __init__(self, child: Behaviour) -> None:
         super().__init__("invert", child)
         self.text = ""
 
     def update(self) -> Status:
-        """The other status than the child's."""
+        """Return the opposite of the child's status."""
         status = super().update()
         self.text = "Its step succeeded." if status == Status.FAILURE else ""
         return status
 
 
 class TimeoutBehaviour(Decorator):
-    """Fails after `seconds` of the mission's clock."""
+    """A behaviour that fails after `seconds` of the mission's clock."""
 
     def __init__(self, child: Behaviour, seconds: float, robot: MissionRobot) -> None:
         super().__init__("timeout", child)
@@ -95,11 +95,11 @@ class TimeoutBehaviour(Decorator):
         self._robot = robot
 
     def initialise(self) -> None:
-        """Starts the time."""
+        """Start the time."""
         self._until, self.text = self._robot.now + self._seconds, ""
 
     def update(self) -> Status:
-        """The child's status, or a failure."""
+        """Return the child's status, or a failure."""
         if self.decorated.status == Status.RUNNING and self._robot.now >= self._until:
             self.text = f"It was not done after {self._seconds:g} s."
             return Status.FAILURE
@@ -107,7 +107,7 @@ class TimeoutBehaviour(Decorator):
 
 
 class UntilBehaviour(Behaviour):
-    """Ticks its body until the condition holds; begins the body anew once a period at most."""
+    """A behaviour that repeats its body until the condition holds, once a period at most."""
 
     def __init__(self, condition: Behaviour, body: Behaviour, seconds: float, robot: MissionRobot) -> None:
         super().__init__("until")
@@ -118,13 +118,13 @@ class UntilBehaviour(Behaviour):
         self.children = [condition, body]
 
     def initialise(self) -> None:
-        """Starts the time."""
+        """Start the time."""
         self.text = ""
         self._until = self._robot.now + self._seconds
         self._next = self._robot.now
 
     def update(self) -> Status:
-        """Success when the condition holds; a failure of the body, or after the time."""
+        """Succeed when the condition holds; fail with the body, or after the time."""
         self._condition.tick_once()
         if self._condition.status == Status.SUCCESS:
             return Status.SUCCESS
@@ -138,10 +138,10 @@ class UntilBehaviour(Behaviour):
         return Status.FAILURE if self._body.status == Status.FAILURE else Status.RUNNING
 
     def terminate(self, new_status: Status) -> None:
-        """Stops the body with this step. Where this one is to begin anew, its steps forget their ends."""
+        """Stop the body with this step. Where this step begins anew, its steps forget how they ended."""
         if new_status == Status.INVALID:
-            for one in self.children:
-                one.stop(new_status)
+            for child in self.children:
+                child.stop(new_status)
         elif self._body.status == Status.RUNNING:
             self._body.stop(Status.INVALID)
 
@@ -153,48 +153,48 @@ class MissionTree:
         self._robot = robot
         self.behaviours: dict[tuple[int, ...], Behaviour] = {}
         self._root = self._make(root)
-        self._repeats = [one for one in self.behaviours.values() if isinstance(one, Repeat)]
+        self._repeats = [behaviour for behaviour in self.behaviours.values() if isinstance(behaviour, Repeat)]
 
     def tick(self) -> MissionStatus:
-        """Ticks the tree once; returns the status of its root."""
+        """Tick the tree once; return the status of its root."""
         self._root.tick_once()
         return _STATUS[self._root.status]
 
     def stop(self) -> None:
-        """Ends all running leaves."""
+        """End all running leaves."""
         self._root.stop(Status.INVALID)
 
     def skip(self) -> None:
-        """Has the running leaves succeed."""
+        """Have the running leaves succeed."""
         for leaf in self._leaves:
             leaf.skip()
 
     def resume(self) -> None:
-        """Has the running leaves go on after a pause."""
+        """Have the running leaves go on after a pause."""
         for leaf in self._leaves:
             leaf.resume()
 
     def status(self, path: tuple[int, ...]) -> MissionStatus:
-        """The status of a step."""
+        """Return the status of a step."""
         return _STATUS.get(self.behaviours[path].status, "waiting")
 
     def rounds(self, path: tuple[int, ...]) -> int:
-        """The number of times that a `repeat` has done its steps."""
+        """Return the number of times that a `repeat` has done its steps."""
         behaviour = self.behaviours[path]
         return behaviour.success if isinstance(behaviour, Repeat) else 0
 
     @property
     def all_rounds(self) -> list[int]:
         """The rounds of each `repeat`."""
-        return [one.success for one in self._repeats]
+        return [repeat.success for repeat in self._repeats]
 
     def text(self, path: tuple[int, ...]) -> str:
-        """The reason why a step failed, where it says so itself."""
+        """Return the reason of a step's failure; empty where the step gives none."""
         return str(getattr(self.behaviours[path], "text", ""))
 
     @property
     def _leaves(self) -> Iterable[LeafBehaviour]:
-        return [one for one in self.behaviours.values() if isinstance(one, LeafBehaviour)]
+        return [behaviour for behaviour in self.behaviours.values() if isinstance(behaviour, LeafBehaviour)]
 
     def _make(self, step: MissionStep) -> Behaviour:
         made = self._make_node(step)
@@ -205,13 +205,13 @@ class MissionTree:
         node = step.node
         if isinstance(node, Leaf):
             return LeafBehaviour(node, self._robot)
-        steps = [self._make(one) for one in step.steps]
+        steps = [self._make(child) for child in step.steps]
         match node:
             case FirstOfBranch():
                 return Selector("first_of", memory=True, children=steps)
             case WhileTrueBranch():
                 # What is done goes on where it was; the conditions before it are asked anew.
-                count = next(i for i, one in enumerate(steps) if not is_condition(step.steps[i]))
+                count = next(i for i, _ in enumerate(steps) if not is_condition(step.steps[i]))
                 return Sequence("while", memory=False, children=[*steps[:count], _in_order(steps[count:])])
             case AllBranch():
                 return Parallel("all", ParallelPolicy.SuccessOnAll(synchronise=True), steps)

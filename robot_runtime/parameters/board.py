@@ -21,10 +21,10 @@ _ALL_BYTES = len(CHIP_PARAMETERS) * (1 + Parameter.layout.size) + 64
 
 
 class Send(Protocol):
-    """Sends packets to the board; False without a connection."""
+    """The function that sends packets to the board."""
 
     def __call__(self, *packets: Packet) -> bool:
-        """Sends the packets."""
+        """Send the packets; return False without a connection."""
         ...
 
 
@@ -35,35 +35,39 @@ class BoardParameters:
         self._clock = clock
         self._send = send
         self._retry_after = _RETRY_SECONDS + 2 * airtime(_ALL_BYTES, baud)
-        self._values = [one.default for one in CHIP_PARAMETERS]
+        self._values = [parameter.default for parameter in CHIP_PARAMETERS]
         self._unconfirmed = set(range(len(CHIP_PARAMETERS)))
         self._sent_at = float("-inf")
         self._lock = threading.Lock()
 
     def entries(self) -> Iterator[Entry]:
-        """The parameters for the registry."""
-        for number, one in enumerate(CHIP_PARAMETERS):
+        """Yield the parameters for the registry."""
+        for number, parameter in enumerate(CHIP_PARAMETERS):
             yield Entry(
-                name=one.name,
+                name=parameter.name,
                 get=partial(self._values.__getitem__, number),
                 set=partial(self._request, number),
-                minimum=one.minimum,
-                maximum=one.maximum,
-                unit=one.unit,
-                meaning=one.meaning,
+                minimum=parameter.minimum,
+                maximum=parameter.maximum,
+                unit=parameter.unit,
+                meaning=parameter.meaning,
                 where="firmware",
-                while_armed=one.while_armed,
+                while_armed=parameter.while_armed,
                 pending=partial(self._is_pending, number),
             )
 
+    def requested(self, name: str) -> float:
+        """Return the requested value of the parameter with this name."""
+        return self._values[[parameter.name for parameter in CHIP_PARAMETERS].index(name)]
+
     def forget_confirmations(self) -> None:
-        """Marks all values as unconfirmed, after a greeting."""
+        """Mark all values as unconfirmed, after a greeting."""
         with self._lock:
             self._unconfirmed = set(range(len(CHIP_PARAMETERS)))
             self._sent_at = float("-inf")
 
     def confirm(self, answer: Parameter) -> bool:
-        """Takes the board's answer; True if it confirms a value that was unconfirmed."""
+        """Take the board's answer; return True if it confirms a value that was unconfirmed."""
         with self._lock:
             requested = [_to_wire(self._values[number]) for number in self._unconfirmed & {answer.number}]
             if _to_wire(answer.value) not in requested:
@@ -72,13 +76,13 @@ class BoardParameters:
             return True
 
     def tick(self) -> None:
-        """Sends unconfirmed values again when that is due; called several times a second."""
+        """Send unconfirmed values again when that is due; called several times a second."""
         with self._lock:
             if self._unconfirmed and self._clock.now() - self._sent_at >= self._retry_after:
                 self._send_unconfirmed()
 
     def refusals(self) -> list[str]:
-        """Reasons against arming; empty if the board has confirmed all values."""
+        """Return the reasons against arming; empty if the board has confirmed all values."""
         with self._lock:
             names = [CHIP_PARAMETERS[number].name for number in sorted(self._unconfirmed)]
         return [f"The board has not confirmed {', '.join(names)} yet. Wait a moment."] if names else []

@@ -34,7 +34,7 @@ class Entry:
     pending: Callable[[], bool] = bool
 
     def check(self, value: object) -> ParameterValue:
-        """Returns the value in the type that `set` takes. Raises ValueError, in words for a person."""
+        """Return the value in the type that `set` takes. Raise ValueError with a sentence for a person."""
         if self.type == "switch" and isinstance(value, bool):
             return value
         if self.type == "choice" and isinstance(value, str):

@@ -10,14 +10,28 @@ from robot_runtime.control.controllers.base import Controller
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.steering import STEERINGS
+from robot_runtime.parameters.board import BoardParameters
 from robot_runtime.parameters.entry import Entry
+from robot_runtime.parameters.registry import Registry
 from robot_runtime.vision.interface import Vision
 
 
-def runtime_entries(
+def make_registry(
+    control: ControlNode,
+    vision: Vision,
+    set_vision: Callable[[VisionSettings], None],
+    board: BoardParameters,
+    armed: Callable[[], bool],
+) -> Registry:
+    """Return the registry of all parameters; `set_vision` applies vision settings."""
+    entries = [*_runtime_entries(control, vision, set_vision), *board.entries()]
+    return Registry(entries, armed=armed, tick_lock=control.tick_lock)
+
+
+def _runtime_entries(
     control: ControlNode, vision: Vision, set_vision: Callable[[VisionSettings], None]
 ) -> Iterator[Entry]:
-    """Every parameter of the control node and of the vision node; `set_vision` applies vision settings."""
+    """Yield every parameter of control node and vision node."""
     yield from _set_points(control)
     yield Entry(
         name="control.steering",
@@ -46,7 +60,7 @@ def _controller(control: ControlNode, loop: ControlLoop) -> Entry:
 
 
 def _set_points(control: ControlNode) -> Iterator[Entry]:
-    low, high = SET_POINT.minimum, SET_POINT.maximum
+    low, high = SET_POINT.minimum, control.deepest
     yield Entry(
         name="control.set_point",
         get=lambda: control.set_point_default,

@@ -31,11 +31,11 @@ class Registry:
         self._tick_lock = tick_lock
 
     def values(self) -> dict[str, ParameterValue]:
-        """Returns the values in force, by name."""
+        """Return the values in force, by name."""
         return {name: entry.get() for name, entry in self._entries.items()}
 
     def listed(self) -> list[TunableParameter]:
-        """Every parameter with its description and its value."""
+        """Return every parameter with its description and its value."""
         return [
             TunableParameter(
                 name=entry.name,
@@ -55,11 +55,11 @@ class Registry:
         ]
 
     def is_pending(self, name: str) -> bool:
-        """True until the board has confirmed a parameter's value."""
+        """Return True until the board has confirmed a parameter's value."""
         return self._entries[name].pending()
 
     def find_problem(self, name: str, value: object) -> str:
-        """Returns why a parameter cannot have this value while the robot is armed; empty if it can."""
+        """Return the reason why an armed robot's parameter cannot have this value; empty if it can."""
         entry = self._entries.get(name)
         if entry is None:
             return f"There is no parameter {name!r}."
@@ -73,7 +73,7 @@ class Registry:
 
     @contextmanager
     def changing(self) -> Iterator[Changed]:
-        """Holds the control ticks; yields a dict that is filled with the changed values at the end."""
+        """Hold the control ticks; yield a dict that is filled with the changed values at the end."""
         changed: Changed = {}
         with self._tick_lock:
             before = self.values()
@@ -84,9 +84,9 @@ class Registry:
     def apply(
         self, values: Mapping[str, Any], expected: Mapping[str, Any] | None = None, *, partly: bool = False
     ) -> dict[str, str]:
-        """Sets all of these values, or with `partly` those that are valid; returns the problems by name.
+        """Set all of these values, or with `partly` those that are valid; return the problems by name.
 
-        Raises RefusedError with every reason if a value is invalid, or differs from `expected`; then none is
+        Raise RefusedError with every reason if a value is invalid, or differs from `expected`; then none is
         set.
         """
         problems: dict[str, str] = {}

@@ -35,7 +35,7 @@ BYTES_MAX = 400_000_000
 
 
 def main() -> int:
-    """Runs until SIGTERM or SIGINT. Returns 2 if the craft cannot be used."""
+    """Run until SIGTERM or SIGINT. Return 2 if the craft cannot be used."""
     keep_private()
     limit_memory(BYTES_MAX)
     arguments = _parser().parse_args()
@@ -69,9 +69,9 @@ def main() -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m robot_runtime.simulation", description=__doc__)
-    place = parser.add_mutually_exclusive_group(required=True)
-    place.add_argument("--board", type=Path, help="the emulated board's Unix socket")
-    place.add_argument(
+    target = parser.add_mutually_exclusive_group(required=True)
+    target.add_argument("--board", type=Path, help="the emulated board's Unix socket")
+    target.add_argument(
         "--in-the-loop", action="store_true", help="simulate the sensors of a board in the loop"
     )
     parser.add_argument(

@@ -3,7 +3,7 @@
 import logging
 import socket
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from robot_runtime.clock import Clock
@@ -12,7 +12,7 @@ from robot_runtime.contract.topics import CRAFT, TRUTH
 from robot_runtime.simulation.boards.board_protocol import BoardLineError, LineBuffer, read_fins, write_sense
 from robot_runtime.simulation.boards.stepped_board import PERIOD
 from robot_runtime.simulation.water.craft_report import CraftReport
-from robot_runtime.simulation.water.faults import DEVICES
+from robot_runtime.simulation.water.faults import DEVICES, LEAK, FaultOfDevice
 from robot_runtime.simulation.water.requests import TRUTH_PERIOD, changes, serve_requests
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -26,7 +26,7 @@ PATIENCE = 0.1
 
 
 class WaterProcess:
-    """Joins the simulator, the emulated board's socket and the other processes."""
+    """The connection of the simulator, the emulated board's socket and the other processes."""
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class WaterProcess:
         self._attached: bool | None = None
 
     def run(self) -> None:
-        """Simulates until `end` is called, with one board after another."""
+        """Simulate until `end` is called, with one board after another."""
         while not self._ending:
             try:
                 with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as line:
@@ -60,12 +60,12 @@ class WaterProcess:
                 time.sleep(RETRY)
 
     def end(self) -> None:
-        """Makes `run` return soon; may be called from a signal handler or any thread."""
+        """Make `run` return soon; may be called from a signal handler or any thread."""
         self._ending = True
 
     def _serve_board(self, line: socket.socket) -> None:
         line.sendall(f"attach {PERIOD}\n".encode())
-        broken: frozenset[str] | None = None
+        faults: dict[str, FaultOfDevice] | None = None
         for text in self._lines(line):
             if text.startswith("error"):
                 log.warning("the board reports: %s", text)
@@ -75,9 +75,8 @@ class WaterProcess:
                 continue
             reading = self._simulator.advance(PERIOD, read_fins(text))
             now = self._clock.now()
-            failing = self._simulator.broken_devices
-            line.sendall((_faults(broken, failing) + write_sense(reading)).encode())
-            broken = failing
+            known, faults = faults, self._simulator.device_faults
+            line.sendall((_write_faults(known, faults) + write_sense(reading)).encode())
             if not self._attached:
                 log.info("attached to the board at %s", self._board)
             self._attached = True
@@ -107,12 +106,11 @@ class WaterProcess:
         self._outbox.flush()
 
 
-def _faults(known: frozenset[str] | None, failing: frozenset[str]) -> str:
-    """Returns the commands that make devices fail or answer again; `known` are those that fail already.
+def _write_faults(known: Mapping[str, FaultOfDevice] | None, faults: Mapping[str, FaultOfDevice]) -> str:
+    """Return the commands that make devices fail or answer again; `known` are those set already.
 
     None where that is unknown: the board keeps the faults of a simulator that has ended.
     """
-    absent = [f"fault {device} absent\n" for device in sorted(failing - (known or frozenset()))]
-    before = frozenset(DEVICES.values()) if known is None else known
-    repaired = [f"fault {device} none\n" for device in sorted(before - failing)]
-    return "".join(absent + repaired)
+    begun = [f"fault {device} {fault}\n" for device, fault in sorted(faults.items() - (known or {}).items())]
+    before = {*DEVICES.values(), LEAK} if known is None else known.keys()
+    return "".join(begun + [f"fault {device} none\n" for device in sorted(before - faults.keys())])

@@ -31,7 +31,7 @@ COUNT_MAX = 65_535
 class Block:
     """A batch: `count` samples of one topic, numbered from `first` on; `data` is the block as it travels.
 
-    `run` names the run of the process that sent it, "" if that is not known. Nobody changes a block. It is
+    `run` names the run of the process that sent it, "" if that is not known. A block never changes. It is
     not frozen, because hundreds are made a second, and a frozen dataclass takes four times as long to make.
     """
 
@@ -43,7 +43,7 @@ class Block:
 
     @classmethod
     def of(cls, topic: AnyTopic, count: int, first: int, payload: bytes, run: str = "") -> Self:
-        """The block around a payload."""
+        """Return the block around a payload."""
         header = HEADER.pack(topic.id, topic.kind, count, first % NUMBERS, len(payload))
         return cls(topic, count, first, header + payload, run)
 
@@ -58,44 +58,47 @@ class Block:
         return (self.first + self.count) % NUMBERS
 
     def after(self, number: int) -> bool:
-        """True if it holds the sample of this number or a later one, modulo 2^32."""
+        """Return True if it holds the sample of this number or a later one, modulo 2^32."""
         return is_after(self.first, self.count, number)
 
     def time_of(self, number: int) -> float:
-        """Time of the sample with this number (s, steady clock).
+        """Return the time of the sample with this number (s, steady clock).
 
-        Raises IndexError where it is not in this block, LayoutError where the block is damaged.
+        Raise IndexError where it is not in this block, LayoutError where the block is damaged.
         """
-        place = (number - self.first) % NUMBERS
-        if place >= self.count:
+        index = (number - self.first) % NUMBERS
+        if index >= self.count:
             raise IndexError(f"{number} is not one of {self.count} samples from {self.first} on")
         if self.topic.kind is not Kind.DOCUMENTS:
             size = ROW_BYTES.get(self.topic.id, 0)
-            time: float = TIME.unpack_from(self.data, HEADER.size + place * size)[0]
+            time: float = TIME.unpack_from(self.data, HEADER.size + index * size)[0]
             return time
         try:
-            return float(json.loads(self.payload)[place]["time"])
+            return float(json.loads(self.payload)[index]["time"])
         except (ValueError, LookupError, TypeError, RecursionError) as problem:
             raise LayoutError(f"a block of {self.topic.name} is damaged: {problem!r}") from problem
 
 
 def is_after(first: int, count: int, number: int) -> bool:
-    """True if the `count` samples from `first` on include this number or a later one, modulo 2^32."""
+    """Return True if the `count` samples from `first` on include this number or a later one, modulo 2^32."""
     return 0 < (first + count - number) % NUMBERS <= NUMBERS // 2
 
 
 def row(time: float, record: bytes) -> bytes:
-    """One row of a block: the sample's time, then the record's own bytes."""
+    """Return one row of a block: the sample's time, then the record's own bytes."""
     return TIME.pack(time) + record
 
 
 def pack_documents(batch: Sequence[documents.Document]) -> bytes:
-    """The payload of a block of documents. Raises ValueError on NaN or infinity, which JSON lacks."""
+    """Return the payload of a block of documents. Raise ValueError on NaN or infinity, which JSON lacks."""
     return json.dumps(batch, default=_list_fields, allow_nan=False, separators=(",", ":")).encode()
 
 
 def _list_fields(document: Any) -> dict[str, object]:
-    """A dataclass for JSON's encoder. `asdict` copies all values first, which takes three times as long."""
+    """Return a dataclass's fields for JSON's encoder.
+
+    `asdict` copies all values, which takes three times as long.
+    """
     return {name: getattr(document, name) for name in _field_names(document.__class__)}
 
 
@@ -105,7 +108,7 @@ def _field_names(cls: type) -> tuple[str, ...]:
 
 
 def read_blocks(data: bytes, run: str = "") -> list[Block]:
-    """The blocks that `data` is, sent by `run`. Raises LayoutError where it is not blocks from end to end."""
+    """Return the blocks in `data`, sent by `run`. Raise LayoutError unless it is blocks from end to end."""
     blocks: list[Block] = []
     at = 0
     while at < len(data):
@@ -127,8 +130,8 @@ def read_blocks(data: bytes, run: str = "") -> list[Block]:
 
 
 def read_rows(block: Block) -> list[tuple[float, Record]]:
-    """The times and records of a block of rows. Raises TypeError on a block of another kind."""
+    """Return the times and records of a block of rows. Raise TypeError on a block of another kind."""
     size, record = block.topic.row_bytes, block.topic.record
     assert issubclass(record, Record)
     rows = (block.data[at : at + size] for at in range(HEADER.size, len(block.data), size))
-    return [(TIME.unpack_from(one)[0], record.from_bytes(one[TIME.size :])) for one in rows]
+    return [(TIME.unpack_from(row)[0], record.from_bytes(row[TIME.size :])) for row in rows]

@@ -23,13 +23,13 @@ class Bus:
         self._documents: dict[int, list[Callable[[Any], None]]] = defaultdict(list)
 
     def on_row(self, topic: AnyTopic, listener: RowListener) -> None:
-        """Call `listener` with every row of the topic. Raises ValueError on a topic that has no rows."""
+        """Call `listener` with every row of the topic. Raise ValueError on a topic that has no rows."""
         if topic.kind is not Kind.ROWS:
             raise ValueError(f"topic {topic.name} has no rows")
         self._rows[topic.id].append(listener)
 
     def on_document(self, topic: Topic[D], listener: Callable[[D], None]) -> None:
-        """Call `listener` with every document of the topic. Raises ValueError where it has none."""
+        """Call `listener` with every document of the topic. Raise ValueError where it has none."""
         if topic.kind is not Kind.DOCUMENTS:
             raise ValueError(f"topic {topic.name} has no documents")
         self._documents[topic.id].append(listener)

@@ -15,7 +15,8 @@ from pathlib import Path
 from robot_runtime.clock import Clock, SteadyClock
 
 HEARTBEAT = "heartbeat"
-"""The topic of a server's heartbeat, every second from its main loop: the number of operators' pages."""
+"""The topic of a server's heartbeat, every second from its main loop: the number of operators' live sockets,
+and of the programs that have control, as "1 0"."""
 LINGER_SECONDS = 30.0
 _PR_SET_PDEATHSIG = 1
 _CHECK_SECONDS = 1.0
@@ -44,7 +45,7 @@ def end_with_parent(parent: int | None = None, number: signal.Signals = signal.S
 
 
 def limit_process(memory: int, seconds: int) -> None:
-    """Limits this process: bytes of its own memory as `limit_memory`, and s on a processor.
+    """Limit this process: bytes of its own memory as `limit_memory`, and s on a processor.
 
     Beyond the second the kernel ends the process.
     """
@@ -53,7 +54,7 @@ def limit_process(memory: int, seconds: int) -> None:
 
 
 def limit_memory(memory: int, share: float = 0.5) -> None:
-    """Limits this process: bytes of its own memory, at most this share of the computer's.
+    """Limit this process: bytes of its own memory, at most this share of the computer's.
 
     Beyond that an allocation raises MemoryError. Processes that it starts inherit the limit, and may set
     another. The stacks of threads count whole, so that those of later threads are made small; NumPy and
@@ -69,7 +70,7 @@ def limit_memory(memory: int, share: float = 0.5) -> None:
 
 
 def limit_library_threads() -> None:
-    """Has libraries compute in the calling thread alone, in this process and those that it starts.
+    """Have libraries compute in the calling thread alone, in this process and those that it starts.
 
     OpenBLAS, which NumPy loads, takes memory for each thread, and ends the process where it gets none.
     """
@@ -78,7 +79,7 @@ def limit_library_threads() -> None:
 
 
 def give_way(niceness: int) -> None:
-    """Gives this process at least this niceness, also where it inherits one already, and its session, too.
+    """Give this process at least this niceness, also where it inherits one already, and its session, too.
 
     Without control groups Linux shares the processors between sessions, and only within one by niceness
     (sched(7), "The autogroup feature"). A session that another process leads stays as it is.
@@ -99,12 +100,12 @@ def give_way(niceness: int) -> None:
 
 
 def memory_bytes() -> int:
-    """The computer's memory."""
+    """Return the computer's memory."""
     return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def add_server_options(parser: argparse.ArgumentParser) -> None:
-    """Adds the options of a process that a server starts, and that may outlive it."""
+    """Add the options of a process that a server starts, and that may outlive it."""
     parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
     parser.add_argument("--server-lock", type=Path, help="end when no server has held this file's lock ...")
     parser.add_argument(
@@ -117,7 +118,7 @@ def add_server_options(parser: argparse.ArgumentParser) -> None:
 
 
 def is_served(lock: Path) -> bool:
-    """Returns True if a server holds this lock (flock(2)); without the file none can come back."""
+    """Return True if a server holds this lock (flock(2)); without the file none can come back."""
     try:
         handle = os.open(lock, os.O_RDONLY | os.O_CLOEXEC)
     except OSError:
@@ -133,7 +134,7 @@ def is_served(lock: Path) -> bool:
 
 
 def end_on_request(options: argparse.Namespace, end: Callable[[], None]) -> None:
-    """Calls `end` at SIGTERM or SIGINT, and as the server options ask."""
+    """Call `end` at SIGTERM or SIGINT, and as the server options ask."""
     if options.server_lock is not None:
         watch_server(options.server_lock, options.linger, SteadyClock(), end)
     for number in (signal.SIGTERM, signal.SIGINT):
@@ -141,7 +142,7 @@ def end_on_request(options: argparse.Namespace, end: Callable[[], None]) -> None
 
 
 def watch_server(lock: Path, linger: float, clock: Clock, end: Callable[[], None]) -> None:
-    """Calls `end`, once, when no server has held `lock` for `linger` s, or the file is gone.
+    """Call `end`, once, when no server has held `lock` for `linger` s, or the file is gone.
 
     So a server that is killed and started again finds the process still running. A thread checks the lock.
     """

@@ -1,4 +1,4 @@
-"""Zenoh on the network: TLS with certificates at both ends, and what each certificate's name may do.
+"""Zenoh on the network: TLS with certificates at both ends, and the rights of each certificate's name.
 
 The Unix sockets in the data folder stay free: their files say who may open them.
 """
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.topics import CRAFT, MOTOR, OBSERVER, TRUTH
 
 AUTHORITY, CERTIFICATE, KEY = "authority.pem", "certificate.pem", "key.pem"
 """The files of a certificate's folder: the authority's certificate, its own, and its key."""
@@ -17,8 +18,8 @@ SIMULATORS = "simulators"
 LOCAL_ONLY: Mapping[str, Any] = {"transport/link/protocols": ["unixsock-stream"]}
 """Zenoh's settings for a process that neither listens on the network nor connects through it."""
 
-_SENDS = ("sense", "simulator/stream", "truth", "craft", "observer")
-_RECEIVES = ("motor", "truth")
+_SENDS = ("sense", "simulator/stream", TRUTH.name, CRAFT.name, OBSERVER.name)
+_RECEIVES = (MOTOR.name, TRUTH.name)
 _ANSWERS = ("simulator/**", "scene/**")
 _EVERY_MESSAGE = (
     "put",
@@ -34,14 +35,14 @@ _EVERY_MESSAGE = (
 
 
 def simulators(folder: Path) -> list[str]:
-    """Returns the names of the simulators' certificates that are in force."""
+    """Return the names of the simulators' certificates that are in force."""
     return sorted(path.stem for path in (folder / SIMULATORS).glob("*.pem"))
 
 
 def listen_settings(folder: Path, robot: str) -> Mapping[str, Any]:
-    """Returns Zenoh's settings for a robot that listens on the network with the certificate in `folder`.
+    """Return Zenoh's settings for a robot that listens on the network with the certificate in `folder`.
 
-    Raises ConfigError where it is not there.
+    Raise ConfigError where it is not there.
     """
     tls = _tls(folder, "listen", "mucat run makes them when zenoh.listen is set in robot.toml.")
     return {
@@ -52,9 +53,9 @@ def listen_settings(folder: Path, robot: str) -> Mapping[str, Any]:
 
 
 def connect_settings(folder: Path) -> Mapping[str, Any]:
-    """Returns Zenoh's settings for a simulator elsewhere with the certificate in `folder`.
+    """Return Zenoh's settings for a simulator elsewhere with the certificate in `folder`.
 
-    Raises ConfigError where it is not there.
+    Raise ConfigError where it is not there.
     """
     tls = _tls(folder, "connect", "Copy the folder here that mucat certificate issue has made on the robot.")
     # Addresses of robots change. Of this authority's certificates only the robot's own is a server's.
@@ -63,7 +64,7 @@ def connect_settings(folder: Path) -> Mapping[str, Any]:
 
 
 def _tls(folder: Path, end: Literal["listen", "connect"], remedy: str) -> dict[str, str | bool]:
-    """Zenoh's settings of TLS at this end, with the certificate in `folder`. Raises ConfigError."""
+    """Return Zenoh's TLS settings at this end, with the certificate in `folder`. Raise ConfigError."""
     files = {name: folder / name for name in (AUTHORITY, CERTIFICATE, KEY)}
     missing = [name for name, path in files.items() if not path.is_file()]
     if missing:
@@ -77,7 +78,7 @@ def _tls(folder: Path, end: Literal["listen", "connect"], remedy: str) -> dict[s
 
 
 def _access(robot: str, names: list[str]) -> dict[str, Any]:
-    """Zenoh's access control: everything here, a simulator's own keys for these names, nothing for others."""
+    """Return Zenoh's access control: all keys here, a simulator's own for these names, else none."""
     both = ("ingress", "egress")
     rules = [
         _rule("here", both, _EVERY_MESSAGE, ["**"]),

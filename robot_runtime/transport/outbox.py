@@ -1,4 +1,4 @@
-"""Gathers samples into blocks and sends them to the other processes, so that each message carries many.
+"""The sender of samples, gathered into blocks so that each message to other processes carries many.
 
 Everything queued is sent as one message named `stream`, blocks one after the other, because waking the
 receiver costs more than bytes. Each topic with subscribers of its own is sent under its name as well.
@@ -19,7 +19,7 @@ SIMULATOR_STREAM = "simulator/stream"
 
 
 class Outbox:
-    """Queues rows and documents until `flush` sends them; `watched`: a topic of this name has a subscriber.
+    """Queue of rows and documents until `flush` sends them; `watched`: a topic of this name has a subscriber.
 
     Sent messages go to `cache` too, for a server that restarts. Every method may be called from any thread.
     """
@@ -47,7 +47,7 @@ class Outbox:
             self._rows[topic].append(row(time, record))
 
     def add_picture(self, topic: AnyTopic, time: float, jpeg: bytes) -> None:
-        """Queues a picture in place of the topic's queued one."""
+        """Queue a picture in place of the topic's queued one."""
         with self._lock:
             self._rows[topic] = [row(time, jpeg)]
 
@@ -57,7 +57,7 @@ class Outbox:
             self._documents[topic].append(document)
 
     def flush(self) -> None:
-        """Sends everything queued."""
+        """Send everything queued."""
         with self._sending:
             with self._lock:
                 rows, self._rows = self._rows, defaultdict(list)

@@ -34,7 +34,7 @@ _NOT_A_REPLY = (
 class BacklogReply:
     """The reply to a backlog request: the sender's run, its blocks, oldest first, and the next numbers.
 
-    `next` are the numbers that the sender gives to the next sample of each topic (by name): what lies between
+    `next` are the numbers that the sender gives to the next sample of each topic (by name): samples between
     them and the last block that is here was never sent or is no longer kept.
     """
 
@@ -44,7 +44,7 @@ class BacklogReply:
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Self:
-        """Reads a reply. Raises LayoutError for invalid bytes."""
+        """Read a reply. Raise LayoutError for invalid bytes."""
         try:
             (size,) = _SIZE.unpack_from(data)
             head = json.loads(data[_SIZE.size : _SIZE.size + size])
@@ -74,7 +74,7 @@ class ReplayCache:
         self._next: dict[str, int] = {}
 
     def add(self, message: bytes, following: Mapping[str, int]) -> None:
-        """Adds a message that is about to be sent; `following` are the topics' numbers after it."""
+        """Add a message that is about to be sent; `following` are the topics' numbers after it."""
         now = self._clock.now()
         with self._lock:
             self._messages.append((now, message))
@@ -84,9 +84,9 @@ class ReplayCache:
             self._next.update(following)
 
     def answer(self, question: bytes) -> bytes:
-        """Returns the blocks from these numbers on; `question` is JSON, {topic: first number}.
+        """Return the blocks from these numbers on; `question` is JSON, {topic: first number}.
 
-        Topics that are not named are left out. Raises ValueError where it is no such thing.
+        Topics that are not named are left out. Raise ValueError where it is no such object.
         """
         first_numbers = _read_question(question)
         with self._lock:
@@ -98,7 +98,7 @@ class ReplayCache:
 
 
 def _cut(messages: Iterable[tuple[float, bytes]], numbers: Mapping[int, int]) -> Iterator[bytes]:
-    """Their blocks from these numbers on, by the topics' numbers.
+    """Yield the messages' blocks from these numbers on, by the topics' numbers.
 
     There are some ten thousand blocks, and a server that comes back waits for them: only heads are read.
     """
@@ -114,7 +114,7 @@ def _cut(messages: Iterable[tuple[float, bytes]], numbers: Mapping[int, int]) ->
 
 
 def write_question(first_numbers: Mapping[str, int]) -> bytes:
-    """The question for blocks from these numbers on, by the topics' names."""
+    """Return the request for blocks from these numbers on, by the topics' names."""
     return json.dumps(dict(first_numbers)).encode()
 
 

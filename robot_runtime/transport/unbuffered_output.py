@@ -1,10 +1,10 @@
-"""Output of a process that bears signals."""
+"""Output of a process that loses nothing to signals."""
 
 from io import RawIOBase
 
 
 class UnbufferedOutput:
-    """Writes all bytes to a stream without a buffer.
+    """A stream without a buffer that writes all bytes.
 
     Python's buffered writer has lost bytes where a signal, such as that of a cancel, interrupted its write.
     """
@@ -13,7 +13,7 @@ class UnbufferedOutput:
         self._stream = stream
 
     def write(self, data: bytes) -> None:
-        """Writes all of it; blocks until the reader has taken it."""
+        """Write all bytes; block until the reader has taken them."""
         rest = memoryview(data)
         while rest:
             rest = rest[self._stream.write(rest) or 0 :]

@@ -88,11 +88,11 @@ class ZenohTransport:
         self._queryables: list[zenoh.Queryable[None]] = []
 
     def publish(self, name: str, payload: bytes) -> None:
-        """Sends to all subscribers of `name`."""
+        """Send to all subscribers of `name`."""
         self._publisher(name).put(payload, attachment=self.run)
 
     def watched(self, name: str) -> bool:
-        """Returns True if anybody subscribes to `name` now."""
+        """Return True if anybody subscribes to `name` now."""
         if name not in self._watched:
             publisher = self._publisher(name)
             # It is asked for each block that is sent: a listener is told of changes alone.
@@ -104,11 +104,11 @@ class ZenohTransport:
         return self._watched[name]
 
     def subscribe(self, pattern: str, callback: Callable[[str, bytes], None]) -> Subscription:
-        """Calls back with the name and payload of every message whose name matches ("depth", "**")."""
+        """Call back with the name and payload of every message whose name matches ("depth", "**")."""
         return self.subscribe_runs(pattern, lambda name, payload, _: callback(name, payload))
 
     def subscribe_runs(self, pattern: str, callback: Callable[[str, bytes, str], None]) -> Subscription:
-        """As `subscribe`, with the sender's `run` as a third argument."""
+        """Subscribe as `subscribe`, with the sender's `run` as a third argument."""
 
         def receive(sample: zenoh.Sample) -> None:
             run = sample.attachment.to_string() if sample.attachment is not None else ""
@@ -117,9 +117,9 @@ class ZenohTransport:
         return Subscription(self._session.declare_subscriber(self._prefix + pattern, receive))
 
     def query(self, name: str, payload: Mapping[str, Any], timeout: float = 2.0) -> Answer:
-        """Sends a request and returns its answer.
+        """Send a request and return its answer.
 
-        Raises RefusedError with the reason, or NoAnswerError after `timeout` seconds.
+        Raise RefusedError with the reason, or NoAnswerError after `timeout` seconds.
         """
         data = json.dumps(payload, allow_nan=False).encode()
         answer: Answer = json.loads(self.query_bytes(name, data, timeout))
@@ -128,11 +128,11 @@ class ZenohTransport:
         return answer
 
     def serve(self, name: str, handler: Callable[[Answer], Mapping[str, Any] | None]) -> None:
-        """Serves `name` with the handler's results; its RefusedError or ValueError becomes a refusal."""
+        """Serve `name` with the handler's results; its RefusedError or ValueError becomes a refusal."""
         self.serve_bytes(name, lambda question: json.dumps(_outcome(name, handler, question)).encode())
 
     def query_bytes(self, name: str, payload: bytes, timeout: float = 2.0) -> bytes:
-        """Sends a request and returns its answer, both as plain bytes; raises as `query` does."""
+        """Send a request and return its answer, both as plain bytes; raise as `query` does."""
         for reply in self._session.get(self._prefix + name, payload=payload, timeout=timeout):
             if reply.ok is not None:
                 return reply.ok.payload.to_bytes()
@@ -142,7 +142,7 @@ class ZenohTransport:
         raise NoAnswerError(f"no answer to {name} within {timeout:g} s")
 
     def serve_bytes(self, name: str, handler: Callable[[bytes], bytes]) -> None:
-        """Serves `name` with the bytes that the handler returns; refuses as `serve` does."""
+        """Serve `name` with the bytes that the handler returns; refuse as `serve` does."""
 
         def reply(query: zenoh.Query) -> None:
             with query:
@@ -156,7 +156,7 @@ class ZenohTransport:
         self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
 
     def close(self) -> None:
-        """Closes the session. An open Zenoh session keeps the interpreter alive, so this must be called."""
+        """Close the session. An open Zenoh session keeps the interpreter alive, so this must be called."""
         self._session.close()  # type: ignore[no-untyped-call]
 
     def __enter__(self) -> Self:
@@ -176,7 +176,7 @@ class ZenohTransport:
 
 
 def join(robot: str, endpoints: Sequence[str], network: Mapping[str, Any] = LOCAL_ONLY) -> ZenohTransport:
-    """Connects to a robot as a client; waits until it answers, and logs both."""
+    """Connect to a robot as a client; wait until it answers, and log both."""
     warned = False
     while True:
         try:
@@ -196,7 +196,7 @@ def join(robot: str, endpoints: Sequence[str], network: Mapping[str, Any] = LOCA
 
 
 def describe_problem(problem: zenoh.ZError) -> str:
-    """Returns Zenoh's words without the places in its source: paths of the computer that built it."""
+    """Return Zenoh's message without source positions: paths of the computer that built it."""
     text = re.sub(r"\s*\bat /\S+\.rs:\d+\.?", "", str(problem))
     # "Single" is its type of a single endpoint.
     return re.sub(r"Single\((.*?)\)", r"\1", text).strip()

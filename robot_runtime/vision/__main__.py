@@ -35,7 +35,7 @@ _OOM_FIRST = "500"
 
 
 def main(open_camera: Callable[[], Camera] | None = None) -> int:
-    """Runs until the runtime closes its end. `open_camera` replaces the configured camera."""
+    """Run until the runtime closes its end. `open_camera` replaces the configured camera."""
     for number in (signal.SIGINT, signal.SIGTERM):
         # They reach the whole group or service: the runtime closes its end when it is ready to.
         signal.signal(number, signal.SIG_IGN)
@@ -50,8 +50,8 @@ def main(open_camera: Callable[[], Camera] | None = None) -> int:
     try:
         (start, *others) = messages.receive(LOAD_SECONDS)
         loop = PictureLoop(messages, start.table["start"], open_camera)
-        for one in others:
-            loop.perform(one.table)
+        for message in others:
+            loop.perform(message.table)
         loop.run()
     except (EOFError, ConnectionError):
         return 0
@@ -83,13 +83,14 @@ class PictureLoop:
             event=lambda event: self._send({"event": asdict(event)}),
             picture=lambda topic, time, jpeg: self._send({"picture": topic.name, "time": time}, jpeg),
             thumbnail=lambda time, jpeg: self._send({"thumbnail": time}, jpeg),
+            snapshot=lambda time, jpeg: self._send({"snapshot": time}, jpeg),
             watched=lambda topic: topic.name in self._watched,
         )
         self._node = VisionNode(config, self._clock, outputs, open_camera, self._connect)
         self._card: str | None = start["card"]
 
     def run(self) -> None:
-        """Takes and searches pictures. Raises EOFError and ConnectionError at the runtime's end."""
+        """Take and search pictures. Raise EOFError and ConnectionError at the runtime's end."""
         self._node.start()
         if self._node.missing:
             self._send({"missing": self._node.missing})
@@ -104,7 +105,7 @@ class PictureLoop:
         self._node.close()
 
     def perform(self, table: dict[str, Any]) -> None:
-        """Does what a message of the runtime says."""
+        """Perform a message of the runtime."""
         if "settings" in table:
             self._node.settings = parse(VisionSettings, table["settings"])
         elif "card" in table:
@@ -113,15 +114,18 @@ class PictureLoop:
         elif "watched" in table:
             self._watched = table["watched"]
         elif "pick" in table:
-            self._send({"number": table["number"], **self._pick(table["pick"])})
+            self._answer(table, lambda: self._node.pick(table["pick"]))
+        elif "snapshot" in table:
+            self._answer(table, self._node.take_snapshot)
         else:
             self._ending = True
 
-    def _pick(self, question: dict[str, Any]) -> dict[str, Any]:
+    def _answer(self, question: dict[str, Any], answer: Callable[[], dict[str, Any]]) -> None:
         try:
-            return {"answer": self._node.pick(question)}
+            outcome: dict[str, Any] = {"answer": answer()}
         except (RefusedError, ConfigError) as problem:
-            return {"refused": str(problem)}
+            outcome = {"refused": str(problem)}
+        self._send({"number": question["number"], **outcome})
 
     def _show_card(self) -> None:
         # The runtime has checked it; its colour may be gone since.
@@ -130,7 +134,7 @@ class PictureLoop:
                 self._node.show_card(self._card)
 
     def _report(self) -> None:
-        """Sends the camera's state where it has changed, or where nothing else was sent for long."""
+        """Send the camera's state where it has changed, or where nothing else was sent for long."""
         text = self._node.text
         if text != self._text or self._clock.now() - self._sent >= ALIVE_SECONDS:
             self._text = text
@@ -141,7 +145,7 @@ class PictureLoop:
         self._sent = self._clock.now()
 
     def _connect(self) -> "ZenohTransport":
-        """Opens Zenoh, which a real camera does without. Raises CameraError."""
+        """Open Zenoh, which a real camera does without. Raise CameraError."""
         from robot_runtime.transport.zenoh_transport import ZenohTransport
         from robot_runtime.vision.scene_camera import PATIENCE
 

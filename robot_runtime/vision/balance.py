@@ -1,4 +1,4 @@
-"""White balance: corrects the colour cast of water and light."""
+"""White balance: the correction of the colour cast of water and light."""
 
 from collections.abc import Callable, Mapping
 
@@ -16,12 +16,12 @@ SPARSE = 4
 
 
 def none(picture: Picture) -> Picture:
-    """Returns the picture unchanged."""
+    """Return the picture unchanged."""
     return picture
 
 
 def grey_world(picture: Picture) -> Picture:
-    """Scales the channels to the same mean, on the assumption that the world is grey on average.
+    """Scale the channels to the same mean, on the assumption that the world is grey on average.
 
     G. Buchsbaum, A spatial processor model for object colour perception, J. Franklin Institute 310 (1980).
     BGR, uint8 of shape (height, width, 3).
@@ -34,7 +34,7 @@ def grey_world(picture: Picture) -> Picture:
 
 
 def underwater(picture: Picture) -> Picture:
-    """Restores lost red from green, then balances as `grey_world`. BGR, uint8 of shape (height, width, 3).
+    """Restore lost red from green, then balance as `grey_world`. BGR, uint8 of shape (height, width, 3).
 
     I_r + (mean I_g - mean I_r)·(1 - I_r)·I_g with intensities from 0 to 1: C. O. Ancuti, C. Ancuti, C. De
     Vleeschouwer and P. Bekaert, Color Balance and Fusion for Underwater Image Enhancement, IEEE Transactions
@@ -55,6 +55,6 @@ BALANCES: Mapping[WhiteBalance, Callable[[Picture], Picture]] = {
 
 
 def _means(picture: Picture) -> NDArray[np.float64]:
-    """Returns the means of blue, green and red."""
+    """Return the means of blue, green and red."""
     means: NDArray[np.float64] = picture[::SPARSE, ::SPARSE].reshape(-1, 3).mean(axis=0, dtype=np.float64)
     return means

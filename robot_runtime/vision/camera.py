@@ -22,8 +22,20 @@ class CameraError(Exception):
 
 
 def taken_at(stamp: float, now: float) -> float:
-    """Returns the time of a picture (s) by its driver's stamp; `now` where that is of another clock."""
+    """Return the time of a picture (s) by its driver's stamp; `now` where the stamp has another clock."""
     return stamp if now - STAMP_AGE_MAX < stamp <= now else now
+
+
+class SensorControls(NamedTuple):
+    """Settings of a sensor: exposure (ms), gain in its own unit, colour temperature (K); 0: automatic."""
+
+    exposure: float = 0.0
+    gain: float = 0.0
+    colour_temperature: int = 0
+
+
+NO_CONTROLS = SensorControls()
+"""A sensor that chooses all by itself."""
 
 
 class CameraFrame(NamedTuple):
@@ -37,17 +49,23 @@ class CameraFrame(NamedTuple):
 class Camera(ABC):
     """A source of pictures, open from construction until `close`. Construction may raise CameraError."""
 
+    size: tuple[int, int]
+    """Width and height (pixels) of the pictures that `read` returns; it may change between two of them."""
+
     rate: float | None = None
     """Hz that the device was opened for; None where it gives a picture at any time."""
 
     @abstractmethod
     def read(self) -> CameraFrame:
-        """Returns the newest picture. Raises CameraError if there is none."""
+        """Return the newest picture. Raise CameraError if there is none."""
+
+    def skip(self) -> None:  # noqa: B027 - most cameras keep no pictures
+        """Drop the next picture of a device that else keeps old ones. Raise CameraError if there is none."""
 
     @abstractmethod
     def close(self) -> None:
-        """Releases the device."""
+        """Release the device."""
 
     @abstractmethod
     def __str__(self) -> str:
-        """Returns a description of the camera."""
+        """Return a description of the camera."""

@@ -40,7 +40,7 @@ COARSE = 8
 
 
 class CardCamera(Camera):
-    """Draws `width` × `height` pixels; `card` returns the shown card, if any."""
+    """A camera that draws `width` × `height` pixels; `card` returns the shown card, if any."""
 
     def __init__(
         self,
@@ -49,9 +49,14 @@ class CardCamera(Camera):
         clock: Clock,
         card: Callable[[], CameraCard | None],
     ) -> None:
-        self._size = (width, height)
+        self.size = (width, height)
         self._clock = clock
         self._card = card
+        self._prepare(width, height)
+
+    def _prepare(self, width: int, height: int) -> None:
+        """Make the water, the light and the noise of pictures of this size."""
+        self._size = (width, height)
         self._water = _water(width, height)
         # Reused, because new memory for each picture costs more than drawing in it.
         self._canvas: Floats = np.empty_like(self._water)
@@ -62,19 +67,21 @@ class CardCamera(Camera):
         self._noise = np.random.default_rng(1).standard_normal(sheet, np.float32) * np.float32(NOISE)
 
     def read(self) -> CameraFrame:
-        """Returns the picture of now."""
+        """Return the present picture."""
         now = self._clock.now()
+        if self.size != self._size:
+            self._prepare(*self.size)
         return CameraFrame(self.draw(now, self._card()), now)
 
     def close(self) -> None:
-        """Does nothing; no device is open."""
+        """Do nothing; no device is open."""
 
     def __str__(self) -> str:
         card = self._card()
         return f"drawn water with a {card.name} card" if card else "drawn water without a card"
 
     def draw(self, time: float, card: CameraCard | None) -> Picture:
-        """Returns the picture at this time (s), uint8 of shape (height, width, 3), blue, green, red."""
+        """Return the picture at this time (s), uint8 of shape (height, width, 3), blue, green, red."""
         canvas = self._canvas
         np.copyto(canvas, self._water)
         if card is not None:
@@ -98,7 +105,7 @@ class CardCamera(Camera):
             cv2.fillConvexPoly(self._canvas, black, _through_water(BLACK), shift=4)
 
     def _light(self, time: float) -> Floats:
-        """Returns the relative brightness of each pixel, about 1; (height, width, 1)."""
+        """Return the relative brightness of each pixel, about 1; (height, width, 1)."""
         waves = [
             np.sin(phase + 2 * pi * hertz * time)
             for phase, (_, _, hertz) in zip(self._phases, RIPPLES, strict=True)
@@ -109,13 +116,13 @@ class CardCamera(Camera):
         return self._fine[:, :, np.newaxis]
 
     def _grain(self, time: float) -> Floats:
-        """Returns the sensor's noise: a part of a larger array, another one at each time."""
+        """Return the sensor's noise: a part of a larger array, another part at each time."""
         width, height = self._size
         x, y = np.random.default_rng(int(time * 1000)).integers(0, NOISE_SHIFT, 2).tolist()
         return self._noise[y : y + height, x : x + width]
 
     def _quad(self, time: float, left: float, top: float, right: float, bottom: float) -> NDArray[np.int32]:
-        """Returns the corners, in 1/16 pixel, of a rectangle on the card, given in pixels from its middle.
+        """Return the corners, in 1/16 pixel, of a rectangle on the card, given in pixels from its middle.
 
         The card sways, as if held by hand.
         """
@@ -131,13 +138,13 @@ class CardCamera(Camera):
 
 
 def _water(width: int, height: int) -> Floats:
-    """Returns water that grows darker downwards."""
+    """Return water that grows darker downwards."""
     brightness = np.linspace(1.25, 0.7, height, dtype=np.float32)[:, np.newaxis, np.newaxis]
     return np.ascontiguousarray(np.broadcast_to(brightness * np.array(WATER, np.float32), (height, width, 3)))
 
 
 def _through_water(paint: Paint) -> tuple[float, float, float]:
-    """Returns a paint's blue, green and red as seen through the water in front of the card."""
+    """Return a paint's blue, green and red as seen through the water in front of the card."""
     blue, green, red = (
         own * exp(-loss * CARD_DISTANCE) + water * (1 - exp(-loss * CARD_DISTANCE))
         for own, water, loss in zip(paint, WATER, ATTENUATION, strict=True)

@@ -20,7 +20,7 @@ MARKER_SIDE = 0.8
 
 @dataclass(frozen=True, slots=True)
 class CameraCard:
-    """A card: its blue, green and red in daylight, and whether the marker is printed on it."""
+    """A card: its blue, green and red in daylight; `marked`: the marker is printed on it."""
 
     name: str
     paint: Paint
@@ -28,7 +28,7 @@ class CameraCard:
 
 
 def make_card(name: str, colours: Mapping[str, ColourRange]) -> CameraCard:
-    """Returns the card of this name; without a paint it has the middle of the range. Raises KeyError."""
+    """Return the card of this name; without a paint it has the middle of the range. Raise KeyError."""
     if name == marker_name(MARKER_CARD):
         return CameraCard(name, WHITE, marked=True)
     if name in PAINTS:
@@ -40,7 +40,7 @@ def make_card(name: str, colours: Mapping[str, ColourRange]) -> CameraCard:
 
 @cache
 def marker_pattern() -> NDArray[np.uint8]:
-    """Returns the printed marker, one pixel a cell: 0 black, 255 white."""
+    """Return the printed marker, one pixel a cell: 0 black, 255 white."""
     dictionary = cv2.aruco.getPredefinedDictionary(MARKER_DICTIONARY)
     pattern = cv2.aruco.generateImageMarker(dictionary, MARKER_CARD, MARKER_CELLS)
     return pattern.astype(np.uint8, copy=False)

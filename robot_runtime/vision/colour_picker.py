@@ -46,18 +46,18 @@ class ColourProposal:
     share: float
 
 
-def propose(picture: Picture, place: PickPoint) -> ColourProposal:
-    """Returns the colour range around a point of a BGR picture (height, width, 3).
+def propose(picture: Picture, point: PickPoint) -> ColourProposal:
+    """Return the colour range around a point of a BGR picture (height, width, 3).
 
-    Raises RefusedError if there is no colour, or more than one.
+    Raise RefusedError if there is no colour, or more than one.
     """
     hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV).astype(np.uint8, copy=False)
-    colour = range_of(_around(hsv, place))
+    colour = range_of(_around(hsv, point))
     return ColourProposal(colour=colour, share=cv2.countNonZero(find_colour(hsv, colour)) / hsv[..., 0].size)
 
 
 def range_of(pixels: NDArray[np.uint8]) -> ColourRange:
-    """Returns the range of these HSV pixels (number, 3) without the outermost. Raises RefusedError."""
+    """Return the range of these HSV pixels (number, 3) without the outermost. Raise RefusedError."""
     coloured = pixels[(pixels[:, 1] >= SATURATION_LEAST) & (pixels[:, 2] >= VALUE_LEAST)]
     if len(coloured) < COLOURED_LEAST * len(pixels):
         saturation, value = np.median(pixels[:, 1:], axis=0)
@@ -76,7 +76,7 @@ def range_of(pixels: NDArray[np.uint8]) -> ColourRange:
 
 
 def _hues(hues: NDArray[np.uint8]) -> tuple[int, int]:
-    """Returns the lowest and the highest hue on the circle, with a margin."""
+    """Return the lowest and the highest hue on the circle, with a margin."""
     angles = hues * (2 * np.pi / HUES)
     middle = np.arctan2(np.sin(angles).mean(), np.cos(angles).mean()) * HUES / (2 * np.pi)
     beside = (hues - middle + HUES / 2) % HUES - HUES / 2
@@ -92,9 +92,9 @@ def _hues(hues: NDArray[np.uint8]) -> tuple[int, int]:
     )
 
 
-def _around(hsv: Picture, place: PickPoint) -> NDArray[np.uint8]:
+def _around(hsv: Picture, point: PickPoint) -> NDArray[np.uint8]:
     height, width = hsv.shape[:2]
-    x, y = min(int(place.x * width), width - 1), min(int(place.y * height), height - 1)
+    x, y = min(int(point.x * width), width - 1), min(int(point.y * height), height - 1)
     disc = np.zeros((height, width), np.uint8)
-    cv2.circle(disc, (x, y), max(2, round(place.radius * width)), 255, cv2.FILLED)
+    cv2.circle(disc, (x, y), max(2, round(point.radius * width)), 255, cv2.FILLED)
     return hsv[disc > 0]

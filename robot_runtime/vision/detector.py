@@ -27,7 +27,7 @@ S. Garrido-Jurado et al., Pattern Recognition 47 (2014).
 
 
 class MarkerFinder:
-    """Finds the ArUco markers that the settings select."""
+    """Finder of the ArUco markers that the settings select."""
 
     def __init__(self, settings: VisionSettings) -> None:
         self._numbers = settings.marker_numbers
@@ -37,18 +37,18 @@ class MarkerFinder:
             self._detector = cv2.aruco.ArucoDetector(dictionary)
 
     def find(self, picture: Picture) -> list[ArucoMarker]:
-        """Returns the markers in a BGR picture (height, width, 3), in order of their numbers."""
+        """Return the markers in a BGR picture (height, width, 3), in order of their numbers."""
         if self._detector is None:
             return []
         height, width = picture.shape[:2]
         corners, numbers, _ = self._detector.detectMarkers(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY))
-        found = [
+        markers = [
             ArucoMarker(number=int(number), corners=(four.reshape(4, 2) / (width, height)).ravel().tolist())
             # OpenCV returns None instead of an empty array.
             for number, four in zip(np.ravel(numbers) if corners else (), corners, strict=True)
             if not self._numbers or int(number) in self._numbers
         ]
-        return sorted(found, key=lambda one: one.number)
+        return sorted(markers, key=lambda marker: marker.number)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,16 +69,16 @@ class Sight:
     def names(self) -> list[str]:
         """The colour and the markers that the picture shows."""
         colour = [] if self.colour is None else [self.colour]
-        return [*colour, *(marker_name(one.number) for one in self.markers)]
+        return [*colour, *(marker_name(marker.number) for marker in self.markers)]
 
 
 def choose_target(settings: VisionSettings, seen: Collection[str]) -> str | None:
-    """Returns what sets the set point: the target colour, else the first action that is seen."""
+    """Return the sight that sets the set point: the target colour, else the first action's that is seen."""
     return next((name for name in (settings.colour, *settings.actions) if name in seen), None)
 
 
 class Detector:
-    """Searches pictures for the colours and markers of these settings."""
+    """Detector of the colours and markers of these settings."""
 
     def __init__(self, settings: VisionSettings) -> None:
         self.settings = settings
@@ -87,7 +87,7 @@ class Detector:
         self._markers = MarkerFinder(settings)
 
     def search(self, picture: Picture) -> Sight:
-        """Searches a BGR picture (height, width, 3).
+        """Search a BGR picture (height, width, 3).
 
         The target colour comes first, then targets of actions in the actions' order, then the rest.
         """
@@ -99,8 +99,8 @@ class Detector:
         if (patch := target_patches.largest) is not None:
             return Sight(balanced, target_patches, settings.colour, patch, markers)
         others = (find_patches(hsv, name, settings) for name in settings.colours if name != settings.colour)
-        seen = {one.colour: patch for one in others if (patch := one.largest) is not None}
-        there = {*seen, *(marker_name(one.number) for one in markers)}
+        seen = {other.colour: patch for other in others if (patch := other.largest) is not None}
+        there = {*seen, *(marker_name(marker.number) for marker in markers)}
         target = choose_target(settings, there)
         colour = target if target in seen else max(seen, key=lambda name: seen[name].area, default=None)
         return Sight(

@@ -24,13 +24,16 @@ MILLISECONDS = 1e3
 
 
 class FileCamera(Camera):
-    """Plays a file, fitted to `width` × `height` pixels. Raises CameraError if it cannot be opened."""
+    """A camera that plays a file, fitted to `width` × `height` pixels.
+
+    Raises CameraError if it cannot be opened.
+    """
 
     def __init__(self, file: Path, width: int, height: int, clock: Clock) -> None:
         if not file.is_file():
             raise CameraError(f"there is no file {str(file)!r}; {HINT}")
         self._file = file
-        self._size = (width, height)
+        self.size = (width, height)
         self._clock = clock
         self._started = clock.now()
         try:
@@ -41,15 +44,16 @@ class FileCamera(Camera):
             raise CameraError(f"{file.name} cannot be decoded ({problem}); {HINT}") from problem
         if picture is None:
             raise CameraError(self._nothing)
-        # Fitted once: a photograph is a hundred times as large.
-        self._first = fit(picture, width, height)
-        self._fit = describe_fit((picture.shape[1], picture.shape[0]), width, height)
+        self._given = (picture.shape[1], picture.shape[0])
+        # Made smaller once: a photograph is a hundred times as large.
+        is_larger = self._given[0] > width and self._given[1] > height
+        self._first = fit(picture, width, height) if is_larger else picture
 
     def read(self) -> CameraFrame:
-        """Returns the picture that is due now. Raises CameraError if the video cannot be decoded."""
+        """Return the picture that is due now. Raise CameraError if the video cannot be decoded."""
         now = self._clock.now()
         if self._video is None:
-            return CameraFrame(self._first, now)
+            return CameraFrame(fit(self._first, *self.size), now)
         if (picture := self._video.show(now - self._started)) is None:
             # From its end it begins again.
             self._video.close()
@@ -57,15 +61,16 @@ class FileCamera(Camera):
             picture = self._video.show(0.0)
         if picture is None:
             raise CameraError(self._nothing)
-        return CameraFrame(fit(picture, *self._size), now)
+        return CameraFrame(fit(picture, *self.size), now)
 
     def close(self) -> None:
-        """Closes the file."""
+        """Close the file."""
         if self._video is not None:
             self._video.close()
 
     def __str__(self) -> str:
-        notes = [note for note in (self._fit, self._video.note if self._video else "") if note]
+        fitted = describe_fit(self._given, *self.size)
+        notes = [note for note in (fitted, self._video.note if self._video else "") if note]
         return f"file {self._file.name}" + (f" ({'; '.join(notes)})" if notes else "")
 
     @property
@@ -84,7 +89,7 @@ class FileCamera(Camera):
 
 
 def _read_still(file: Path) -> Picture | None:
-    """Returns a picture file's picture, turned by its note of how the camera was held; None for others."""
+    """Return a picture file's picture, turned by its orientation tag; None for other files."""
     if not cv2.haveImageReader(str(file)):
         return None
     picture = cv2.imread(str(file), cv2.IMREAD_COLOR)
@@ -93,7 +98,7 @@ def _read_still(file: Path) -> Picture | None:
 
 @dataclass(frozen=True, slots=True)
 class _Pace:
-    """The pace of a video: by its pictures' own times, or at a rate (Hz); `note` says why at that."""
+    """The pace of a video: by its pictures' own times, or at a rate (Hz), for which `note` is the reason."""
 
     rate: float
     timed: bool = True
@@ -101,7 +106,7 @@ class _Pace:
 
 
 def _probe(path: str) -> _Pace | None:
-    """Returns the pace of a video; None for a file that is none."""
+    """Return the pace of a video; None for a file that is no video."""
     capture = _capture(path)
     try:
         if not capture.isOpened():
@@ -119,8 +124,8 @@ def _probe(path: str) -> _Pace | None:
             return _Pace(rate)
     if RATE_LEAST <= claimed <= RATE_MOST:
         return _Pace(claimed, timed=False)
-    said = f"{claimed:.6g} pictures a second" if isfinite(claimed) and claimed > 0 else "no rate"
-    return _Pace(USUAL_RATE, timed=False, note=f"says {said}; played at {USUAL_RATE:g}")
+    claim = f"{claimed:.6g} pictures a second" if isfinite(claimed) and claimed > 0 else "no rate"
+    return _Pace(USUAL_RATE, timed=False, note=f"says {claim}; played at {USUAL_RATE:g}")
 
 
 class _Video:
@@ -140,11 +145,11 @@ class _Video:
 
     @property
     def note(self) -> str:
-        """The unusual of its pace in words; empty where there is nothing."""
+        """A note about an unusual pace; empty where it is usual."""
         return self.pace.note
 
     def show(self, elapsed: float) -> Picture | None:
-        """Returns the picture that is due `elapsed` s after the beginning; None after the end."""
+        """Return the picture that is due `elapsed` s after the beginning; None after the end."""
         while self._next is not None and self._next <= elapsed:
             ok, picture = self._capture.retrieve()
             if ok:
@@ -155,11 +160,11 @@ class _Video:
         return self._shown if self._turned is None else cv2.rotate(self._shown, self._turned).astype(np.uint8)
 
     def close(self) -> None:
-        """Closes the file."""
+        """Close the file."""
         self._capture.release()
 
     def _advance(self) -> None:
-        """Reads the next picture, which is not decoded into colours before it is shown."""
+        """Read the next picture, which is not decoded into colours before it is shown."""
         before = self._next if self._count else 0.0
         if not self._capture.grab():
             self._next, self._end = None, (before or 0.0) + 1 / self.pace.rate
@@ -182,7 +187,7 @@ def _capture(path: str) -> cv2.VideoCapture:
 
 
 def _remaining_turn(capture: cv2.VideoCapture) -> int | None:
-    """Returns the turn that a film still needs, where this OpenCV does not turn it itself."""
+    """Return the turn that a film still needs, where this OpenCV does not turn it itself."""
     if capture.get(cv2.CAP_PROP_ORIENTATION_AUTO) == 1:
         return None
     turns = {90: cv2.ROTATE_90_CLOCKWISE, 180: cv2.ROTATE_180, 270: cv2.ROTATE_90_COUNTERCLOCKWISE}

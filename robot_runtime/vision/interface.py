@@ -1,4 +1,4 @@
-"""Vision as the rest of the runtime sees it: settings, cards, the camera's state, and what is found."""
+"""The vision's interface to the runtime: settings, cards, the camera's state, and detections."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -8,7 +8,7 @@ from typing import Any
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS
 from robot_runtime.contract.documents import Detection, Event
-from robot_runtime.contract.topics import BALANCED, MASK, PICTURE, Topic
+from robot_runtime.contract.topics import Topic
 from robot_runtime.contract.vision_settings import VisionSettings, marker_name
 from robot_runtime.errors import RefusedError
 
@@ -16,22 +16,22 @@ NO_PICTURE = "no picture: "
 """The beginning of the text on a camera that fails."""
 STARTING = "starting"
 """The text on a camera of which there was no picture yet."""
-WATCHABLE = (PICTURE, MASK, BALANCED)
-"""The topics whose pictures are made only while somebody watches them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VisionOutputs:
-    """Receivers of what vision finds, all called by one thread.
+    """Receivers of the vision's results, all called by one thread.
 
-    While `watched` is true of a topic of `WATCHABLE`, `picture` gets that topic, the picture's time (s) and
-    its JPEG file; `thumbnail` always gets a small picture from time to time.
+    While `watched` is true of a topic of pictures, `picture` gets that topic, the picture's time (s) and
+    its JPEG file; `thumbnail` always gets a small picture from time to time, `snapshot` the one that
+    `Vision.take_snapshot` was asked for.
     """
 
     detection: Callable[[Detection], None]
     event: Callable[[Event], None]
     picture: Callable[[Topic[bytes], float, bytes], None] = lambda *_: None
     thumbnail: Callable[[float, bytes], None] = lambda *_: None
+    snapshot: Callable[[float, bytes], None] = lambda *_: None
     watched: Callable[[Topic[bytes]], bool] = lambda _: False
 
 
@@ -65,7 +65,7 @@ class Vision(ABC):
         return [*dict.fromkeys([*PAINTS, *self._settings.colours]), marker_name(MARKER_CARD)]
 
     def show_card(self, name: str | None) -> None:
-        """Shows this card, or none. Raises RefusedError for another camera or an unknown card."""
+        """Show this card, or none. Raise RefusedError for another camera or an unknown card."""
         if self._config.camera not in ("card", "scene"):
             raise RefusedError(
                 f"the camera is {self._config.camera!r}; cards are shown to the cameras 'scene' and 'card' "
@@ -81,32 +81,39 @@ class Vision(ABC):
     @property
     @abstractmethod
     def text(self) -> str:
-        """Description of the camera, or of its failure after `NO_PICTURE`."""
+        """The description of the camera, or of its failure after `NO_PICTURE`."""
 
     @abstractmethod
     def pick(self, question: dict[str, Any]) -> dict[str, Any]:
-        """Returns the colour range around a point of the newest picture, after the white balance.
+        """Return the colour range around a point of the newest picture, after the white balance.
 
-        `question` is a `PickPoint` as a table, the answer a `ColourProposal`. No setting changes. Raises
+        `question` is a `PickPoint` as a table, the answer a `ColourProposal`. No setting changes. Raise
         RefusedError, ConfigError.
         """
 
     @abstractmethod
+    def take_snapshot(self) -> dict[str, Any]:
+        """Send the newest picture at full size to the outputs; return its `time` (s, steady clock).
+
+        Raise RefusedError where there is no picture, or an old one alone.
+        """
+
+    @abstractmethod
     def refusals(self) -> list[str]:
-        """Returns the reasons against arming now."""
+        """Return the reasons against arming now."""
 
     @abstractmethod
     def start(self) -> None:
-        """Begins to take pictures."""
+        """Begin to take pictures."""
 
     @abstractmethod
     def close(self) -> None:
-        """Releases the camera."""
+        """Release the camera."""
 
     @abstractmethod
     def _apply_settings(self) -> None:
-        """Passes new settings on to where pictures are searched."""
+        """Pass new settings on to the search."""
 
     @abstractmethod
     def _apply_card(self) -> None:
-        """Passes another card on to where pictures are taken."""
+        """Pass another card on to the camera."""

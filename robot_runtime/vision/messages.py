@@ -19,7 +19,7 @@ LONGEST = 16_000_000
 
 
 class MessageError(Exception):
-    """The other end sent something that is no message."""
+    """Bytes from the other end that are no message."""
 
 
 class VisionMessage(NamedTuple):
@@ -38,11 +38,11 @@ class MessageSocket:
         self._received = bytearray()
 
     def close(self) -> None:
-        """Closes this end; the other one reads its end."""
+        """Close this end; the other one reads its end."""
         self._end.close()
 
     def send(self, table: dict[str, Any], attachment: bytes = b"") -> None:
-        """Sends a message, and waits until the other end has room for it. Raises OSError if that is gone."""
+        """Send a message, and wait until the other end has room for it. Raise OSError if that is gone."""
         rest = memoryview(_pack(table, attachment))
         while rest:
             try:
@@ -51,9 +51,9 @@ class MessageSocket:
                 select([], [self._end], [])
 
     def send_at_once(self, table: dict[str, Any]) -> bool:
-        """Sends a message without waiting. Raises OSError if the other end is gone.
+        """Send a message without waiting. Raise OSError if the other end is gone.
 
-        Returns False where there was no room for all of it: then nothing may be sent any more.
+        Return False where there was no room for all of it: then nothing may be sent any more.
         """
         data = _pack(table, b"")
         try:
@@ -62,9 +62,9 @@ class MessageSocket:
             return False
 
     def receive(self, timeout: float) -> list[VisionMessage]:
-        """Returns all messages that have come, waiting up to `timeout` s for the first; [] if none came.
+        """Return all messages that have come, waiting up to `timeout` s for the first; [] if none came.
 
-        Raises EOFError when the other end is closed, and MessageError.
+        Raise EOFError when the other end is closed, and MessageError.
         """
         end = time.monotonic() + timeout
         while not (messages := self._take()):

@@ -3,7 +3,7 @@
 import importlib
 import logging
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import asdict, fields, replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -12,11 +12,12 @@ from robot_runtime.config import VisionConfig
 from robot_runtime.contract.documents import Detection, Event, Severity
 from robot_runtime.contract.limits import VISION_RATE
 from robot_runtime.contract.parsing import parse
-from robot_runtime.contract.topics import BALANCED, MASK, PICTURE, Topic
+from robot_runtime.contract.topics import BALANCED, CAMERA, MASK, PICTURE, Topic
 from robot_runtime.errors import RefusedError
-from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
+from robot_runtime.vision.camera import Camera, CameraError, CameraFrame, SensorControls
 from robot_runtime.vision.interface import NO_PICTURE, STARTING, Vision, VisionOutputs
 from robot_runtime.vision.sightings import Sightings
+from robot_runtime.vision.stream_quality import StreamQuality
 
 if TYPE_CHECKING:
     from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -33,6 +34,8 @@ THUMBNAIL_SECONDS = 2.0
 """s between two small pictures, which are always published for recordings."""
 REAL_CAMERAS = ("pi", "usb")
 """Cameras with noise: one that repeats its picture hangs. A still file or calm drawn water may repeat one."""
+SNAPSHOT_AGE = 2.0
+"""s; an older picture is no snapshot of what is seen now."""
 _OPENCV_MEMORY = -4
 """OpenCV's code where an allocation fails."""
 
@@ -47,7 +50,7 @@ class RateTimer:
 
     @property
     def rate(self) -> float:
-        """Hz. Setting it raises ValueError outside VISION_RATE."""
+        """The rate, Hz. Setting it raises ValueError outside VISION_RATE."""
         return self._rate
 
     @rate.setter
@@ -58,22 +61,22 @@ class RateTimer:
         self._rate = rate
 
     def remaining(self) -> float:
-        """Returns s until the next period is due; 0 or less if it is due now."""
+        """Return s until the next period is due; 0 or less if it is due now."""
         return self._last + 1 / self._rate - self._clock.now()
 
     def begin(self) -> None:
-        """Records that the due period begins now."""
+        """Record that the due period begins now."""
         period, now = 1 / self._rate, self._clock.now()
         self._last = self._last + period if now < self._last + 2 * period else now
 
 
 class VisionNode(Vision):
-    """Searches pictures at a settable rate and survives failures of the camera; its owner calls `tick`.
+    """The search of pictures at a settable rate, and the camera's stream while somebody watches it.
 
-    Every picture gives one Detection: of the target colour, else of a target with an action, else of the
-    largest patch of another colour, else an empty one. A thumbnail follows every `THUMBNAIL_SECONDS`. The
-    camera "scene" is queried through what `connect` opens, which may raise CameraError; `open_camera`
-    replaces the configured one.
+    It survives a failing camera. Its owner calls `tick`. Every searched picture gives one Detection: of the
+    target colour, else of a target with an action, else of the largest patch of another colour, else an empty
+    one. A thumbnail follows every `THUMBNAIL_SECONDS`. The camera "scene" is queried through what `connect`
+    opens, which may raise CameraError; `open_camera` replaces the configured one.
     """
 
     def __init__(
@@ -90,42 +93,65 @@ class VisionNode(Vision):
         self._clock = clock
         self._thumbnail_due = -inf
         self._frame: CameraFrame | None = None
+        self._newest: CameraFrame | None = None
+        self._snapshot_taken = -inf
         self._connect = connect
         self._open_camera = open_camera or self._configured_camera
         self._timer = RateTimer(clock, config.rate)
+        self._stream_timer = RateTimer(clock, config.stream_rate)
+        self._quality = StreamQuality(config.stream_rate)
         self._detector: Detector | None = None
         self._sightings = Sightings()
         self._repetition: PictureRepetition | None = None
         self._camera: Camera | None = None
+        self._opened_for = self._device_settings
         self._failure: str | None = None
         self._failing_since: float | None = None
         self._retry_at = clock.now()
 
     @property
     def text(self) -> str:
-        """Description of the camera, or of its failure."""
+        """The description of the camera, or of its failure."""
         if self._failure is not None:
             return f"{NO_PICTURE}{self._failure}"
         return str(self._camera) if self._camera else STARTING
 
     def pick(self, question: dict[str, Any]) -> dict[str, Any]:
-        """Returns the colour range around a point of the newest picture, after the white balance."""
+        """Return the colour range around a point of the newest picture, after the white balance."""
         if self.missing:
             raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
         from robot_runtime.vision.pipeline import BALANCES, PickPoint, propose
 
-        place = parse(PickPoint, question)
+        point = parse(PickPoint, question)
         frame = self._frame
         if frame is None:
             raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
-        return asdict(propose(BALANCES[self._settings.white_balance](frame.picture), place))
+        return asdict(propose(BALANCES[self._settings.white_balance](frame.picture), point))
+
+    def take_snapshot(self) -> dict[str, Any]:
+        """Send the newest picture at full size to the outputs; return its `time` (s, steady clock)."""
+        frame = self._newest
+        if self.missing or frame is None:
+            raise RefusedError(f"There is no picture to take. Camera: {self.text}.")
+        from robot_runtime.vision.pipeline import as_snapshot
+
+        age = self._clock.now() - frame.taken
+        if age > max(SNAPSHOT_AGE, 2 / self._settings.rate):
+            raise RefusedError(
+                f"The camera's newest picture is {age:.0f} s old. Take the snapshot when new ones come."
+            )
+        if frame.taken == self._snapshot_taken:
+            raise RefusedError("This picture is a snapshot already, and the camera has sent no newer one.")
+        self._snapshot_taken = frame.taken
+        self._outputs.snapshot(frame.taken, as_snapshot(frame.picture))
+        return {"time": frame.taken}
 
     def refusals(self) -> list[str]:
-        """Returns nothing: a camera is no reason against arming."""
+        """Return nothing: a camera is no reason against arming."""
         return []
 
     def start(self) -> None:
-        """Imports OpenCV before the first picture, so that this one is not late."""
+        """Import OpenCV before the first picture, so that the first picture is not late."""
         try:
             importlib.import_module("robot_runtime.vision.pipeline")
         except MemoryError:
@@ -139,16 +165,17 @@ class VisionNode(Vision):
             self._report("caution", f"Camera: {self.missing}.")
 
     def close(self) -> None:
-        """Releases the camera."""
+        """Release the camera."""
         self._drop_camera()
 
-    def process_picture(self) -> None:
-        """Takes, searches and publishes one picture; a failing camera is reported and retried later.
+    def process_picture(self, search: bool = True, stream: bool = False) -> None:
+        """Take a picture to search or to stream, or drop it; a failing camera is reported and retried later.
 
-        Raises MemoryError where memory is exhausted: that does not come back by trying again.
+        Raise MemoryError where memory is exhausted: trying again does not help.
         """
+        began = self._clock.now()
         try:
-            frame = self._take()
+            frame = self._take(skip=not (search or stream), large=stream)
         except CameraError as problem:
             self._fail(str(problem), problem.patience)
         except Exception as problem:
@@ -157,44 +184,90 @@ class VisionNode(Vision):
             log.exception("the camera failed")
             self._fail(f"the camera failed ({problem}); the log says more")
         else:
-            if frame is not None:
+            if self._camera is not None and self._camera.rate is not None:
+                # Waiting for a device's next picture is no work.
+                began = self._clock.now()
+            if frame is not None and search:
                 self._examine(frame)
+            if frame is not None and stream:
+                self._send_stream(frame, began)
 
     def tick(self) -> float:
-        """Processes a picture if one is due and returns 0; otherwise returns the s until then.
+        """Process a picture if it is due and return 0; otherwise return the time (s) until then.
 
-        Raises MemoryError.
+        Raise MemoryError.
         """
-        remaining = self._timer.remaining()
+        stream = self._outputs.watched(CAMERA)
+        # A device keeps its oldest pictures, if nobody takes them.
+        device = self._camera is not None and self._camera.rate is not None
+        timers = [self._timer, self._stream_timer] if stream or device else [self._timer]
+        remaining = min(timer.remaining() for timer in timers)
         if remaining > 0:
             return remaining
-        self._timer.begin()
+        # One picture serves both where they are nearly due together.
+        slack = 0.5 / max(timer.rate for timer in timers)
+        due = [timer for timer in timers if timer.remaining() <= slack]
+        for timer in due:
+            timer.begin()
         try:
-            self.process_picture()
+            self.process_picture(self._timer in due, stream and self._stream_timer in due)
         except Exception as problem:
             if _lacks_memory(problem):
                 raise MemoryError(str(problem)) from problem
             log.exception("a picture could not be processed")
         return 0.0
 
-    def _take(self) -> CameraFrame | None:
-        """Returns the newest picture; None until a failed camera is to be tried again."""
-        if self._camera is not None and self._camera.rate not in (None, self._settings.rate):
+    def _take(self, skip: bool, large: bool) -> CameraFrame | None:
+        """Return the newest picture, turned; None if it is dropped, or a failed camera is not tried yet.
+
+        It is `large` enough for the stream, or of the size that is searched.
+        """
+        is_device = self._camera is not None and self._camera.rate is not None
+        if is_device and self._opened_for != self._device_settings:
             self._drop_camera()
         if self._camera is None:
             if self._clock.now() < self._retry_at:
                 return None
+            self._opened_for = self._device_settings
             self._camera = self._open_camera()
+        if skip:
+            self._camera.skip()
+            return None
+        from robot_runtime.vision import pipeline
+
+        settings, size = self._settings, self._config.size
+        if large:
+            width, height = self._config.stream_size
+            scale = self._quality.step.scale
+            size = max(size, (round(width * scale), round(height * scale)))
+        self._camera.size = pipeline.before_turn(size, settings.turn)
         frame = self._camera.read()
         self._check_repetition(frame.picture)
         self._failing_since = None
         if self._failure is not None:
             self._failure = None
             self._report("info", f"Camera: {self.text}.")
-        return frame
+        self._newest = frame._replace(picture=pipeline.turn(frame.picture, settings.turn, settings.mirror))
+        return self._newest
+
+    def _send_stream(self, frame: CameraFrame, began: float) -> None:
+        """Send a picture of the stream, which was begun at `began` (s)."""
+        from robot_runtime.vision import pipeline
+
+        jpeg = pipeline.as_stream(frame.picture, self._config.stream_size, self._quality.step)
+        self._outputs.picture(CAMERA, frame.taken, jpeg)
+        now = self._clock.now()
+        self._quality.take(now, now - began, len(jpeg))
+
+    @property
+    def _device_settings(self) -> tuple[float, bool, SensorControls]:
+        """Rate, shape and controls that a device is opened for; where they change, it is opened again."""
+        now = self._settings
+        controls = SensorControls(now.exposure, now.gain, now.colour_temperature)
+        return max(now.rate, self._config.stream_rate), now.turn in (90, 270), controls
 
     def _check_repetition(self, picture: "Picture") -> None:
-        """Raises CameraError where a real camera gives one picture for ever, also when opened again."""
+        """Raise CameraError where a real camera repeats one picture for ever, also after a reopening."""
         if self._config.camera not in REAL_CAMERAS:
             return
         if self._repetition is None:
@@ -208,6 +281,7 @@ class VisionNode(Vision):
         # Imports NumPy and OpenCV, the slowest part of the start.
         from robot_runtime.vision import pipeline
 
+        frame = frame._replace(picture=pipeline.fit(frame.picture, *self._config.size))
         settings = self._settings
         if self._detector is None or self._detector.settings is not settings:
             self._detector = pipeline.Detector(settings)
@@ -253,7 +327,7 @@ class VisionNode(Vision):
 
     def _fail(self, text: str, patience: float = 0.0) -> None:
         self._drop_camera()
-        self._frame = None
+        self._frame = self._newest = None
         now = self._clock.now()
         self._retry_at = now + RETRY
         if self._failing_since is None:
@@ -287,10 +361,11 @@ class VisionNode(Vision):
         def report_missing(why: str) -> None:
             self._report("caution", f"Camera: the scene cannot be rendered: {why}. A drawn card stands in.")
 
-        config = replace(self._config, rate=self._settings.rate)
+        settings = {field.name: getattr(self._settings, field.name) for field in fields(self._settings)}
+        config = replace(self._config, **settings)
         return open_camera(config, self._clock, self._connect, lambda: self.shown_card, report_missing)
 
 
 def _lacks_memory(problem: Exception) -> bool:
-    """Returns True for an allocation that failed, in Python, NumPy or OpenCV."""
+    """Return True for an allocation that failed, in Python, NumPy or OpenCV."""
     return isinstance(problem, MemoryError) or getattr(problem, "code", None) == _OPENCV_MEMORY

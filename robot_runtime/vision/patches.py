@@ -53,23 +53,25 @@ class Patches:
 
 
 def find_patches(hsv: Picture, name: str, settings: VisionSettings) -> Patches:
-    """Returns the patches of a named colour in an HSV picture (height, width, 3)."""
+    """Return the patches of a named colour in an HSV picture (height, width, 3)."""
     height, width = hsv.shape[:2]
     mask = find_colour(hsv, settings.colours[name])
     if cv2.countNonZero(mask) < settings.area_min * width * height:
         return Patches(name, mask, (), ())
-    found, _ = cv2.findContours(_opened(mask, settings.opening), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
-    contours = [one.astype(np.int32, copy=False) for one in found]
+    outlines, _ = cv2.findContours(
+        _opened(mask, settings.opening), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE
+    )
+    contours = [outline.astype(np.int32, copy=False) for outline in outlines]
     contours.sort(key=cv2.contourArea, reverse=True)
-    measured = [(_measure(one, width, height, settings), one) for one in contours[:CONTOURS_MAX]]
+    measured = [(_measure(contour, width, height, settings), contour) for contour in contours[:CONTOURS_MAX]]
     # Those that meet the limits come first, whatever their size.
     measured.sort(key=lambda pair: bool(pair[0].refused))
     listed = measured[:CANDIDATES_MAX]
-    return Patches(name, mask, [one for one, _ in listed], [contour for _, contour in listed])
+    return Patches(name, mask, [candidate for candidate, _ in listed], [contour for _, contour in listed])
 
 
 def find_colour(hsv: Picture, colour: ColourRange) -> Picture:
-    """Returns 255 where an HSV picture (height, width, 3) has this colour, else 0; shape (height, width)."""
+    """Return 255 where an HSV picture (height, width, 3) has this colour, else 0; shape (height, width)."""
     low, high = colour.hue
     if low <= high:
         return _between(hsv, colour, low, high)
@@ -83,7 +85,7 @@ def _between(hsv: Picture, colour: ColourRange, hue_low: int, hue_high: int) -> 
 
 
 def _opened(mask: Picture, opening: float) -> Picture:
-    """Returns the mask without specks of noise; larger patches are unchanged."""
+    """Return the mask without specks of noise; larger patches are unchanged."""
     if opening == 0:
         return mask
     size = max(OPENING_LEAST, int(mask.shape[1] * opening) | 1)
@@ -120,11 +122,11 @@ def _refused(area: float, fill: float, aspect: float, circularity: float, settin
         ("too wide", aspect > high),
         ("not round enough", circularity < settings.circularity_min),
     )
-    return ", ".join(words for words, holds in reasons if holds)
+    return ", ".join(reason for reason, holds in reasons if holds)
 
 
 def draw_mask(patches: Patches) -> Picture:
-    """Returns the mask with the outlines of the largest patches, BGR, uint8 of shape (height, width, 3)."""
+    """Return the mask with the outlines of the largest patches, BGR, uint8 of shape (height, width, 3)."""
     height, width = patches.mask.shape
     picture = np.full((height, width, 3), GROUND, np.uint8)
     picture[patches.mask > 0] = DROPPED

@@ -6,26 +6,41 @@ from typing import Any
 import numpy as np
 
 from robot_runtime.clock import Clock
-from robot_runtime.vision.camera import Camera, CameraError, CameraFrame, taken_at
+from robot_runtime.vision.camera import (
+    NO_CONTROLS,
+    Camera,
+    CameraError,
+    CameraFrame,
+    SensorControls,
+    taken_at,
+)
+from robot_runtime.vision.shape import describe_fit, fit
 
 BUFFERS = 2
 """Pictures that the camera fills in turn: one is searched while the next one comes. More would be older."""
 NANOSECONDS = 1e9
+MICROSECONDS = 1e3
+"""In a ms."""
 
 
 class PiCamera(Camera):
-    """Takes `rate` pictures of `width` × `height` pixels a second.
+    """A camera that is asked for `rate` pictures of `width` × `height` pixels a second.
 
     Raises CameraError without picamera2 or a camera, and where the camera is in use.
     """
 
-    def __init__(self, width: int, height: int, rate: float, clock: Clock) -> None:
+    def __init__(
+        self, width: int, height: int, rate: float, clock: Clock, controls: SensorControls = NO_CONTROLS
+    ) -> None:
         self._clock = clock
         self.rate = rate
-        self._device = _open_device(width, height, rate)
+        self.size = self._given = (width, height)
+        self._device = _open_device(width, height, rate, _table(controls))
+        known = getattr(self._device, "camera_controls", {})
+        self._refused = [name for name in _table(controls) if known and name not in known]
 
     def read(self) -> CameraFrame:
-        """Returns the newest picture. Raises CameraError if the camera gives none."""
+        """Return the newest picture. Raise CameraError if the camera gives none."""
         try:
             request = self._device.capture_request()
             try:
@@ -35,18 +50,42 @@ class PiCamera(Camera):
                 request.release()
         except Exception as problem:
             raise CameraError(f"the Pi camera gives no picture ({problem}); check its cable") from problem
+        self._given = (picture.shape[1], picture.shape[0])
         # libcamera counts from the computer's start; a Pi never sleeps, so that this is the steady clock.
-        return CameraFrame(picture, taken_at((stamp or 0) / NANOSECONDS, self._clock.now()))
+        return CameraFrame(fit(picture, *self.size), taken_at((stamp or 0) / NANOSECONDS, self._clock.now()))
+
+    def skip(self) -> None:
+        """Give the next picture back to the camera. Raise CameraError."""
+        try:
+            self._device.capture_request().release()
+        except Exception as problem:
+            raise CameraError(f"the Pi camera gives no picture ({problem}); check its cable") from problem
 
     def close(self) -> None:
-        """Releases the camera."""
+        """Release the camera."""
         self._device.close()
 
     def __str__(self) -> str:
-        return "Pi camera"
+        width, height = self._given
+        notes = [describe_fit(self._given, *self.size) or f"{width} × {height}"]
+        if self._refused:
+            notes.append(f"this libcamera does not know {', '.join(self._refused)}")
+        return f"Pi camera ({'; '.join(notes)})"
 
 
-def _open_device(width: int, height: int, rate: float) -> Any:
+def _table(controls: SensorControls) -> dict[str, float]:
+    """Return libcamera's controls for what is fixed; the rest is automatic when a camera is opened."""
+    table: dict[str, float] = {}
+    if controls.exposure:
+        table["ExposureTime"] = round(controls.exposure * MICROSECONDS)
+    if controls.gain:
+        table["AnalogueGain"] = controls.gain
+    if controls.colour_temperature:
+        table |= {"AwbEnable": False, "ColourTemperature": controls.colour_temperature}
+    return table
+
+
+def _open_device(width: int, height: int, rate: float, controls: dict[str, float]) -> Any:
     library = _import_library()
     try:
         cameras = library.Picamera2.global_camera_info()
@@ -61,10 +100,12 @@ def _open_device(width: int, height: int, rate: float) -> Any:
     try:
         device = library.Picamera2()
         # libcamera's RGB888 is blue, green, red in memory, which is OpenCV's order.
+        known = getattr(device, "camera_controls", controls)
         device.configure(
             device.create_video_configuration(
                 main={"size": (width, height), "format": "RGB888"},
-                controls={"FrameRate": rate},
+                controls={"FrameRate": rate}
+                | {name: value for name, value in controls.items() if name in known},
                 buffer_count=BUFFERS,
             )
         )
@@ -96,9 +137,9 @@ def _import_library() -> Any:
 
 
 def _remedy(problem: Exception) -> str:
-    words = str(problem).lower()
-    if isinstance(problem, PermissionError) or "permission" in words:
+    text = str(problem).lower()
+    if isinstance(problem, PermissionError) or "permission" in text:
         return "put the user into the group video: `sudo usermod -aG video USER`, then start again"
-    if "busy" in words or "did not acquire" in words or "in use" in words or "acquire" in words:
+    if "busy" in text or "did not acquire" in text or "in use" in text or "acquire" in text:
         return "another program uses it: end that one"
     return "check its cable, and that no other program uses it"

@@ -24,8 +24,9 @@ from robot_runtime.clock import Clock
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.documents import Detection, Event, Severity
 from robot_runtime.contract.parsing import parse
+from robot_runtime.contract.topics import WATCHABLE
 from robot_runtime.errors import RefusedError
-from robot_runtime.vision.interface import NO_PICTURE, STARTING, WATCHABLE, Vision, VisionOutputs
+from robot_runtime.vision.interface import NO_PICTURE, STARTING, Vision, VisionOutputs
 from robot_runtime.vision.messages import MessageError, MessageSocket, VisionMessage
 
 log = logging.getLogger(__name__)
@@ -45,11 +46,11 @@ LOAD_SECONDS = 300.0
 """s that loading OpenCV may take on a slow card."""
 STEADY_SECONDS = 10.0
 """s of life after which a crash counts as past."""
-PICK_SECONDS = 1.5
-"""s that a picked colour may take; the server waits for 2 s."""
+ANSWER_SECONDS = 1.5
+"""s that a picked colour or a snapshot may take; the server waits for 2 s."""
 _END_SECONDS = 2.0
 """s that the process has for its end."""
-_PICTURES = {topic.name: topic for topic in WATCHABLE}
+_PICTURES = {topic.name: topic for topic in WATCHABLE.values() if topic.sender == "runtime"}
 _ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
 """NumPy's matrices are not used: their threads would take 90 MB of room for each processor, and time."""
 
@@ -79,7 +80,7 @@ class VisionProcess(Vision):
         self._loading = False
         self._load_seconds = 0.0
         self._numbers = itertools.count()
-        self._picks: dict[int, Future[dict[str, Any]]] = {}
+        self._asked: dict[int, Future[dict[str, Any]]] = {}
         self._watched: list[str] = []
         self._lock = threading.Lock()
         self._child: subprocess.Popen[bytes] | None = None
@@ -90,7 +91,7 @@ class VisionProcess(Vision):
 
     @property
     def text(self) -> str:
-        """Description of the camera, or of its failure."""
+        """The description of the camera, or of its failure."""
         return f"{NO_PICTURE}{self._failure}" if self._failure else self._camera
 
     @property
@@ -100,31 +101,24 @@ class VisionProcess(Vision):
         return None if child is None else child.pid
 
     def pick(self, question: dict[str, Any]) -> dict[str, Any]:
-        """Returns the colour range around a point of the newest picture, after the white balance."""
-        if self._failure:
-            raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
-        number, answer = next(self._numbers), Future[dict[str, Any]]()
-        self._picks[number] = answer
-        try:
-            if not self._tell({"pick": question, "number": number}):
-                raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
-            return answer.result(PICK_SECONDS)
-        except TimeoutError as problem:
-            raise RefusedError("The camera does not answer. Try again.") from problem
-        finally:
-            del self._picks[number]
+        """Return the colour range around a point of the newest picture, after the white balance."""
+        return self._ask({"pick": question}, "There is no picture to pick a colour in")
+
+    def take_snapshot(self) -> dict[str, Any]:
+        """Send the newest picture at full size to the outputs; return its `time` (s, steady clock)."""
+        return self._ask({"snapshot": True}, "There is no picture to take")
 
     def refusals(self) -> list[str]:
-        """Returns the reason against arming while OpenCV is loaded: a slow computer is then held up."""
+        """Return the reason against arming while OpenCV is loaded: a slow computer is then held up."""
         return ["The camera's software is being loaded. Wait a moment."] if self._loading else []
 
     def start(self) -> None:
-        """Starts the thread, and with it the process."""
+        """Start the thread, and with it the process."""
         self._loading = True
         self._thread.start()
 
     def close(self) -> None:
-        """Ends the process."""
+        """End the process."""
         self._ending.set()
         self._tell({"end": True})
         if not self._thread.is_alive():
@@ -133,6 +127,21 @@ class VisionProcess(Vision):
         if (child := self._child) is not None:
             child.kill()
         self._thread.join(_END_SECONDS)
+
+    def _ask(self, question: dict[str, Any], without: str) -> dict[str, Any]:
+        """Return the process's answer. Raise RefusedError; `without` says what there is no picture for."""
+        if self._failure:
+            raise RefusedError(f"{without}. Camera: {self.text}.")
+        number, answer = next(self._numbers), Future[dict[str, Any]]()
+        self._asked[number] = answer
+        try:
+            if not self._tell({**question, "number": number}):
+                raise RefusedError(f"{without}. Camera: {self.text}.")
+            return answer.result(ANSWER_SECONDS)
+        except TimeoutError as problem:
+            raise RefusedError("The camera does not answer. Try again.") from problem
+        finally:
+            del self._asked[number]
 
     def _apply_settings(self) -> None:
         self._tell({"settings": self._settings.table()})
@@ -146,8 +155,8 @@ class VisionProcess(Vision):
             began = self._clock.now()
             why, status = self._run_once()
             self._loading = False
-            for answer in list(self._picks.values()):
-                answer.set_exception(RefusedError(f"There is no picture to pick a colour in: {why}."))
+            for answer in list(self._asked.values()):
+                answer.set_exception(RefusedError(f"There is no picture: {why}."))
             if self._ending.is_set() or self.missing:
                 break
             lived = self._clock.now() - began
@@ -158,7 +167,7 @@ class VisionProcess(Vision):
             self._ending.wait(pause)
 
     def _run_once(self) -> tuple[str, int]:
-        """Runs the process to its end; returns why it ended, in words, and its exit status."""
+        """Run the process to its end; return the reason of its end as text, and its exit status."""
         try:
             messages, child = self._start()
         except OSError as problem:
@@ -199,7 +208,8 @@ class VisionProcess(Vision):
                 raise
         self._camera, self._watched, self._load_seconds = STARTING, [], 0.0
         self._started = self._clock.now()
-        config = {name: getattr(self._config, name) for name in ("camera", "file", "width", "height")}
+        fixed = ("camera", "file", "width", "height", "stream_width", "stream_rate")
+        config = {name: getattr(self._config, name) for name in fixed}
         # Settings that change meanwhile come after these.
         with self._lock:
             start = {"config": config, "settings": self._settings.table(), "card": self.card, **self._zenoh}
@@ -208,7 +218,7 @@ class VisionProcess(Vision):
         return messages, self._child
 
     def _listen(self, messages: MessageSocket) -> None:
-        """Takes the messages of the process. Raises EOFError at its end, TimeoutError where it hangs."""
+        """Take the messages of the process. Raise EOFError at its end, TimeoutError where it hangs."""
         while True:
             patience = SILENT_SECONDS if self._load_seconds else LOAD_SECONDS
             received = messages.receive(patience)
@@ -228,7 +238,7 @@ class VisionProcess(Vision):
             self._recover()
 
     def _read(self, message: VisionMessage) -> Callable[[], None]:
-        """Returns what to do for a message. Raises MessageError."""
+        """Return the function that handles a message. Raise MessageError."""
         table = message.table
         try:
             if "detection" in table:
@@ -240,6 +250,8 @@ class VisionProcess(Vision):
                 return partial(self._outputs.picture, topic, float(table["time"]), message.attachment)
             if "thumbnail" in table:
                 return partial(self._outputs.thumbnail, float(table["thumbnail"]), message.attachment)
+            if "snapshot" in table:
+                return partial(self._outputs.snapshot, float(table["snapshot"]), message.attachment)
             if "camera" in table:
                 return partial(self._take_camera, str(table["camera"]))
             if "missing" in table:
@@ -264,7 +276,7 @@ class VisionProcess(Vision):
             self._failure = ""
 
     def _take_answer(self, number: int, table: dict[str, Any]) -> None:
-        answer = self._picks.get(number)
+        answer = self._asked.get(number)
         if answer is None or answer.done():
             return
         if "refused" in table:
@@ -273,14 +285,14 @@ class VisionProcess(Vision):
             answer.set_result(table["answer"])
 
     def _watch(self) -> None:
-        """Tells the process which pictures are watched. Asked when one comes, so that nothing polls."""
+        """Tell the process which pictures are watched; called when a picture comes, so nothing polls."""
         watched = [name for name, topic in _PICTURES.items() if self._outputs.watched(topic)]
         if watched != self._watched:
             self._watched = watched
             self._tell({"watched": watched})
 
     def _tell(self, table: dict[str, Any]) -> bool:
-        """Sends a message to the process, without ever waiting; False where there is none."""
+        """Send a message to the process without waiting; return False where there is no process."""
         with self._lock:
             if self._messages is None:
                 return False
@@ -299,7 +311,7 @@ class VisionProcess(Vision):
             self._report("caution", f"Camera: {why}. {then}")
 
     def _recover(self) -> None:
-        """Reports the end of a failure once it is past, so that a series of crashes is reported once."""
+        """Report the end of a failure once it is past, so that a series of crashes is reported once."""
         if not self._failure_reported or self.text.startswith((NO_PICTURE, STARTING)):
             return
         if self._clock.now() - self._started >= STEADY_SECONDS:
@@ -315,7 +327,7 @@ class VisionProcess(Vision):
 
     @property
     def _activity(self) -> str:
-        """The present work of the process, in words."""
+        """The present work of the process, as text."""
         if not self._load_seconds:
             return "loading OpenCV"
         file = self._config.file
@@ -328,7 +340,7 @@ class VisionProcess(Vision):
         return f"reading the camera {self._config.camera!r}"
 
     def _describe(self, status: int) -> str:
-        """The end of the process in words."""
+        """Return the end of the process as text."""
         what = "the decoder" if self._config.camera == "file" and self._load_seconds else "its process"
         if status == EXHAUSTED:
             return f"{self._activity} needed more memory than its {BYTES_MAX / 1e6:.0f} MB"

@@ -1,4 +1,4 @@
-"""Detection of a camera that repeats one picture: noise makes two pictures of a working one differ."""
+"""Detection of a camera that repeats one picture: noise makes pictures of a working camera differ."""
 
 import numpy as np
 
@@ -13,14 +13,14 @@ _ROWS_APART = 16
 
 
 class PictureRepetition:
-    """Counts how often a camera gives the same picture."""
+    """The repetitions of a camera's picture."""
 
     def __init__(self) -> None:
         self._picture: Picture | None = None
         self._since, self._count = 0.0, 0
 
     def repeats(self, picture: Picture, now: float) -> bool:
-        """Takes a picture at `now` (s); returns True if it has repeated for too often and too long."""
+        """Take a picture at `now` (s); return True if it has repeated for too often and too long."""
         before, self._picture = self._picture, picture
         if before is None or not _equal(before, picture):
             self._since, self._count = now, 0
@@ -29,5 +29,5 @@ class PictureRepetition:
         return self._count >= REPEATS and now - self._since >= REPEATING_SECONDS
 
 
-def _equal(one: Picture, other: Picture) -> bool:
-    return np.array_equal(one[::_ROWS_APART], other[::_ROWS_APART]) and np.array_equal(one, other)
+def _equal(picture: Picture, other: Picture) -> bool:
+    return np.array_equal(picture[::_ROWS_APART], other[::_ROWS_APART]) and np.array_equal(picture, other)

@@ -24,7 +24,7 @@ class SceneMissingError(Exception):
 
 
 class SceneCamera(Camera):
-    """Queries pictures of `width` × `height` pixels; `card` returns the shown card, if any.
+    """A camera that queries pictures of `width` × `height` pixels; `card` returns the shown card, if any.
 
     Raises CameraError if no scene answers, SceneMissingError if it answers that it cannot render.
     """
@@ -36,7 +36,7 @@ class SceneCamera(Camera):
         messages: "ZenohTransport",
         card: Callable[[], CameraCard | None],
     ) -> None:
-        self._size = (width, height)
+        self.size = (width, height)
         self._messages = messages
         self._card = card
         try:
@@ -51,13 +51,13 @@ class SceneCamera(Camera):
             raise SceneMissingError(str(missing))
 
     def read(self) -> CameraFrame:
-        """Returns the picture from the robot's last known position. Raises CameraError."""
+        """Return the picture from the robot's last known position. Raise CameraError."""
         card = self._card()
-        request = write_request(*self._size, card.paint if card else None, marked=bool(card and card.marked))
+        request = write_request(*self.size, card.paint if card else None, marked=bool(card and card.marked))
         try:
             picture = read_picture(self._messages.query_bytes("scene/picture", request, PICTURE_TIMEOUT))
             height, width = picture.pixels.shape[:2]
-            if (width, height) != self._size or not isfinite(picture.time):
+            if (width, height) != self.size or not isfinite(picture.time):
                 raise ValueError(f"it sent {width} × {height} at {picture.time} s")
         except NoAnswerError as problem:
             raise CameraError(
@@ -68,7 +68,7 @@ class SceneCamera(Camera):
         return CameraFrame(picture.pixels, picture.time)
 
     def close(self) -> None:
-        """Does nothing; no device is open."""
+        """Do nothing; no device is open."""
 
     def __str__(self) -> str:
         card = self._card()

@@ -18,7 +18,7 @@ class VisionSettingsFile:
         self._path = path
 
     def read(self) -> VisionSettings | None:
-        """Reads the stored settings; None if there are none. Raises ConfigError if they cannot be used."""
+        """Read the stored settings; None if there are none. Raise ConfigError if they cannot be used."""
         try:
             table = read_json(self._path.read_bytes())
             settings: VisionSettings = read_value(VisionSettings, table, DocumentEntry(self._path.name))
@@ -33,9 +33,9 @@ class VisionSettingsFile:
         return settings
 
     def write(self, settings: VisionSettings) -> None:
-        """Stores the settings. Raises OSError; then the older ones remain."""
+        """Store the settings. Raise OSError; then the older ones remain."""
         write_whole(self._path, json.dumps(settings.table(), indent=1).encode())
 
     def forget(self) -> None:
-        """Removes the stored settings. Raises OSError."""
+        """Remove the stored settings. Raise OSError."""
         self._path.unlink(missing_ok=True)

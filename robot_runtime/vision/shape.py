@@ -3,11 +3,14 @@
 import cv2
 import numpy as np
 
+from robot_runtime.contract.vision_settings import Turn
 from robot_runtime.vision.picture import Picture
+
+_ROTATIONS = {90: cv2.ROTATE_90_CLOCKWISE, 180: cv2.ROTATE_180, 270: cv2.ROTATE_90_COUNTERCLOCKWISE}
 
 
 def fit(picture: Picture, width: int, height: int) -> Picture:
-    """Returns the middle of a picture, as much as has the shape of `width` × `height`, scaled to that.
+    """Return the largest middle part of a picture with the shape of `width` × `height`, scaled to that.
 
     A circle stays a circle, so that limits of shape and area hold. Bars at the sides would do that, too, but
     count as dark water in the white balance and in a patch's share of the picture.
@@ -24,9 +27,22 @@ def fit(picture: Picture, width: int, height: int) -> Picture:
 
 
 def describe_fit(given: tuple[int, int], width: int, height: int) -> str:
-    """Returns what `fit` does with pictures of `given` width and height; empty where it does nothing."""
+    """Return the effect of `fit` on pictures of `given` width and height as text; empty without any."""
     across, there = given
     if given == (width, height):
         return ""
     done = "scaled" if across * height == there * width else "cropped and scaled"
     return f"{across} × {there}, {done} to {width} × {height}"
+
+
+def turn(picture: Picture, degrees: Turn, mirror: bool) -> Picture:
+    """Return a picture turned clockwise by `degrees`, then mirrored left to right."""
+    if degrees:
+        picture = cv2.rotate(picture, _ROTATIONS[degrees]).astype(np.uint8, copy=False)
+    return cv2.flip(picture, 1).astype(np.uint8, copy=False) if mirror else picture
+
+
+def before_turn(size: tuple[int, int], degrees: Turn) -> tuple[int, int]:
+    """Return the width and height that a picture of `size` has before it is turned by `degrees`."""
+    width, height = size
+    return (height, width) if degrees in (90, 270) else size

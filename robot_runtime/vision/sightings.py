@@ -1,4 +1,4 @@
-"""Votes of the last pictures, so that a single false one neither shows nor hides anything."""
+"""Votes of the last pictures, so that a single wrong picture neither shows nor hides anything."""
 
 from collections import deque
 from collections.abc import Collection
@@ -10,21 +10,21 @@ GAP_SECONDS = 1.0
 
 
 class Sightings:
-    """The names of what each of the last pictures shows."""
+    """The names of the sights in each of the last pictures."""
 
     def __init__(self) -> None:
         self._shown: deque[Collection[str]] = deque(maxlen=PICTURES_MAX)
         self._taken = 0.0
 
     def add(self, names: Collection[str], taken: float) -> None:
-        """Adds the names that a picture shows, which was taken at `taken` s."""
+        """Add the names that a picture shows, which was taken at `taken` s."""
         if taken - self._taken > GAP_SECONDS:
             self._shown.clear()
         self._taken = taken
         self._shown.append(names)
 
     def confirmed(self, needed: int, pictures: int) -> list[str]:
-        """Returns the names, in alphabetical order, that `needed` of the last `pictures` show."""
+        """Return the names, in alphabetical order, that `needed` of the last `pictures` show."""
         last = list(self._shown)[-pictures:]
         names = sorted({name for shown in last for name in shown})
         return [name for name in names if sum(name in shown for shown in last) >= needed]

@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.link_statistics import LinkStatistics
-from robot_runtime.contract.topics import TIME
+from robot_runtime.contract.topics import LINK, MISSION, STATE, TIME, TRUTH, AnyTopic
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.transport.blocks import Block
@@ -40,7 +40,7 @@ Condition = tuple[PartState, str]
 
 
 class PartHealth(BaseModel):
-    """A part: its state, and a sentence about it."""
+    """The health of a part: its state, and a sentence about it."""
 
     name: PartName
     state: PartState
@@ -63,7 +63,7 @@ class Health(BaseModel):
 
 
 class HealthMonitor:
-    """Derives the health of each part from its process and the newest block of each topic."""
+    """Monitor of each part's health by its process and the newest block of each topic."""
 
     def __init__(
         self,
@@ -72,14 +72,14 @@ class HealthMonitor:
         store: Store,
         processes: ProcessSupervisor,
     ) -> None:
-        self.outlets: Callable[[], Condition | None] = lambda: None
-        """The state of the outlets of events; None without one."""
+        self.events: Callable[[], Condition | None] = lambda: None
+        """The state of the way to the broker of events; None without one."""
         self._settings = settings
         self._clock = clock
         self._store = store
         self._processes = processes
         self._began = clock.now()
-        self._newest: dict[str, tuple[float, Block]] = {}
+        self._newest: dict[AnyTopic, tuple[float, Block]] = {}
         self._bytes_received = -1
         self._bytes_grew = float("-inf")
         self._unrenderable = missing()
@@ -89,26 +89,26 @@ class HealthMonitor:
         """Reason why the board does not run the robot's firmware, and the remedy; None if it does."""
 
     def see(self, block: Block) -> None:
-        """Note a block."""
+        """Record a block."""
         now = self._clock.now()
-        self._newest[block.topic.name] = (now, block)
+        self._newest[block.topic] = (now, block)
         if block.topic.sender in self.last_heard:
             self.last_heard[block.topic.sender] = now
-        if block.topic.name == "link":
+        if block.topic is LINK:
             self._see_link(block, now)
 
     def state(self) -> dict[str, Any] | None:
-        """The newest `state` document; None without a readable one."""
-        return self._document("state")
+        """Return the newest `state` document; None without a readable one."""
+        return self._document(STATE)
 
     def silence(self) -> float | None:
-        """Age of the newest state (s) where it is too old to be the robot's present one; else None."""
-        if "state" not in self._newest or self._fresh("state", STATE_SECONDS, None):
+        """Return the age of the newest state (s) where it is too old to be the present one; else None."""
+        if STATE not in self._newest or self._fresh(STATE, STATE_SECONDS, None):
             return None
-        return self._clock.now() - self._newest["state"][0]
+        return self._clock.now() - self._newest[STATE][0]
 
     def require_heard(self) -> None:
-        """Raises UnavailableError where the newest state is too old to be the robot's present one."""
+        """Raise UnavailableError where the newest state is too old to be the robot's present one."""
         if (age := self.silence()) is not None:
             raise UnavailableError(
                 f"The robot's state is unknown: its runtime has said nothing for {age:.0f} s. "
@@ -116,18 +116,18 @@ class HealthMonitor:
             )
 
     def mission(self) -> dict[str, Any] | None:
-        """The newest `mission` document; None without a readable one."""
-        return self._document("mission")
+        """Return the newest `mission` document; None without a readable one."""
+        return self._document(MISSION)
 
-    async def catch_up(self, topic: Literal["state", "mission"], moment: float) -> None:
-        """Wait until a document of this moment (s, steady clock) or later is here, or should have come."""
+    async def catch_up(self, topic: AnyTopic, moment: float) -> None:
+        """Wait until a document of this moment (s, steady clock) or later has arrived, or is overdue."""
         while self._clock.now() < moment + CATCH_UP_SECONDS:
             document = self._document(topic)
             if document is not None and document.get("time", 0.0) >= moment:
                 return
             await asyncio.sleep(CATCH_UP_PAUSE)
 
-    def _document(self, topic: str) -> dict[str, Any] | None:
+    def _document(self, topic: AnyTopic) -> dict[str, Any] | None:
         if topic not in self._newest:
             return None
         try:
@@ -137,7 +137,7 @@ class HealthMonitor:
         return document if isinstance(document, dict) else None
 
     def require_disarmed(self, why: str) -> None:
-        """Refuse heavy work while the robot is armed. Raises RefusedError, with the reason `why`."""
+        """Refuse heavy work while the robot is armed. Raise RefusedError, with the reason `why`."""
         state = self.state()
         if state is not None and state.get("armed"):
             raise RefusedError(f"{why} It is refused while the robot is armed: press STOP first.")
@@ -148,7 +148,7 @@ class HealthMonitor:
         return "failed" not in (self._database()[0], self._runtime()[0])
 
     def health(self) -> Health:
-        """The health of every part now."""
+        """Return the health of every part now."""
         conditions: dict[PartName, Condition] = {
             "server": ("ok", "Answers requests."),
             "database": self._database(),
@@ -159,7 +159,7 @@ class HealthMonitor:
             "scene": self._scene(),
             "camera": self._camera(),
         }
-        if (events := self.outlets()) is not None:
+        if (events := self.events()) is not None:
             conditions["events"] = events
         parts = [PartHealth(name=name, state=state, text=text) for name, (state, text) in conditions.items()]
         simulator = self._processes.get("simulator")
@@ -172,7 +172,7 @@ class HealthMonitor:
             status = "failed"
         elif "starting" in states:
             status = "starting"
-        return Health(status=status, version=VERSION, robot=self._settings.robot, parts=parts)
+        return Health(status=status, version=VERSION, robot=self._settings.robot.name, parts=parts)
 
     def _see_link(self, block: Block, now: float) -> None:
         row = block.data[len(block.data) - block.topic.row_bytes + TIME.size :]
@@ -193,7 +193,7 @@ class HealthMonitor:
             return "failed", f"It {process.problem}."
         if process is not None and process.state == "paused":
             return "absent", process.problem
-        if self._fresh("state", STATE_SECONDS, process):
+        if self._fresh(STATE, STATE_SECONDS, process):
             return "ok", "Sends data."
         return self._silent(process, "Runs, but sends nothing.")
 
@@ -219,26 +219,26 @@ class HealthMonitor:
             return "absent", runtime.problem
         if self._is_recent(self._bytes_grew, LINK_SECONDS, process or runtime):
             return "ok", "Sends data."
-        known = self._fresh("link", LINK_SECONDS, runtime)
+        known = self._fresh(LINK, LINK_SECONDS, runtime)
         return (None if known else self._unknown(runtime)) or self._silent(
             process or runtime, "Nothing arrives from it."
         )
 
     def _simulator(self) -> Condition:
-        if self._settings.mode == "robot":
+        if self._settings.robot.mode == "robot":
             return "absent", "A real robot swims in real water."
         process = self._processes.get("simulator")
         if process is not None and process.state == "failed":
             return "failed", f"It {process.problem}."
         # Hardware in the loop may be fed by a simulator on another computer.
-        if self._fresh("truth", TRUTH_SECONDS, process):
+        if self._fresh(TRUTH, TRUTH_SECONDS, process):
             return "ok", "Simulates the water."
         if process is not None and process.state == "paused":
             return "absent", process.problem
         return self._silent(process, "Runs, but the simulated water stands still.")
 
     def _scene(self) -> Condition:
-        if self._settings.mode == "robot":
+        if self._settings.robot.mode == "robot":
             return "absent", "A real robot has a real camera."
         if self._unrenderable is not None:
             return "absent", f"Not rendered: {self._unrenderable}."
@@ -262,17 +262,17 @@ class HealthMonitor:
         ), f"{text[:1].upper()}{text[1:]}." if text else "Starting."
 
     def _unknown(self, runtime: ManagedProcess | None) -> Condition | None:
-        """The condition of a part that the runtime alone knows, where that says nothing; else None."""
-        if self._fresh("state", STATE_SECONDS, runtime):
+        """Return the condition of a part that only a silent runtime knows; None where it is not silent."""
+        if self._fresh(STATE, STATE_SECONDS, runtime):
             return None
         state, text = self._silent(runtime, "The runtime sends nothing.")
         return "unknown" if state == "failed" else state, text
 
-    def _fresh(self, topic: str, seconds: float, process: ManagedProcess | None) -> bool:
+    def _fresh(self, topic: AnyTopic, seconds: float, process: ManagedProcess | None) -> bool:
         return topic in self._newest and self._is_recent(self._newest[topic][0], seconds, process)
 
     def _is_recent(self, moment: float, seconds: float, process: ManagedProcess | None) -> bool:
-        """True if the moment lies within the last `seconds`, and within the present run of the process."""
+        """Return True if the moment lies within the last `seconds` and the present run of the process."""
         return self._clock.now() - moment < seconds and (process is None or moment >= process.since)
 
     def _silent(self, process: ManagedProcess | None, text: str) -> Condition:

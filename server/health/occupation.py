@@ -7,16 +7,16 @@ Reason = Callable[[], str | None]
 
 
 class Occupation:
-    """Asks those who may have the robot or its board; whoever has the robot has its board, too."""
+    """The tasks that may occupy the robot or its board; a task with the robot has its board, too."""
 
     def __init__(self) -> None:
         self.robot: list[Reason] = []
         self.board: list[Reason] = []
 
     def of_robot(self) -> str | None:
-        """The reason why the robot cannot be had now."""
+        """Return the reason why the robot is not free now."""
         return next((why for reason in self.robot if (why := reason()) is not None), None)
 
     def of_board(self) -> str | None:
-        """The reason why the board cannot be had now."""
+        """Return the reason why the board is not free now."""
         return self.of_robot() or next((why for reason in self.board if (why := reason()) is not None), None)

@@ -10,7 +10,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
 from server.feature import Plug
-from server.health.faults import FAULTS
+from server.health.faults import SERVER_FAULTS
 from server.health.monitor import HealthMonitor
 from server.health.watchdog import DOWN, Watchdog
 from server.platform.notices import Notices
@@ -37,25 +37,25 @@ class ServerStart:
 
 
 def make_alarms(clock: Clock, notices: Notices, hub: Hub) -> Alarms:
-    """The alarms of the server, which the pages are sent at each change."""
-    alarms = Alarms(clock, FAULTS, notices.add_event, changed=lambda: announce(alarms, hub))
+    """Return the alarms of the server, which the pages are sent at each change."""
+    alarms = Alarms(clock, SERVER_FAULTS, notices.add_event, changed=lambda: announce(alarms, hub))
     return alarms
 
 
 def announce(alarms: Alarms, hub: Hub) -> None:
-    """Send the pages the alarms."""
+    """Send the alarms to the pages."""
     hub.notify({"op": "alarms", "alarms": [asdict(alarm) for alarm in alarms.listed()]})
 
 
 def make_processes(
     start: ServerStart, settings: Settings, clock: Clock, ends: "ProcessEnds"
 ) -> ProcessSupervisor:
-    """The robot's processes."""
+    """Return the robot's processes."""
     return ProcessSupervisor(start.processes, settings.data, clock, ends.see)
 
 
 class ProcessEnds:
-    """Acts on the unexpected end of a process."""
+    """The reaction to the unexpected end of a process."""
 
     def __init__(self, alarms: Alarms, bridge: Bridge) -> None:
         self._alarms = alarms
@@ -63,7 +63,7 @@ class ProcessEnds:
         self._stopping: asyncio.Task[None] | None = None
 
     def see(self, part: str, text: str) -> None:
-        """Take in the end of a part, with a sentence about it."""
+        """Handle the end of a part, with a sentence about it."""
         self._alarms.begin(DOWN[part], text)
         if part == "simulator":
             self._stopping = asyncio.create_task(self._stop_without_water())
@@ -75,7 +75,7 @@ class ProcessEnds:
 
 
 class HealthPlug(Plug):
-    """Starts the processes, watches them, and ends them last."""
+    """The plug that starts the processes, watches them, and ends them last."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_alarms, make_processes)
 
@@ -99,11 +99,11 @@ class HealthPlug(Plug):
         feed.on_failure = lambda name, problem: alarms.begin("server_task_failed", f"{name}: {problem}.")
 
     async def open(self) -> None:
-        """End what a killed server has left and this one does not use."""
+        """End processes of a killed server that this one does not use."""
         await self._processes.end_others()
 
     async def start(self) -> None:
-        """Announce the alarms, and leave the simulation to another computer where it is elsewhere."""
+        """Announce the alarms; start no simulation here if it runs on another computer."""
         announce(self._alarms, self._hub)
         if self._settings.hil.simulator == "elsewhere":
             for name in SIMULATION:

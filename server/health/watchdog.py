@@ -32,7 +32,7 @@ DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scen
 
 
 class Watchdog:
-    """Raises and clears alarms; ends a runtime that hangs."""
+    """Watchdog that raises and clears alarms, and ends a runtime that hangs."""
 
     def __init__(
         self,
@@ -90,14 +90,14 @@ class Watchdog:
         see("server_restarted", False)
 
     def _does_water_stand(self) -> bool:
-        """True if the simulator is silent, but where the runtime has noticed it: one fault is one alarm."""
-        if self._settings.mode == "robot" or not self._is_silent("simulator"):
+        """Return True if the simulator is silent and the runtime has no alarm of it: one fault, one alarm."""
+        if self._settings.robot.mode == "robot" or not self._is_silent("simulator"):
             return False
         listed = (self._monitor.state() or {}).get("alarms", []) if self._monitor.silence() is None else []
-        return not any(one["fault"] == "simulator_silent" and one["active"] for one in listed)
+        return not any(alarm["fault"] == "simulator_silent" and alarm["active"] for alarm in listed)
 
     def _look_at_disk(self) -> bool:
-        """Note if the disk is almost full; False where it is gone, as a stick that was pulled."""
+        """Update the alarm of an almost full disk; return False where the disk is gone (a pulled stick)."""
         try:
             disk = shutil.disk_usage(self._settings.data.path)
         except OSError:
@@ -107,7 +107,7 @@ class Watchdog:
         return True
 
     def _is_supply_low(self) -> bool:
-        """True where the supply is too low now, or was for a moment since the last look."""
+        """Return True where the supply is too low now, or was too low since the last check."""
         before, self._supply = self._supply, self._throttled()
         self._supply_seen = self._checked
         if self._supply is None:

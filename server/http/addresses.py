@@ -1,4 +1,4 @@
-"""Refusals, in words, of addresses, methods and query parameters that the interface does not have."""
+"""Refusals with a reason of addresses, methods and query parameters that the interface does not have."""
 
 from collections.abc import Iterator
 from difflib import get_close_matches
@@ -22,7 +22,7 @@ class UnknownParameterError(InvalidError):
 
 
 async def refuse_unknown_parameters(request: Request) -> None:
-    """Refuse a query parameter that the operation does not declare. Raises UnknownParameterError."""
+    """Refuse a query parameter that the operation does not declare. Raise UnknownParameterError."""
     if not request.query_params:
         return
     known = tuple(dict.fromkeys(_parameters(request.scope["route"].dependant)))
@@ -35,22 +35,22 @@ async def refuse_unknown_parameters(request: Request) -> None:
 
 
 def nearest(name: str, known: tuple[str, ...]) -> str:
-    """A question for the likely meaning of an unknown name; empty where none is near."""
-    found = get_close_matches(name[:SHOWN_MAX], known, 1)
-    return f"Did you mean '{found[0]}'? " if found else ""
+    """Return a question with the known name that is nearest to an unknown one; empty where none is near."""
+    matches = get_close_matches(name[:SHOWN_MAX], known, 1)
+    return f"Did you mean '{matches[0]}'? " if matches else ""
 
 
 def shown(name: str) -> str:
-    """An unknown name as an answer repeats it."""
+    """Return an unknown name in the form for an answer, shortened."""
     return repr(name[:SHOWN_MAX])
 
 
 def _parameters(dependant: Dependant) -> Iterator[str]:
-    """The names of query parameters; those of a model are its fields."""
+    """Yield the names of query parameters; those of a model are its fields."""
     for field in dependant.query_params:
         model = field.field_info.annotation
         if isinstance(model, type) and issubclass(model, BaseModel):
-            yield from (one.alias or name for name, one in model.model_fields.items())
+            yield from (field.alias or name for name, field in model.model_fields.items())
         else:
             yield field.alias
     for below in dependant.dependencies:
@@ -58,7 +58,7 @@ def _parameters(dependant: Dependant) -> Iterator[str]:
 
 
 def make_unknown_router() -> APIRouter:
-    """Answers what no operation under /api does: another method of one, or an address that nothing has."""
+    """Answer requests without an operation under /api: another method, or an unknown address."""
     router = APIRouter(include_in_schema=False)
 
     @router.get("/api")
@@ -77,13 +77,13 @@ def make_unknown_router() -> APIRouter:
 
 
 def _methods(request: Request) -> list[str]:
-    """The methods of all operations at a request's address."""
+    """Return the methods of all operations at a request's address."""
     return sorted(
         {
             method
-            for one in iter_route_contexts([*request.app.routes])
-            if str(one.path).startswith("/api/") and one.path != ANY
-            if one.path_regex.match(request.scope["path"])
-            for method in one.methods or ()
+            for context in iter_route_contexts([*request.app.routes])
+            if str(context.path).startswith("/api/") and context.path != ANY
+            if context.path_regex.match(request.scope["path"])
+            for method in context.methods or ()
         }
     )

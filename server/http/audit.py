@@ -1,4 +1,4 @@
-"""The audit log of everything that is asked of the server over HTTP, and of STOP on the live socket."""
+"""The audit log of all requests over HTTP, and of STOP on the live socket."""
 
 import json
 import logging
@@ -80,7 +80,7 @@ class _Window:
     left_out: AuditEntry | None = None
 
     def admit(self, entry: AuditEntry, most: int) -> bool:
-        """Count an entry; False where there are too many, so that it is only counted."""
+        """Count an entry; return False where there are too many, so that it is only counted."""
         self.entries += 1
         if self.entries <= most:
             return True
@@ -90,7 +90,7 @@ class _Window:
 
 
 class AuditLog:
-    """Writes the log in a thread of its own: nobody waits for the disk, STOP least of all."""
+    """The log's writer, in a thread of its own: no request waits for the disk, STOP least of all."""
 
     def __init__(self, folder: Path, clock: Clock, notice: Callable[[str, str], None]) -> None:
         self.folder = folder
@@ -111,7 +111,7 @@ class AuditLog:
         operation: str = "",
         series: Series = "",
     ) -> None:
-        """Add an entry. `operation` is the name of an operation of the HTTP interface, if it is one.
+        """Add an entry. `operation` is the name of an operation of the HTTP interface, if the act is one.
 
         `series` is that of the entry where the act was done, but for arming, which is known by `operation`.
         """
@@ -135,18 +135,18 @@ class AuditLog:
             self._thread.submit(self._write, entries)
 
     def close(self) -> None:
-        """Write what is still waiting. Blocks; call it once."""
+        """Write the waiting entries. Blocks; call it once."""
         self._thread.submit(self._write, self._end_windows(everything=True))
         self._thread.shutdown()
 
     def _notify(self, operation: str, text: str) -> None:
-        now, (before, said) = self._clock.now(), self._noticed
-        if text != said or now - before >= NOTICE_SECONDS:
+        now, (before, noticed) = self._clock.now(), self._noticed
+        if text != noticed or now - before >= NOTICE_SECONDS:
             self._noticed = now, text
             self.notice(operation, text)
 
     def _admit(self, entry: AuditEntry, series: Series) -> bool:
-        """Count an entry; False where there are too many of its kind, so that it is only counted."""
+        """Count an entry; return False where there are too many of its kind, so that it is only counted."""
         operator = entry.role == "operator" and entry.outcome == "done"
         of_action = self._window(entry.device, entry.action, entry.outcome, series)
         of_series = self._window(entry.device, "", series, series)
@@ -158,11 +158,11 @@ class AuditLog:
         return self._windows.setdefault((device, action, kind), _Window(self._clock.now(), series))
 
     def _end_windows(self, *, everything: bool = False) -> list[_Written]:
-        """The counts of windows that have ended."""
+        """Return the counts of windows that have ended."""
         before = self._clock.now() - WINDOW
-        over = [key for key, one in self._windows.items() if everything or one.begun <= before]
+        over = [key for key, window in self._windows.items() if everything or window.begun <= before]
         ended = [self._windows.pop(key) for key in over]
-        return [(one.series, one.left_out) for one in ended if one.left_out is not None]
+        return [(window.series, window.left_out) for window in ended if window.left_out is not None]
 
     def _write(self, entries: list[_Written]) -> None:
         waiting, self._pending = [*self._pending, *entries], []
@@ -179,7 +179,7 @@ class AuditLog:
 
 
 class AuditMiddleware:
-    """ASGI middleware: writes what was asked, by whom, and how it ended.
+    """ASGI middleware: writes each request, its caller and its outcome.
 
     It is the outermost one, and so sees all refusals.
     """
@@ -217,7 +217,7 @@ class _Request:
         self.status = 0
 
     async def receive(self) -> Message:
-        """The next message to the application; the first bytes of the body are remembered."""
+        """Return the next message to the application; the first bytes of the body are stored."""
         message = await self._receive()
         self._identity = self._identity or caller_of(self._scope)
         if message["type"] == "http.request" and len(self._body) <= BODY_BYTES:
@@ -251,30 +251,34 @@ class _Request:
 
     def _describe(self) -> str:
         query = self._scope.get("query_string", b"")[:QUERY_MAX].decode(errors="replace")
-        said = self._read_body()
+        body = self._read_body()
         asked = f"{self._scope['method']} {self._scope['path']}" + (f"?{query}" if query else "")
         if UNCONFIRMED in self._scope:
             asked = f"not confirmed: {asked}"
-        return f"{asked} {json.dumps(said, ensure_ascii=False)}" if said else asked
+        return f"{asked} {json.dumps(body, ensure_ascii=False)}" if body else asked
 
     def _read_body(self) -> dict[str, Any]:
         if not self._body or len(self._body) > BODY_BYTES:
             return {}
         try:
-            said = json.loads(self._body)
+            body = json.loads(self._body)
         except (ValueError, RecursionError):
             return {}
-        return {key: one for key, one in said.items() if key not in SECRETS} if isinstance(said, dict) else {}
+        return (
+            {key: value for key, value in body.items() if key not in SECRETS}
+            if isinstance(body, dict)
+            else {}
+        )
 
 
 def caller_of(scope: Scope) -> Identity | None:
-    """The identity that the sign-in check has found, if it has."""
+    """Return the identity found by the sign-in check, if any."""
     identity = scope.get(IDENTITY)
     return identity if isinstance(identity, Identity) else None
 
 
 def address_of(scope: Scope) -> str:
-    """The address that asks; empty where the server does not know it."""
+    """Return the caller's address; empty where the server does not know it."""
     client = scope.get("client")
     return str(client[0]) if client else ""
 

@@ -1,4 +1,4 @@
-"""Limits of connections: their number, in all and of each address, and the time a client may take to ask.
+"""Limits of connections: their number, in all and of each address, and the time for a client's request.
 
 A client that is let wait costs a file handle, and the server has only so many: silent connections of a
 stranger would keep everybody else from STOP.
@@ -37,10 +37,10 @@ class LimitedConnection(Protocol):
 
     @property
     def waits(self) -> bool:
-        """True where the client has not asked in full, so that nobody works for it."""
+        """True while the client's request is incomplete, so that no work is done for it."""
 
     def overdue(self, now: float) -> bool:
-        """True where the client has taken too long."""
+        """Return True where the client has taken too long."""
 
     def end(self) -> None:
         """End the connection."""
@@ -65,13 +65,13 @@ class Connections:
         return iter(self._open)
 
     def now(self) -> float:
-        """The steady time, in s."""
+        """Return the steady time, in s."""
         return self._clock.now()
 
     def add(self, connection: "LimitedConnection", address: str) -> bool:
-        """Admit a connection; False where there are too many already.
+        """Admit a connection; return False where there are too many already.
 
-        One that waits for its client makes room: a request in full always comes before silence.
+        A connection that waits for its client makes room: a complete request always comes before silence.
         """
         self._open[connection] = address
         self._of[address] += 1
@@ -83,7 +83,7 @@ class Connections:
         return True
 
     def remove(self, connection: "LimitedConnection") -> None:
-        """Forget a connection, if it is there."""
+        """Remove a connection, if it is there."""
         address = self._open.pop(connection, None)
         if address is not None:
             self._of[address] -= 1
@@ -93,24 +93,26 @@ class Connections:
     def expire(self) -> None:
         """End the connections whose client has taken too long."""
         now = self.now()
-        for connection in [one for one in self if one.overdue(now)]:
+        for connection in [candidate for candidate in self if candidate.overdue(now)]:
             connection.end()
 
     def _is_proxy(self, address: str) -> bool:
-        """True for a trusted proxy, whose connections are of many clients (`server.http.proxies`)."""
+        """Return True for a trusted proxy, whose connections are of many clients (`server.http.proxies`)."""
         if not self._proxies or not address:
             return False
         peer = ip_address(address)
-        return any(peer in one for one in self._proxies)
+        return any(peer in network for network in self._proxies)
 
     def _make_room(self, new: "LimitedConnection", address: str) -> bool:
         waiting = [
-            one for one, whose in self._open.items() if whose == address and one is not new and one.waits
+            candidate
+            for candidate, whose in self._open.items()
+            if whose == address and candidate is not new and candidate.waits
         ]
         if not waiting:
             self.remove(new)
             return False
-        min(waiting, key=lambda one: one.progress).end()
+        min(waiting, key=lambda connection: connection.progress).end()
         return True
 
 
@@ -129,11 +131,11 @@ class HttpProtocol(H11Protocol):
 
     @property
     def waits(self) -> bool:
-        """True where the client has not asked in full, so that nobody works for it."""
+        """True while the client's request is incomplete, so that no work is done for it."""
         return self._is_between or self._is_in_body
 
     def overdue(self, now: float) -> bool:
-        """True where the client has taken too long for a head or a body."""
+        """Return True where the client has taken too long for a head or a body."""
         if self._is_between:
             return self._head_began is not None and now - self._head_began >= HEAD_SECONDS
         if self._is_in_body and self.flow.read_paused:
@@ -164,7 +166,7 @@ class HttpProtocol(H11Protocol):
             super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Take what the client has sent."""
+        """Take the client's bytes."""
         if not self._made:
             self._early += data
             return
@@ -196,9 +198,9 @@ class HttpProtocol(H11Protocol):
 
 
 class TlsHandshake(asyncio.Protocol):
-    """A connection up to the end of its TLS handshake; then it is one of `protocol`.
+    """A connection up to the end of its TLS handshake; then `protocol` takes it over.
 
-    asyncio would make the protocol of a connection only then, and nobody could count it before.
+    asyncio would make the protocol of a connection only then, too late to count it.
     """
 
     def __init__(self, connections: Connections, tls: SSLContext, protocol: HttpProtocol) -> None:
@@ -211,7 +213,7 @@ class TlsHandshake(asyncio.Protocol):
         self.progress = connections.now()
 
     def overdue(self, now: float) -> bool:
-        """True where the handshake has taken too long."""
+        """Return True where the handshake has taken too long."""
         return now - self.progress >= HEAD_SECONDS
 
     def end(self) -> None:
@@ -241,13 +243,13 @@ class TlsHandshake(asyncio.Protocol):
 
 
 def address_of_peer(transport: asyncio.BaseTransport) -> str:
-    """The address at the other end of a connection; empty where it is not known."""
+    """Return the address at the other end of a connection; empty where it is not known."""
     peer = transport.get_extra_info("peername")
     return str(peer[0]) if peer else ""
 
 
 def raise_file_limit() -> int:
-    """Raise the number of files that this process may open, up to `FILES_MAX`; returns the new limit."""
+    """Raise the number of files that this process may open, up to `FILES_MAX`; return the new limit."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     raised = FILES_MAX if hard == resource.RLIM_INFINITY else min(hard, FILES_MAX)
     if soft != resource.RLIM_INFINITY and soft < raised:

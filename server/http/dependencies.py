@@ -10,7 +10,7 @@ T = TypeVar("T")
 
 
 def find_service(connection: HTTPConnection, kind: type[T]) -> T:
-    """The service of this type, of the server that answers this request: the container registers them."""
+    """Return the service of this type of the server that answers this request."""
     service: T = connection.app.state.services.get(kind)
     return service
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 else:
 
     class Provided:
-        """`Provided[T]` annotates a route's parameter that is the server's service of the type T."""
+        """The annotation `Provided[T]` of a route's parameter: the server's service of the type T."""
 
         def __class_getitem__(cls, kind: type) -> object:
-            """The annotation by which FastAPI resolves it."""
+            """Return the annotation by which FastAPI resolves it."""
             return Annotated[kind, Depends(_provide(kind))]

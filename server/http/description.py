@@ -1,4 +1,4 @@
-"""The OpenAPI document of the interface: what FastAPI derives from the routes, with sign-in and examples."""
+"""The OpenAPI document of the interface: FastAPI's description of the routes, with sign-in and examples."""
 
 from typing import Any
 
@@ -65,14 +65,14 @@ BODIES: dict[str, Any] = {
 
 
 class DescribedApp(FastAPI):
-    """An application whose document says how to sign in; `cookie` is the name of a browser's."""
+    """An application whose document describes the sign-in; `cookie` is the name of a browser's cookie."""
 
     def __init__(self, *, cookie: str, **options: Any) -> None:
         super().__init__(servers=[SERVER], **options)
         self._cookie = cookie
 
     def openapi(self) -> dict[str, Any]:
-        """The OpenAPI document, always the same."""
+        """Return the OpenAPI document, always the same."""
         document = super().openapi()
         document["components"]["securitySchemes"] = _schemes(self._cookie)
         for methods in document["paths"].values():
@@ -106,7 +106,7 @@ def _schemes(cookie: str) -> dict[str, Any]:
 
 
 def _security(operation: dict[str, Any]) -> list[dict[str, list[str]]]:
-    """The ways to sign in for an operation; none where it needs no sign-in."""
+    """Return the ways to sign in for an operation; none where it needs no sign-in."""
     if operation[DECLARED] == Need.NOTHING.name.lower():
         return []
     browser: dict[str, list[str]] = {COOKIE: []} if LINKED in operation else {COOKIE: [], SECRET: []}

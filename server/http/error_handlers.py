@@ -46,14 +46,14 @@ async def _answer_invalid_request(_: Request, problem: Exception) -> JSONRespons
         DocumentEntry(".".join(map(str, error["loc"])), tuple(error["loc"])).sentence(error["msg"])
         for error in problem.errors()[:5]
     ]
-    words = "; ".join(one.text for one in problems)
-    return _answer(422, f"The request is not valid. {words}", problems=problems)
+    reasons = "; ".join(problem.text for problem in problems)
+    return _answer(422, f"The request is not valid. {reasons}", problems=problems)
 
 
 async def _answer_unreadable_body(_: Request, problem: Exception) -> JSONResponse:
     cause = problem.__cause__
-    words = str(cause) if isinstance(cause, TextError) else "is not JSON in UTF-8"
-    return _answer(422, f"The request is not valid. Its body {words}.")
+    reason = str(cause) if isinstance(cause, TextError) else "is not JSON in UTF-8"
+    return _answer(422, f"The request is not valid. Its body {reason}.")
 
 
 async def _answer_lack_of_memory(request: Request, _: Exception) -> JSONResponse:
@@ -71,6 +71,6 @@ def _answer(
     body = (
         {"detail": detail}
         | ({"kind": kind} if kind else {})
-        | ({"problems": [asdict(one) for one in problems]} if problems else {})
+        | ({"problems": [asdict(problem) for problem in problems]} if problems else {})
     )
     return JSONResponse(body, status, headers)

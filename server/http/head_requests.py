@@ -12,7 +12,7 @@ class HeadRequests:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on; of the answer only the head."""
+        """Pass on the request; send only the head of the answer."""
         if scope["type"] != "http" or scope["method"] != "HEAD":
             await self._app(scope, receive, send)
             return
@@ -29,4 +29,4 @@ class HeadRequests:
 
 
 class _HeadSentError(Exception):
-    """The answer is complete: nobody takes its body."""
+    """The answer is complete: its body is not sent."""

@@ -37,9 +37,9 @@ class HeavyRequests:
 
     @asynccontextmanager
     async def turn(self, device: int, waiting_max: int = WAITING_MAX) -> AsyncIterator[None]:
-        """The device's turn, once its earlier requests are done.
+        """Hold the device's turn, once its earlier requests are done.
 
-        Raises TooManyHeavyError where too many of them wait already.
+        Raise TooManyHeavyError where too many of them wait already.
         """
         if self._asked[device] > waiting_max:
             raise TooManyHeavyError(
@@ -74,9 +74,9 @@ async def _require_connected(request: Request) -> None:
 
 
 async def while_connected(request: Request, work: Coroutine[Any, Any, T]) -> T:
-    """The result of this work, which is cancelled when the client of a request without a body has gone.
+    """Return the result of this work; it is cancelled when the client of a request without body has gone.
 
-    Raises TooManyHeavyError then.
+    Raise TooManyHeavyError then.
     """
     working, gone = asyncio.create_task(work), asyncio.create_task(_wait_until_gone(request))
     try:

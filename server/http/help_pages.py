@@ -29,22 +29,22 @@ class HelpPages:
         self._folder = folder.resolve()
 
     def respond(self, path: str) -> Response:
-        """The answer to a request for `path` below /help/."""
-        found = self._find(path)
-        if found is None:
+        """Return the answer to a request for `path` below /help/."""
+        target = self._find(path)
+        if target is None:
             missing = self._folder / "404.html"
             if not missing.is_file():
                 return HTMLResponse(NOT_BUILT, status_code=503)
             return _html(missing, status_code=404)
-        if found.is_dir():
+        if target.is_dir():
             return RedirectResponse(f"{PREFIX}/{path}/")
-        if found.suffix == ".html":
-            return _html(found)
-        cached = FOR_EVER if _HASHED_NAME.search(found.name) else ASK_AGAIN
-        return FileResponse(found, headers={"cache-control": cached})
+        if target.suffix == ".html":
+            return _html(target)
+        cached = FOR_EVER if _HASHED_NAME.search(target.name) else ASK_AGAIN
+        return FileResponse(target, headers={"cache-control": cached})
 
     def _find(self, path: str) -> Path | None:
-        """The file that `path` names, or a folder whose slash is missing; None where there is neither."""
+        """Return the file at `path`, or the folder of a path without its slash; None without either."""
         try:
             file = (self._folder / path).resolve()
             if not file.is_relative_to(self._folder):
@@ -60,22 +60,29 @@ class HelpPages:
 
 def _html(file: Path, status_code: int = 200) -> HTMLResponse:
     text = file.read_text(encoding="utf-8")
-    headers = {"cache-control": ASK_AGAIN, "content-security-policy": content_policy(text)}
+    headers = {
+        "cache-control": ASK_AGAIN,
+        "content-security-policy": content_policy(text),
+        "x-frame-options": "SAMEORIGIN",
+    }
     return HTMLResponse(text, status_code, headers)
 
 
 def content_policy(html: str) -> str:
-    """The Content-Security-Policy of a help page: this server alone, and the scripts written in this page."""
+    """Return the Content-Security-Policy of a help page: this server alone, and the page's own scripts.
+
+    The server's own page may frame it, and no other.
+    """
     hashes = {sha256(script.encode()).digest() for script in _INLINE_SCRIPT.findall(html)}
-    scripts = " ".join(["'self'", *sorted(f"'sha256-{b64encode(one).decode()}'" for one in hashes)])
+    scripts = " ".join(["'self'", *sorted(f"'sha256-{b64encode(digest).decode()}'" for digest in hashes)])
     return (
         f"default-src 'self'; script-src {scripts}; img-src 'self' data:; object-src 'none'; "
-        "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+        "base-uri 'none'; form-action 'self'; frame-ancestors 'self'"
     )
 
 
 def make_help_router(pages: HelpPages) -> APIRouter:
-    """Everything under /help."""
+    """Return everything under /help."""
     router = APIRouter(include_in_schema=False)
 
     @router.get(PREFIX)

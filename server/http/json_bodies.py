@@ -1,4 +1,4 @@
-"""Reads the JSON bodies of requests as every other text that people and programs hand over."""
+"""JSON bodies of requests, read as every other text of people and programs."""
 
 from collections.abc import Callable, Coroutine
 from typing import Any
@@ -13,7 +13,7 @@ class JsonRoute(APIRoute):
     """A route that refuses a body which is not UTF-8, names a key twice or holds NaN."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Returns the route's handler, for requests that read their body so."""
+        """Return the route's handler, for requests of this class."""
         handle = super().get_route_handler()
 
         async def read(request: Request) -> Response:
@@ -24,5 +24,5 @@ class JsonRoute(APIRoute):
 
 class _JsonRequest(Request):
     async def json(self) -> Any:
-        """The body. Raises TextError."""
+        """Return the body. Raise TextError."""
         return read_json(await self.body())

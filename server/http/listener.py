@@ -15,7 +15,10 @@ BACKLOG = 128
 
 
 def open_socket(host: str, port: int) -> socket.socket:
-    """A listening socket whose connections inherit its limits. Raises SetupError where it cannot be had."""
+    """Return a listening socket whose connections inherit its limits.
+
+    Raise SetupError where it cannot be opened.
+    """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         listener = socket.socket(family, kind, protocol)

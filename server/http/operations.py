@@ -1,4 +1,4 @@
-"""Operations of the HTTP interface: routes that declare their need; their functions give name and texts."""
+"""Operations of the HTTP interface: routes that declare their need; name and texts are their function's."""
 
 from collections.abc import Callable, Mapping, Sequence
 from inspect import cleandoc
@@ -71,7 +71,7 @@ class Operations:
         dependencies: Sequence[Depends] = (),
         responses: Mapping[int | str, dict[str, Any]] | None = None,
     ) -> list[BaseRoute]:
-        """The routes. All of them have these dependencies, and all operations these answers."""
+        """Return the routes. All of them have these dependencies, and all operations these answers."""
         router = APIRouter(
             prefix=self._prefix,
             tags=[*self._tags],
@@ -94,7 +94,7 @@ class Operations:
 
     def operation(
         self,
-        place: str,
+        address: str,
         need: Need,
         *errors: Errors,
         media_type: str = "",
@@ -109,7 +109,7 @@ class Operations:
         file, picture or frame that the page names by its address, so that a browser's cookie alone must do.
         `lenient`: it is carried out also with query parameters that it does not know.
         """
-        method, _, path = place.partition(" ")
+        method, _, path = address.partition(" ")
         texts = {423: "Control is with somebody else"} if need is Need.CONTROL else {}
         if need is Need.ADMINISTER:
             texts |= UnconfirmedError.answers()
@@ -125,7 +125,7 @@ class Operations:
             responses[200] = {"content": {media_type: {}}}
 
         def add(endpoint: Endpoint) -> Endpoint:
-            first, *words = endpoint.__name__.split("_")
+            first, *parts = endpoint.__name__.split("_")
             if endpoint.__annotations__["return"] is None:
                 options["status_code"] = 204
             extra = needs(need) | ({LINKED: True} if linked else {}) | options.pop("openapi_extra", {})
@@ -134,7 +134,7 @@ class Operations:
                     path,
                     endpoint,
                     methods=[method],
-                    operation_id=first + "".join(map(str.capitalize, words)),
+                    operation_id=first + "".join(map(str.capitalize, parts)),
                     summary=cleandoc(endpoint.__doc__ or "").partition("\n")[0].removesuffix("."),
                     openapi_extra=extra,
                     responses=responses,

@@ -23,14 +23,14 @@ class Page:
 
     @property
     def version(self) -> str:
-        """Differs between builds; empty where the page is not built."""
+        """The build's version; empty where the page is not built."""
         try:
             return sha256((self._folder / "index.html").read_bytes()).hexdigest()[:12]
         except OSError:
             return ""
 
     def find(self, path: str) -> Path | None:
-        """The file that `path` names, the index for paths of the page's own; None where there is none."""
+        """Return the file at `path`, or the index for the page's own paths; None where there is none."""
         index = self._folder / "index.html"
         try:
             file = (self._folder / path).resolve()
@@ -43,7 +43,7 @@ class Page:
             return None
 
     def respond(self, path: str, *, gzip: bool) -> Response:
-        """The answer to a request for `path`; `gzip` says whether the browser takes it compressed."""
+        """Return the answer to a request for `path`; `gzip`: the browser takes it compressed."""
         file = self.find(path)
         if file is None:
             built = (self._folder / "index.html").is_file()
@@ -60,13 +60,14 @@ class Page:
 
 
 def make_router(page: Page) -> APIRouter:
-    """Everything that is not under /api, whose routes come before."""
+    """Return the route of everything outside /api, to be added last."""
     router = APIRouter(include_in_schema=False)
 
     @router.get("/{path:path}")
     def get_page(request: Request, path: str) -> Response:
         encodings = [
-            one.split(";")[0].strip() for one in request.headers.get("accept-encoding", "").split(",")
+            encoding.split(";")[0].strip()
+            for encoding in request.headers.get("accept-encoding", "").split(",")
         ]
         return page.respond(path, gzip="gzip" in encodings)
 

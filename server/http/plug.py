@@ -24,12 +24,12 @@ class ShellToken:
 
 
 def make_page(settings: Settings) -> Page:
-    """The page's files."""
+    """Return the page's files."""
     return Page(settings.page)
 
 
 def make_audit_log(settings: Settings, clock: Clock, notices: Notices) -> AuditLog:
-    """The audit log, whose acts are notices too."""
+    """Return the audit log, whose acts are notices too."""
     return AuditLog(settings.data.audit, clock, lambda _, text: notices.notify("control", "info", text))
 
 
@@ -41,12 +41,12 @@ def make_access(
     closers: SocketClosers,
     token: ShellToken,
 ) -> Access:
-    """The access to this server."""
+    """Return the access to this server."""
     return Access(settings, store, clock, notices.notify, closers.close, token.text)
 
 
 class HttpPlug(Plug):
-    """Opens access first, and closes it last."""
+    """The plug that opens access first, and closes it last."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_page, make_audit_log, make_access)
 
@@ -62,7 +62,7 @@ class HttpPlug(Plug):
         self._access.open()
 
     async def close(self) -> None:
-        """Write what waits."""
+        """Write the waiting entries."""
         await self._access.devices.close()
         await asyncio.to_thread(self._audit.close)
         await asyncio.to_thread(self._store.close)

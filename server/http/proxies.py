@@ -10,7 +10,7 @@ from server.http.security import refuse
 
 
 class RequestsOfAddress:
-    """ASGI middleware: refuses with 429 what an address asks beyond `ADDRESS_MAX` requests at the same time.
+    """ASGI middleware: refuses with 429 an address's requests beyond `ADDRESS_MAX` at the same time.
 
     uvicorn has put the client's own address into the scope by then (`server.http.serving`).
     """

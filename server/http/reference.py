@@ -50,7 +50,7 @@ must confirm first, `kind` is `confirmation`.
 
 
 def http_page(document: Schema) -> str:
-    """The whole text of http.md."""
+    """Return the whole text of http.md."""
     operations = [
         (f"{method.upper()} {path}", operation)
         for path, methods in document["paths"].items()
@@ -58,7 +58,7 @@ def http_page(document: Schema) -> str:
     ]
     parts = [INTRODUCTION]
     for tag in dict.fromkeys(tag for _, operation in operations for tag in operation["tags"]):
-        rows = [_row(name, one) for name, one in operations if tag in one["tags"]]
+        rows = [_row(name, operation) for name, operation in operations if tag in operation["tags"]]
         parts += [f"## {tag[0].upper()}{tag[1:]}\n"]
         parts += [table(("operation", "needs", "request", "answer", "meaning"), rows)]
     parts.append("## Types\n")
@@ -80,24 +80,24 @@ def _row(name: str, operation: Schema) -> tuple[str, ...]:
 
 
 def _request(operation: Schema) -> Iterator[str]:
-    for one in operation.get("parameters", ()):
-        if one["in"] == "query":
-            yield f"`?{one['name']}`" + (" (required)" if one.get("required") else "")
+    for parameter in operation.get("parameters", ()):
+        if parameter["in"] == "query":
+            yield f"`?{parameter['name']}`" + (" (required)" if parameter.get("required") else "")
     for content in operation.get("requestBody", {}).get("content", {}).items():
         yield _content(*content)
 
 
 def _answers(operation: Schema) -> Iterator[str]:
-    """Those of success; refusals are the same everywhere."""
+    """Yield the answers of a success; refusals are the same for all operations."""
     for status, response in operation["responses"].items():
         if status.startswith("2"):
-            contents = [_content(*one) for one in response.get("content", {}).items()]
+            contents = [_content(*content) for content in response.get("content", {}).items()]
             yield " ".join((status, *contents))
 
 
 def _content(media_type: str, content: Schema) -> str:
     return (
-        _words(content["schema"])
+        _describe(content["schema"])
         if "schema" in content and media_type == "application/json"
         else f"`{media_type}`"
     )
@@ -110,32 +110,32 @@ def _type(schema: Schema) -> Iterator[str]:
     rows = [
         (
             f"`{name}`" + ("" if name in required else " (optional)"),
-            _words(one),
-            " ".join(one.get("description", "").split()),
+            _describe(field),
+            " ".join(field.get("description", "").split()),
         )
-        for name, one in schema.get("properties", {}).items()
+        for name, field in schema.get("properties", {}).items()
     ]
-    yield table(("field", "type", "meaning"), rows) if rows else _words(schema) + "\n"
+    yield table(("field", "type", "meaning"), rows) if rows else _describe(schema) + "\n"
 
 
-def _words(schema: Schema) -> str:
-    """A schema in a few words; types of their own are links."""
+def _describe(schema: Schema) -> str:
+    """Return a schema's short description; named types are links."""
     if reference := schema.get("$ref"):
         name = cast("str", reference).rpartition("/")[2]
         return f"[{name}](#{name.lower()})"
     for key in ("anyOf", "oneOf"):
         if choices := schema.get(key):
-            return " or ".join(dict.fromkeys(map(_words, choices)))
+            return " or ".join(dict.fromkeys(map(_describe, choices)))
     if values := schema.get("enum"):
         return ", ".join(f"`{value}`" for value in values)
     if "const" in schema:
         return f"`{schema['const']}`"
     match schema.get("type"):
         case "array":
-            return f"list of {_words(schema['items'])}" if "items" in schema else "list"
+            return f"list of {_describe(schema['items'])}" if "items" in schema else "list"
         case "object":
             values = schema.get("additionalProperties")
-            return f"object of {_words(values)}" if isinstance(values, dict) and values else "object"
+            return f"object of {_describe(values)}" if isinstance(values, dict) and values else "object"
         case "integer" | "number" as kind:
             return " ".join(
                 filter(None, ("whole number" if kind == "integer" else "number", _limits(schema)))

@@ -4,6 +4,6 @@ from pydantic import BaseModel, ConfigDict
 
 
 class RequestBody(BaseModel):
-    """A body of a request: it has no unknown fields, and each value is of its type as it stands."""
+    """The body of a request: it refuses unknown fields, and values that are not of their type already."""
 
     model_config = ConfigDict(extra="forbid", strict=True)

@@ -73,7 +73,7 @@ class SecurityMiddleware:
             await refuse(scope, receive, _with_headers(send, scope), 403, reason)
 
     def _refusal(self, scope: Scope) -> str | None:
-        """Reason to refuse this request; None if it is allowed."""
+        """Return the reason to refuse this request; None if it is allowed."""
         headers = Headers(scope=scope)
         hosts, origins = headers.getlist("host"), headers.getlist("origin")
         if len(hosts) != 1 or not self._is_own_host(hosts[0].lower(), scope):
@@ -102,7 +102,7 @@ class SecurityMiddleware:
 
 
 def _own_address(scope: Scope) -> str | None:
-    """The server's address at which the request arrived, as a URL has it; None at a Unix socket."""
+    """Return the server's address at which the request arrived, as a URL has it; None at a Unix socket."""
     try:
         address = ip_address((scope.get("server") or ("",))[0])
     except ValueError:

@@ -41,6 +41,10 @@ KEEP_ALIVE_SECONDS = 60
 """The time for which an idle connection stays open. It is longer than the 5 s that are usual in programs: the
 program closes the connection first, and no request meets a reset.
 """
+PING_SECONDS, PONG_SECONDS = 5.0, 10.0
+"""s between two pings of a live socket, and until the answer. A page whose radio is gone, as under water,
+closes nothing: without these it would count as watching for as long as TCP tries.
+"""
 
 
 class WebServer(uvicorn.Server):
@@ -66,23 +70,23 @@ class WebServer(uvicorn.Server):
             return protocol if tls is None else TlsHandshake(self.connections, tls, protocol)
 
         self.servers = [
-            await loop.create_server(make_protocol, sock=one, backlog=BACKLOG) for one in sockets or []
+            await loop.create_server(make_protocol, sock=socket, backlog=BACKLOG) for socket in sockets or []
         ]
         self.started = True
 
     async def main_loop(self) -> None:
-        """Tick until the server shall end; uvicorn's own loop wakes ten times a second."""
+        """Tick until the server is told to end; uvicorn's own loop wakes ten times a second."""
         while not await self.on_tick(0):
             await asyncio.sleep(TICK_SECONDS)
 
     async def on_tick(self, counter: int) -> bool:
-        """Look after the connections; true where the server shall end."""
+        """Check the connections; return True where the server is to end."""
         self.connections.expire()
         return await super().on_tick(counter)
 
 
 class OutOfFiles:
-    """Reports that connections cannot be accepted for want of file handles, once a minute.
+    """Reports of connections that cannot be accepted for want of file handles, once a minute.
 
     asyncio reports it each second for each place in the backlog (python/cpython#151615).
     """
@@ -92,7 +96,7 @@ class OutOfFiles:
         self._reported: float | None = None
 
     def report(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """The event loop's exception handler."""
+        """Handle an exception of the event loop."""
         problem = context.get("exception")
         if not isinstance(problem, OSError) or problem.errno not in OUT_OF_FILES:
             loop.default_exception_handler(context)
@@ -106,7 +110,7 @@ class OutOfFiles:
 
 
 def _limit_reads() -> None:
-    """Have the event loop read less at once than asyncio's quarter of a megabyte.
+    """Limit a read of the event loop to less than asyncio's quarter of a megabyte.
 
     Each connection may hold as much, TLS as much again from its beginning on. A piece of this size comes from
     the memory that the process has already, so that a STOP is read also where the system gives it no more.
@@ -118,7 +122,7 @@ def _limit_reads() -> None:
 def make_server(
     app: FastAPI, certificate: Certificate | None = None, proxies: Sequence[Network] = ()
 ) -> WebServer:
-    """A server for the application, with TLS where it has a certificate; it compresses no messages.
+    """Return a server for the application, with TLS where it has a certificate; it compresses no messages.
 
     X-Forwarded-For counts from these proxies alone: the client is the last address in it that is
     none of them.
@@ -135,10 +139,12 @@ def make_server(
         log_level="warning",
         access_log=False,
         proxy_headers=bool(proxies),
-        forwarded_allow_ips=[str(one) for one in proxies],
+        forwarded_allow_ips=[str(proxy) for proxy in proxies],
         server_header=False,
         ws_per_message_deflate=False,
         ws_max_size=MESSAGE_BYTES_MAX,
+        ws_ping_interval=PING_SECONDS,
+        ws_ping_timeout=PONG_SECONDS,
         h11_max_incomplete_event_size=HEAD_BYTES_MAX,
         timeout_graceful_shutdown=GRACE_SECONDS,
         timeout_keep_alive=KEEP_ALIVE_SECONDS,

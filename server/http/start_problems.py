@@ -1,4 +1,4 @@
-"""Problems that keep the server from starting, in words instead of a traceback."""
+"""Problems that keep the server from starting, as a sentence instead of a traceback."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,7 +15,7 @@ PROBLEM = "start_problem"
 
 @contextmanager
 def explaining_start(app: FastAPI) -> Iterator[None]:
-    """Note the sentence of a problem that a person can mend. It is raised on."""
+    """Store the sentence of a problem that a person can solve, and raise the problem again."""
     try:
         yield
     except (SetupError, StoreError) as problem:
@@ -30,7 +30,7 @@ class StartProblems:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on."""
+        """Pass on the request."""
         if scope["type"] != "lifespan":
             await self._app(scope, receive, send)
             return

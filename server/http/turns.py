@@ -1,4 +1,4 @@
-"""Turns of requests: a few at a time for a viewer's device, and only what operates the robot without memory.
+"""Turns of requests: a few at a time for a viewer's device; without memory, only those for the robot.
 
 Each request that is under way costs the event loop time, and memory until its answer is read. A viewer may
 open a hundred connections, and read nothing.
@@ -27,7 +27,7 @@ OPERATING = ("/api/robot", "/api/control", "/api/alive", "/api/health", "/api/ac
 
 
 class RequestTurns:
-    """ASGI middleware: lets a viewer's requests wait for their turn, and refuses what memory lacks for."""
+    """ASGI middleware: lets a viewer's requests wait for their turn, and refuses requests without memory."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -65,9 +65,9 @@ class RequestTurns:
 
 
 def _can_wait(scope: Scope, caller: Identity) -> bool:
-    """True for what does not operate the robot."""
+    """Return True for a request that does not operate the robot."""
     if scope["type"] == "websocket":
         return caller.role != "operator"
     path = scope["path"]
-    operates = any(path == one or path.startswith(f"{one}/") for one in OPERATING)
+    operates = any(path == prefix or path.startswith(f"{prefix}/") for prefix in OPERATING)
     return path.startswith("/api/") and not operates

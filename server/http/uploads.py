@@ -23,7 +23,7 @@ class InvalidUploadError(InvalidError):
 async def save_upload(pieces: AsyncIterable[bytes], path: Path, size_max: float = float("inf")) -> None:
     """Write an upload of `size_max` bytes at most to a file; where anything fails, the file is removed.
 
-    Raises InvalidUploadError, and FileWriteError where the disk has no room, or fails.
+    Raise InvalidUploadError, and FileWriteError where the disk has no room, or fails.
     """
     try:
         await _save(_at_rate(pieces), path, size_max)
@@ -50,7 +50,7 @@ async def _save(pieces: AsyncIterable[bytes], path: Path, size_max: float) -> No
 
 
 async def _at_rate(pieces: AsyncIterable[bytes]) -> AsyncIterator[bytes]:
-    """The pieces of an upload. Raises InvalidUploadError where they come too slowly, or end early."""
+    """Yield the pieces of an upload. Raise InvalidUploadError where they come too slowly, or end early."""
     clock = asyncio.get_running_loop()
     started, received = clock.time(), 0
     arriving = aiter(pieces)

@@ -34,7 +34,8 @@ _HEAD, _HEAD_16, _HEAD_64 = Struct(">BB"), Struct(">BBH"), Struct(">BBQ")
 
 
 class WebSocketProtocol(WebSocketsSansIOProtocol):
-    """uvicorn's; binary messages go past websockets' own framing, which costs more than the system's send.
+    """uvicorn's protocol; binary messages bypass websockets' framing, which costs more than the system's
+    send.
 
     It holds as long as nothing is compressed: `server.http.serving` turns that off.
     """
@@ -45,7 +46,7 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         """Bytes that wait until the messages before them were taken; meanwhile no more are read."""
 
     def data_received(self, data: bytes) -> None:
-        """Take what the client has sent, piece by piece."""
+        """Take the client's bytes, piece by piece."""
         self._received += data
         if not self.read_paused:
             self._take_piece()
@@ -65,7 +66,7 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         super().handle_cont(event)
 
     async def receive(self) -> Any:
-        """The next message for the application."""
+        """Return the next message for the application."""
         message = await self.queue.get()
         if self.queue.empty():
             self._go_on()
@@ -114,7 +115,7 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
             await self.send_binary(data)
 
     async def send_binary(self, data: bytes) -> None:
-        """Send a binary message. Raises OSError where the client has gone."""
+        """Send a binary message. Raise OSError where the client has gone."""
         if not self.writable.is_set():
             await self.writable.wait()
         if self.disconnected or self.conn.state is not State.OPEN:

@@ -21,12 +21,12 @@ class FigureMeaning(BaseModel):
 def describe(
     name: str, title: str, unit: str, decimals: int, meaning: str, better: Better = "less"
 ) -> FigureMeaning:
-    """The meaning of a figure, of which less is better by default."""
+    """Return the meaning of a figure; by default less is better."""
     return FigureMeaning(name=name, title=title, unit=unit, decimals=decimals, better=better, meaning=meaning)
 
 
 class FigureMark(BaseModel):
-    """The place of a figure in the chart of the depth: s since the session's start, and m."""
+    """The position of a figure in the chart of the depth: s since the session's start, and m."""
 
     start: float
     end: float

@@ -29,7 +29,7 @@ class LimitCycle:
 
 
 def find_limit_cycle(signal: Series) -> LimitCycle | None:
-    """The limit cycle of a signal's steady part; None where there is none."""
+    """Return the limit cycle of a signal's steady part; None where there is none."""
     if signal.times.size < 16:
         return None
     values, step = _even(signal)
@@ -37,22 +37,22 @@ def find_limit_cycle(signal: Series) -> LimitCycle | None:
     if np.ptp(centred) < AMPLITUDE_LEAST:
         return None
     correlation = _autocorrelation(centred)
-    found = _first_high(correlation[: centred.size // PERIODS_LEAST + 1])
-    if found is None:
+    maximum = _first_high(correlation[: centred.size // PERIODS_LEAST + 1])
+    if maximum is None:
         return None
-    lag, height = found
+    lag, height = maximum
     return LimitCycle(float(lag * step), _amplitude(values, lag), height)
 
 
 def _even(signal: Series) -> tuple[Floats, float]:
-    """The signal at equal steps (s) of its usual period."""
+    """Return the signal at equal steps (s) of its usual period."""
     step = float(np.median(np.diff(signal.times)))
     grid = np.arange(signal.times[0], signal.times[-1], step)
     return np.interp(grid, signal.times, signal.values), step
 
 
 def _autocorrelation(centred: Floats) -> Floats:
-    """For each lag the correlation of what overlaps, between -1 and 1."""
+    """Return, for each lag, the correlation of the overlapping parts, -1 to 1."""
     count = centred.size
     spectrum = np.fft.rfft(centred, 2 * count)
     products = np.fft.irfft(spectrum * spectrum.conj())[:count]
@@ -64,7 +64,7 @@ def _autocorrelation(centred: Floats) -> Floats:
 
 
 def _first_high(correlation: Floats) -> tuple[float, float] | None:
-    """Lag and height of the first maximum about as high as any, once the correlation has been negative."""
+    """Return lag and height of the first high maximum after the correlation was negative."""
     negative = np.flatnonzero(correlation < 0)
     if not negative.size:
         return None
@@ -83,7 +83,7 @@ def _first_high(correlation: Floats) -> tuple[float, float] | None:
 
 
 def _amplitude(values: Floats, period: float) -> float:
-    """Median over whole periods of the distance between highest and lowest.
+    """Return the median over whole periods of the distance between highest and lowest value.
 
     Averages over a twentieth of the period keep noise from adding to it; a sine loses 0.4 % by that.
     """

@@ -16,32 +16,32 @@ class Series:
     values: Floats
 
     def within(self, start: float, end: float) -> "Series":
-        """The samples between these times."""
+        """Return the samples between these times."""
         first = int(np.searchsorted(self.times, start, "left"))
         last = int(np.searchsorted(self.times, end, "right"))
         return Series(self.times[first:last], self.values[first:last])
 
     @property
     def bytes(self) -> int:
-        """Memory that it takes."""
+        """The memory of the arrays, in bytes."""
         return self.times.nbytes + self.values.nbytes
 
 
 def rms(errors: Floats) -> float:
-    """Root of the mean square."""
+    """Return the root of the mean square."""
     return float(np.sqrt(np.mean(errors**2)))
 
 
 def integral_absolute(times: Floats, errors: Floats) -> float:
-    """Integral of the absolute error over time (s), by the trapezoidal rule."""
+    """Return the integral of the absolute error over time (s), by the trapezoidal rule."""
     return float(np.trapezoid(np.abs(errors), times))
 
 
 def effort(outputs: Floats) -> float:
-    """Mean size of the command, as a share of the most."""
+    """Return the mean size of the command, as a share of the most."""
     return float(np.mean(np.abs(outputs)))
 
 
 def travel(outputs: Floats) -> float:
-    """Sum of the command's changes, as a share of full command."""
+    """Return the sum of the command's changes, as a share of full command."""
     return float(np.abs(np.diff(outputs)).sum())

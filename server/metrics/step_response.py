@@ -42,21 +42,21 @@ class StepResponse:
 
     @property
     def rise_time(self) -> float | None:
-        """s"""
+        """The rise time, s."""
         if self.rise_start is None or self.rise_end is None:
             return None
         return self.rise_end - self.rise_start
 
     @property
     def settling_time(self) -> float | None:
-        """s"""
+        """The settling time, s."""
         return None if self.settled is None else self.settled - self.begin
 
 
 def measure_step(
     measured: Series, begin: float, end: float, final_value: float, band: float | None = None
 ) -> StepResponse | None:
-    """The response between these times (s) to a step to `final_value` at `begin`.
+    """Return the response between these times (s) to a step to `final_value` at `begin`.
 
     `band` is in the signal's unit, 5 % of the step without. None where there are no two samples, or where the
     value is at the set point from the beginning on.
@@ -89,7 +89,7 @@ def measure_step(
 
 
 def _crossing(times: np.ndarray, share: np.ndarray, level: float) -> float | None:
-    """Time of the first crossing of the level, interpolated between samples; None without one."""
+    """Return the time of the first crossing of the level, interpolated between samples; None without one."""
     above = np.flatnonzero(share >= level)
     if not above.size:
         return None

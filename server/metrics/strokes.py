@@ -12,7 +12,8 @@ SWING_LEAST = 0.2
 
 
 def count_strokes(angle: NDArray[np.floating[Any]], swing_least: float = SWING_LEAST) -> float:
-    """Strokes of one fin, from its angle (rad, shape (samples,)): two swings, there and back, are one.
+    """Return the strokes of a fin, from its angle (rad, shape (samples,)): two swings, there and back, are
+    one.
 
     A swing runs from a turning point to the next, where smaller swings within a larger one do not count
     (hysteresis filtering, as before rainflow counting: ASTM E1049-85).

@@ -1,4 +1,4 @@
-"""The audit log's files: who did what when, one JSON document a line, only ever appended to.
+"""The audit log's files: each act as a JSON document on a line; files are only appended to.
 
 It is no part of the database, so that restoring a backup takes nothing from it, and so that a command in a
 shell writes it beside a running server.
@@ -57,8 +57,8 @@ class AuditEntry:
 
 
 def append_entries(folder: Path, entries: Iterable[AuditEntry], series: Series = "") -> None:
-    """Append entries of one series durably, each whole or not at all. Raises OSError."""
-    lines = "".join(json.dumps(asdict(one), ensure_ascii=False) + "\n" for one in entries)
+    """Append entries of one series durably, each whole or not at all. Raise OSError."""
+    lines = "".join(json.dumps(asdict(entry), ensure_ascii=False) + "\n" for entry in entries)
     make_folder(folder)
     path = _current(folder, series)
     handle = os.open(path, os.O_RDWR | os.O_APPEND | os.O_CREAT, 0o600)
@@ -78,7 +78,7 @@ def append_entries(folder: Path, entries: Iterable[AuditEntry], series: Series =
 
 
 def append_shell_command(folder: Path) -> None:
-    """Append the command of the shell that runs now, if one does. Raises OSError."""
+    """Append the running command of the shell, if any. Raise OSError."""
     context = click.get_current_context(silent=True)
     if context is None or context.meta.get(WRITTEN) or not folder.parent.is_dir():
         return
@@ -91,7 +91,7 @@ def append_shell_command(folder: Path) -> None:
 
 @contextmanager
 def _append_end(folder: Path, action: str, about: str) -> Iterator[None]:
-    """Append how the command ends. A process that it has forked ends for itself."""
+    """Append the end of the command. Processes that it has forked are not awaited."""
     process = os.getpid()
     outcome: Outcome = "failed"
     try:
@@ -112,7 +112,7 @@ def _append_end(folder: Path, action: str, about: str) -> Iterator[None]:
 
 
 def read_entries(folder: Path) -> Iterator[AuditEntry]:
-    """All entries, newest first. A line that was cut off is left out. Raises OSError."""
+    """Return all entries, newest first. A line that was cut off is left out. Raise OSError."""
     every = (_read_series(folder, series) for series in FILES_MOST)
     return merge(*every, key=lambda entry: entry.time, reverse=True)
 
@@ -129,7 +129,7 @@ def _read_series(folder: Path, series: Series) -> Iterator[AuditEntry]:
 
 
 def clean(text: str) -> str:
-    """A text without what moves a terminal's cursor or turns the direction of writing, and not too long."""
+    """Return a text, shortened, without control characters of a terminal and marks of writing direction."""
     shown = "".join(letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in text)
     return shown if len(shown) <= TEXT_MAX else shown[:TEXT_MAX] + "…"
 

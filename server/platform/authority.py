@@ -17,7 +17,7 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
 
 def check_name(name: str) -> None:
-    """Raises SetupError where a certificate cannot have this name."""
+    """Raise SetupError where a certificate cannot have this name."""
     if not NAME.fullmatch(name):
         raise SetupError(f"{name!r} is no name of a certificate: use up to 32 of A-Z, a-z, 0-9, - and _.")
 
@@ -31,7 +31,7 @@ class IssuedCertificate(NamedTuple):
 
 
 class Authority:
-    """The certificates in the data folder. All raise SetupError where that is not possible.
+    """The certificates in the data folder. All methods raise SetupError on failure.
 
     A certificate's common name is its file's name in `simulators`. It holds random digits, so that a name
     that is issued again after it was revoked does not revive the old certificate.
@@ -39,11 +39,11 @@ class Authority:
 
     def __init__(self, settings: Settings) -> None:
         self._folder = settings.data.zenoh
-        self._robot = settings.robot
+        self._robot = settings.robot.name
         self._signer = Signer(self._folder / AUTHORITY, self._folder / AUTHORITY_KEY)
 
     def prepare(self) -> None:
-        """Make the authority and the robot's certificate, unless they are there."""
+        """Make the authority and the robot's certificate, unless they exist."""
         if self._folder.exists():
             return
         part = self._folder.with_suffix(".part")
@@ -63,7 +63,7 @@ class Authority:
     def issue(self, name: str, destination: Path) -> None:
         """Make a simulator's certificate, with its key, in a new folder."""
         check_name(name)
-        if any(one.name == name for one in self.issued()):
+        if any(certificate.name == name for certificate in self.issued()):
             raise SetupError(f"{name} has a certificate. Revoke it first: mucat certificate revoke {name}")
         common_name = f"{name}.{secrets.token_hex(4)}"
         made = self._make(common_name, destination, f"subjectAltName=DNS:{name}")
@@ -93,20 +93,20 @@ class Authority:
 
     def revoke(self, name: str) -> None:
         """Take a simulator's certificate out of force."""
-        found = [one for one in self.issued() if one.name == name]
-        if not found:
+        certificates = [certificate for certificate in self.issued() if certificate.name == name]
+        if not certificates:
             raise SetupError(
                 f"There is no certificate {name} of a simulator: mucat certificate list shows those in "
                 "force. That of a ROS 2 program is revoked under People, or with mucat access revoke."
             )
         try:
-            for one in found:
-                one.file.unlink()
+            for certificate in certificates:
+                certificate.file.unlink()
         except OSError as problem:
             raise SetupError(f"The certificate {name} cannot be revoked: {problem}.") from problem
 
     def issued(self) -> list[IssuedCertificate]:
-        """The simulators' certificates in force, by name."""
+        """Return the simulators' certificates in force, by name."""
         files = sorted((self._folder / SIMULATORS).glob("*.pem"))
         return [
             IssuedCertificate(

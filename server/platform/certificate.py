@@ -36,7 +36,7 @@ NO_CHECK_TIME = 0x200000
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """Two files, and what people compare: SHA-256 over the certificate (DER), as browsers show it."""
+    """A certificate's two files, and its fingerprint for people: SHA-256 over DER, as browsers show it."""
 
     file: Path
     key: Path
@@ -46,9 +46,9 @@ class Certificate:
 
 
 def prepare_certificate(settings: Settings) -> Certificate:
-    """The robot's certificate, made at its first start and renewed with the same key near its end.
+    """Return the robot's certificate, made at its first start and renewed with the same key near its end.
 
-    One that signs others, or is valid for longer than browsers accept, is renewed as well. Raises SetupError
+    One that signs others, or is valid for longer than browsers accept, is renewed as well. Raise SetupError
     where it cannot be had.
     """
     folder = settings.data.tls
@@ -65,9 +65,9 @@ def prepare_certificate(settings: Settings) -> Certificate:
 
 
 def trust_only(folder: DataFolder) -> ssl.SSLContext:
-    """For asking the server of this folder: its certificate is the only one that counts, under any name.
+    """Return the TLS context for requests to this folder's server: it trusts only that certificate.
 
-    Raises OSError where there is none.
+    Raise OSError where there is none.
     """
     context = ssl.create_default_context(cafile=str(folder.tls / CERTIFICATE))
     context.check_hostname = False
@@ -85,16 +85,16 @@ def _make(folder: Path, settings: Settings) -> None:
 
 
 def _sign(certificate: Path, key: Path, settings: Settings) -> None:
-    """Makes an authority and a certificate by it, both in one file; the authority's key is destroyed."""
+    """Make an authority and a certificate by it, both in one file; the authority's key is destroyed."""
     authority = Signer(certificate.with_name(AUTHORITY), certificate.with_name(AUTHORITY_KEY))
     authority.key.unlink(missing_ok=True)
     try:
         # Devices that have trusted an earlier authority must not take it for this one.
-        name = f"{settings.robot} {token_hex(4)}"
+        name = f"{settings.robot.name} {token_hex(4)}"
         make_certificate(authority.certificate, authority.key, name, SIGNS, days=BROWSER_DAYS)
-        names = ",".join(_alternative(name) for name in settings.allowed_hosts)
+        names = ",".join(_alternative(name) for name in settings.server.allowed_hosts)
         extensions = [f"subjectAltName={names}", "extendedKeyUsage=serverAuth", *LEAF]
-        make_certificate(certificate, key, settings.robot, extensions, authority, BROWSER_DAYS)
+        make_certificate(certificate, key, settings.robot.name, extensions, authority, BROWSER_DAYS)
     finally:
         authority.key.unlink(missing_ok=True)
     with certificate.open("ab") as file:
@@ -102,7 +102,7 @@ def _sign(certificate: Path, key: Path, settings: Settings) -> None:
 
 
 def _renew(folder: Path, settings: Settings) -> bool:
-    """Replaces a certificate that browsers refuse, or soon will. Returns whether it did."""
+    """Replace a certificate that browsers refuse, or soon will. Return True if it was replaced."""
     valid = read_validity(folder / CERTIFICATE)
     lasts = valid.ends - valid.begins <= (BROWSER_DAYS + 1) * SECONDS_OF_DAY
     # A clock that was not set yet lies long before: then nothing is known of the certificate's end.
@@ -120,7 +120,7 @@ def _read(folder: Path) -> Certificate:
     own = text.partition(ssl.PEM_FOOTER)[0] + ssl.PEM_FOOTER
     digest = sha256(ssl.PEM_cert_to_DER_cert(own)).hexdigest().upper()
     (folder / KEY).read_bytes()
-    pairs = (digest[place : place + 2] for place in range(0, len(digest), 2))
+    pairs = (digest[index : index + 2] for index in range(0, len(digest), 2))
     return Certificate(folder / CERTIFICATE, folder / KEY, ":".join(pairs))
 
 

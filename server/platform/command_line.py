@@ -31,12 +31,12 @@ TAKE_OVER = click.option(
 
 
 class NumberType(click.ParamType[float]):
-    """A number with a decimal point; Python's own notations, such as 1_0 and nan, are none."""
+    """A number with a decimal point; Python's own notations, such as 1_0 and nan, are refused."""
 
     name = "float"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return the number, or fail with what to write instead."""
+        """Return the number, or fail with the accepted notation."""
         if isinstance(value, float):
             return value
         if not re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?", str(value), re.IGNORECASE):
@@ -60,7 +60,12 @@ class RowCommand(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Repeat the option before each value after the first, as click expects it."""
-        repeatable = {name for one in self.params if getattr(one, "multiple", False) for name in one.opts}
+        repeatable = {
+            name
+            for parameter in self.params
+            if getattr(parameter, "multiple", False)
+            for name in parameter.opts
+        }
         spread: list[str] = []
         option, values = "", 0
         for word in args:
@@ -103,5 +108,5 @@ def with_settings(command: Callable[..., int | None]) -> Callable[..., int | Non
 
 
 def name_error(error: Mapping[str, Any]) -> str:
-    """A line for an error of pydantic's: the place of the value, and what is wrong with it."""
-    return f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}"
+    """Return a line for an error of pydantic's: the path of the value, and its problem."""
+    return f"{'.'.join(str(part) for part in error['loc'])}: {error['msg']}"

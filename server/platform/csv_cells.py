@@ -15,7 +15,7 @@ _NOT_FINITE = re.compile(r"(?<![^,\n])-?(?:nan|inf)(?![^,\n])")
 
 
 def escape_formula(text: str) -> str:
-    """A text behind an apostrophe where a spreadsheet would take it for a formula.
+    """Return a text behind an apostrophe where a spreadsheet would take it for a formula.
 
     A text that has an apostrophe there gets another one, so that it can be read back.
     """
@@ -26,23 +26,23 @@ def escape_formula(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class CsvStyle:
-    """A way to write CSV. `mark` begins a file: by it a spreadsheet knows that the text is UTF-8."""
+    """A style of CSV. `mark` begins a file: it tells a spreadsheet that the text is UTF-8."""
 
     mark: str = ""
     separator: str = ","
     decimal: str = "."
 
     def write(self, lines: Iterable[Iterable[object]]) -> str:
-        """Lines of cells as CSV."""
+        """Return lines of cells as CSV."""
         text = io.StringIO()
         writer = csv.writer(text, delimiter=self.separator, lineterminator="\n")
-        writer.writerows([self._cell(one) for one in line] for line in lines)
+        writer.writerows([self._cell(cell) for cell in line] for line in lines)
         return text.getvalue()
 
     def rewrite(self, lines: str) -> str:
-        """Lines of numbers and times that were written for programs.
+        """Return lines of numbers and times that were written for programs, in this style.
 
-        For a spreadsheet a time has no letters, and what is no number has an empty cell.
+        For a spreadsheet a time has no letters, and a value that is no number is an empty cell.
         """
         if not self.mark:
             return lines
@@ -50,11 +50,11 @@ class CsvStyle:
         return _NOT_FINITE.sub("", lines).translate(table)
 
     def moment(self, utc: str) -> str:
-        """A time in ISO 8601."""
+        """Return a time in ISO 8601."""
         return self.rewrite(utc)
 
     def number(self, digits: str) -> str:
-        """A number that was written for programs."""
+        """Return a number that was written for programs."""
         return digits.replace(".", self.decimal)
 
     def _cell(self, value: object) -> object:

@@ -29,10 +29,10 @@ SUM_BYTES = 1 << 20
 def copy_database(
     database: Path, path: Path, add: Callable[[sqlite3.Connection], object] = lambda _: None
 ) -> None:
-    """Copy a database as it is at this moment, looked through by SQLite; nobody else may read the copy.
+    """Copy a database as it is at this moment, checked by SQLite; only its owner may read the copy.
 
-    `add` stores more in the copy. The source is only read: whoever writes it goes on meanwhile. Parts that
-    killed copies have left in that folder are removed. Raises sqlite3.DatabaseError, OSError; then there is
+    `add` stores more in the copy. The source is only read: its writer goes on meanwhile. Parts that
+    killed copies have left in that folder are removed. Raise sqlite3.DatabaseError, OSError; then there is
     no copy.
     """
     remove_abandoned(path.parent)
@@ -49,13 +49,13 @@ def copy_database(
         add(copy)
         # One file, which also a medium that cannot be written shows.
         copy.execute("PRAGMA journal_mode = DELETE")
-        (found,) = copy.execute("PRAGMA integrity_check(1)").fetchone()
-        if found != "ok":
-            raise sqlite3.DatabaseError(f"it is damaged ({found})")
+        (result,) = copy.execute("PRAGMA integrity_check(1)").fetchone()
+        if result != "ok":
+            raise sqlite3.DatabaseError(f"it is damaged ({result})")
 
 
 def remove_abandoned(folder: Path) -> None:
-    """Remove the parts of killed copies in a folder, with their journals. Raises OSError."""
+    """Remove the parts of killed copies in a folder, with their journals. Raise OSError."""
     for part in folder.glob(f"*{ENDING}{PART}"):
         handle = os.open(part, os.O_WRONLY)
         try:
@@ -72,7 +72,7 @@ def remove_abandoned(folder: Path) -> None:
 
 @contextmanager
 def _held(part: Path) -> Iterator[None]:
-    """Create the file, empty, and hold it: a part that nobody holds is abandoned. Raises OSError."""
+    """Create the file, empty, and lock it: a part without a lock is abandoned. Raise OSError."""
     handle = os.open(part, os.O_WRONLY | os.O_CREAT, 0o600)
     try:
         try:
@@ -86,19 +86,19 @@ def _held(part: Path) -> Iterator[None]:
 
 
 def open_database(database: Path, mode: Literal["ro", "rw"]) -> sqlite3.Connection:
-    """Open one that is there. Raises sqlite3.DatabaseError."""
+    """Open an existing database. Raise sqlite3.DatabaseError."""
     return sqlite3.connect(f"{database.absolute().as_uri()}?mode={mode}", uri=True)
 
 
-def place(folder: DataFolder, kind: Kind, revision: str = "") -> Path:
-    """Path for a new copy of this kind, in a folder that exists. Raises OSError."""
+def new_copy_path(folder: DataFolder, kind: Kind, revision: str = "") -> Path:
+    """Return the path for a new copy of this kind, in a folder that exists. Raise OSError."""
     make_folder(folder.backups)
     moment = time.strftime("%Y-%m-%d_%H-%M-%S", time.gmtime())
     return folder.backups / "-".join(["mucat", kind, *([revision] if revision else []), f"{moment}.db"])
 
 
 def thin_out(folder: DataFolder, kind: Kind, made: Path) -> None:
-    """Remove the oldest copies of this kind, but not the one just made. Raises OSError."""
+    """Remove the oldest copies of this kind, but not the one just made. Raise OSError."""
     # By its name it is not the newest where the clock was ahead when others were made, or is behind now.
     others = [path for path in folder.backups.glob(f"mucat-{kind}-*.db") if path != made]
     for copy in sorted(others, key=lambda path: path.stem[-19:])[: 1 - COPIES_MOST]:
@@ -110,14 +110,14 @@ def thin_out(folder: DataFolder, kind: Kind, made: Path) -> None:
 
 
 def write_checksum(path: Path) -> str:
-    """Write the file's SHA-256 beside it, as sha256sum(1) reads it. Raises OSError."""
+    """Write the file's SHA-256 beside it, as sha256sum(1) reads it. Raise OSError."""
     checksum = sum_file(path)
     write_whole(path.with_name(path.name + CHECKSUM), f"{checksum}  {path.name}\n".encode())
     return checksum
 
 
 def sum_file(path: Path) -> str:
-    """A file's SHA-256 in hexadecimal. Raises OSError."""
+    """Return a file's SHA-256 in hexadecimal. Raise OSError."""
     checksum = hashlib.sha256()
     with path.open("rb") as file:
         while piece := file.read(SUM_BYTES):

@@ -1,4 +1,4 @@
-"""A file that occupies some of the disk, and is given up for deletions when the disk is full."""
+"""A file that reserves disk space, and is removed for deletions when the disk is full."""
 
 import logging
 import os
@@ -20,7 +20,7 @@ class DiskReserve:
         self._path = path
 
     def make(self) -> None:
-        """Occupy the room, where twice as much is free."""
+        """Reserve the space, where twice as much is free."""
         if self._path.exists() or free_bytes(self._path.parent) < 2 * RESERVE_BYTES:
             return
         try:
@@ -34,7 +34,7 @@ class DiskReserve:
             log.warning("no room was set aside for deletions in %s: %s", self._path, problem)
 
     def give_up(self) -> bool:
-        """Free the room; False where there was none."""
+        """Free the space; return False where none was reserved."""
         try:
             self._path.unlink()
         except OSError:

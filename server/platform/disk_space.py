@@ -18,12 +18,12 @@ class FileWriteError(InsufficientStorageError):
 
 
 def free_bytes(path: Path) -> int:
-    """Free bytes of the disk that holds this path."""
+    """Return the free bytes of the disk that holds this path."""
     return shutil.disk_usage(path).free
 
 
 def check_room(folder: DataFolder) -> None:
-    """Raises FileWriteError where there is no room to record a dive."""
+    """Raise FileWriteError where there is no room to record a dive."""
     free = free_bytes(folder.path)
     if free < DIVE_BYTES:
         raise FileWriteError(
@@ -33,7 +33,7 @@ def check_room(folder: DataFolder) -> None:
 
 
 def require_free(folder: Path, size: int) -> None:
-    """Raises FileWriteError where these bytes would leave too little room for recordings."""
+    """Raise FileWriteError where these bytes would leave too little room for recordings."""
     free = free_bytes(folder)
     if free < size + SPARE_BYTES:
         raise FileWriteError(
@@ -43,7 +43,7 @@ def require_free(folder: Path, size: int) -> None:
 
 
 def explain_write_error(problem: OSError, path: Path) -> str:
-    """The cause of a failed write to `path`, and the remedy."""
+    """Return the cause of a failed write to `path`, and the remedy."""
     if problem.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         return f"The disk that holds {path.parent} is full. Free some space, and try again."
     return f"{path.parent} cannot be written: {problem.strerror or problem}."

@@ -1,4 +1,4 @@
-"""Refusal to replace what somebody else has changed since the editing began."""
+"""The refusal to replace a text that somebody else has changed since the editing began."""
 
 import hashlib
 
@@ -21,5 +21,5 @@ class ChangedMeanwhileError(ConflictError):
 
 
 def mark_text(text: str) -> str:
-    """A mark that tells this text from others; empty for no text."""
+    """Return a mark that distinguishes this text from others; empty for no text."""
     return hashlib.sha256(text.encode()).hexdigest()[:MARK_CHARACTERS] if text else ""

@@ -1,4 +1,4 @@
-"""Errors of the server, each with the HTTP status of the answer that tells it.
+"""Errors of the server, each with the HTTP status of its answer.
 
 The text of an error says what happened, why, and what to do. The first line of its class's docstring
 describes it in the interface's document.
@@ -23,7 +23,7 @@ class ApiError(Exception):
 
     @classmethod
     def answers(cls) -> Mapping[int, str]:
-        """The statuses of such answers, described for the interface's document."""
+        """Return the statuses of this error's answers, described for the interface's document."""
         return {cls.status: str(cls.__doc__).partition("\n")[0]}
 
 
@@ -71,5 +71,5 @@ class InsufficientStorageError(ApiError):
 
 
 def explain_internal_error(error: Exception) -> str:
-    """A sentence for a person, of an error that nobody has foreseen; the caller logs it."""
+    """Return a sentence for a person about an unforeseen error; the caller logs it."""
     return f"Internal error ({error!r}); the server's log has details."

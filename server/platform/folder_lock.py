@@ -24,9 +24,9 @@ class FolderInUseError(SetupError):
 
 @contextmanager
 def claim(folder: DataFolder) -> Iterator[None]:
-    """Hold the data folder alone.
+    """Lock the data folder for this process alone.
 
-    Raises FolderInUseError where another server has it, SetupError where it cannot be used.
+    Raise FolderInUseError where another server has it, SetupError where it cannot be used.
 
     The other processes of a killed server test the lock now and then, and so hold it for a moment.
     """
@@ -49,7 +49,7 @@ def claim(folder: DataFolder) -> Iterator[None]:
 
 
 def record_command(folder: DataFolder) -> None:
-    """Write the shell's present command into the audit log; one that cannot be written goes on."""
+    """Write the shell's present command into the audit log; the command goes on if that fails."""
     try:
         append_shell_command(folder.audit)
     except OSError as problem:

@@ -1,4 +1,4 @@
-"""The last configuration that could be used: services and commands take it where robot.toml cannot be.
+"""The last usable configuration: services and commands take it where robot.toml cannot be used.
 
 A file that a power cut or a slip of the editor has damaged does not take the robot away from its lab; and the
 default configuration would show emulated water where people stand before a real robot.
@@ -23,9 +23,9 @@ def read_usable_settings(
     port: int | None,
     environment: Mapping[str, str],
 ) -> Settings:
-    """The settings as `read_settings` reads them, else those of the last configuration that could be used.
+    """Return the settings as `read_settings`, else those of the last usable configuration.
 
-    Then `configuration_problem` says so. Raises SetupError where there is no such configuration either.
+    Then `configuration_problem` says so. Raise SetupError where there is no such configuration either.
     """
     last = data_folder(data, environment).last_config
     try:
@@ -42,7 +42,7 @@ def read_usable_settings(
 
 
 def _refuse_cut_off(config: Path, last: Path) -> None:
-    """Raise SetupError for a file that is the beginning of the last one: it may be valid, or empty."""
+    """Raise SetupError for a file that is the beginning of the last one, even if it is valid or empty."""
     with suppress(OSError):
         text, before = config.read_bytes().rstrip(), last.read_bytes().rstrip()
         if text != before and before.startswith(text):
@@ -53,7 +53,7 @@ def _refuse_cut_off(config: Path, last: Path) -> None:
 
 
 def keep_configuration(settings: Settings) -> None:
-    """Copy a configuration that could be used. A disk that cannot be written hinders no start."""
+    """Copy a usable configuration. A failing disk does not prevent a start."""
     if settings.configuration_problem:
         return
     path = settings.data.last_config

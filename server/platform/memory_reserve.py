@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.clock import Clock
-from server.platform.errors import UnavailableError
 
 log = logging.getLogger(__name__)
 
@@ -28,10 +27,6 @@ PAGE_BYTES = resource.getpagesize()
 _STATM = Path("/proc/self/statm")
 
 
-class MemoryShortError(UnavailableError):
-    """The server lacks memory for what can wait"""
-
-
 SHORT = (
     "The server has little memory left, and does only what operates the robot: STOP, commands, control. "
     "Try again in a moment; close pages and programs that nobody needs."
@@ -39,19 +34,19 @@ SHORT = (
 
 
 def read_own_bytes() -> int:
-    """The memory that this process has of its own, as far as it has touched it."""
+    """Return the memory of this process alone, in bytes, that it has touched."""
     _, resident, shared, *_ = _STATM.read_text("ascii").split()
     return (int(resident) - int(shared)) * PAGE_BYTES
 
 
 def give_back() -> None:
-    """Give memory that was freed, and that the C library has kept for later, back to the system."""
+    """Return freed memory that the C library still holds to the system."""
     with suppress(AttributeError):  # a C library other than glibc
         ctypes.CDLL(None).malloc_trim(0)
 
 
 class MemoryReserve:
-    """Says whether this process is short of memory. Without a limit, it never is."""
+    """The check for shortage of this process's memory. Without a limit there is none."""
 
     def __init__(
         self,
@@ -69,7 +64,7 @@ class MemoryReserve:
 
     @property
     def short(self) -> bool:
-        """True where only what operates the robot is done."""
+        """True while only requests that operate the robot are served."""
         now = self._clock.now()
         if self._limit != resource.RLIM_INFINITY and now - self._looked >= LOOK_SECONDS:
             self._looked = now
@@ -88,7 +83,7 @@ class MemoryReserve:
         loop.set_exception_handler(see)
 
     def open(self) -> None:
-        """Raise the limit, after an allocation has failed: what is under way may end."""
+        """Raise the limit after a failed allocation, so that running work can end."""
         if self._limit == resource.RLIM_INFINITY or self._opened:
             return
         self._opened = self._short = True

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract import documents
-from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.contract.topics import NOTICE
 from robot_runtime.transport.blocks import Block, pack_documents
 
 
 class Notices:
-    """Writes notices and hands each over as a block."""
+    """Writer of notices, each handed over as a block."""
 
     def __init__(self, clock: Clock, deliver: Callable[[Block], None]) -> None:
         self._clock = clock
@@ -26,6 +26,6 @@ class Notices:
 
     def add_event(self, event: documents.Event) -> None:
         """Write a notice from an event."""
-        block = Block.of(BY_NAME["notice"], 1, self._sent, pack_documents([event]))
+        block = Block.of(NOTICE, 1, self._sent, pack_documents([event]))
         self._sent += 1
         self._deliver(block)

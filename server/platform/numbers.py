@@ -1,4 +1,4 @@
-"""Numbers of rows that a restored database must not give again."""
+"""Numbers of rows that a restored database must not use again."""
 
 import sqlite3
 from contextlib import closing, suppress
@@ -8,9 +8,9 @@ from server.platform.database_copies import open_database
 
 
 def carry_numbers(replaced: Path, restored: Path) -> None:
-    """Make a restored database of this version count on from the replaced one.
+    """Make a restored database of this version continue the numbers of the replaced one.
 
-    That one may be damaged or missing. Raises sqlite3.DatabaseError where the restored one cannot be written.
+    That one may be damaged or missing. Raise sqlite3.DatabaseError where the restored one cannot be written.
     """
     with closing(sqlite3.connect(restored)) as fresh:
         counted = [
@@ -30,9 +30,9 @@ def carry_numbers(replaced: Path, restored: Path) -> None:
 
 
 def _last_number(database: sqlite3.Connection, table: str) -> int:
-    """The greatest number that the table has or had; 0 where that is not known."""
-    found = [0]
+    """Return the greatest number that the table has or had; 0 where that is not known."""
+    numbers = [0]
     for query in (f"SELECT max(id) FROM {table}", f"SELECT seq FROM sqlite_sequence WHERE name = '{table}'"):
         with suppress(sqlite3.OperationalError):  # an older version has no such table
-            found += [row[0] or 0 for row in database.execute(query)]
-    return max(found)
+            numbers += [row[0] or 0 for row in database.execute(query)]
+    return max(numbers)

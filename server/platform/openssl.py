@@ -39,9 +39,9 @@ def make_certificate(
     signer: Signer | None = None,
     days: int = DAYS,
 ) -> None:
-    """Makes a certificate for this common name, and its key unless there is one.
+    """Make a certificate for this common name, and its key unless there is one.
 
-    Without a signer it signs itself. Raises OSError, and SetupError where there is no openssl.
+    Without a signer it signs itself. Raise OSError, and SetupError where there is no openssl.
     """
     command = ["openssl", "req", "-x509"]
     if key.exists():
@@ -68,7 +68,7 @@ class Validity:
 
 
 def read_validity(certificate: Path) -> Validity:
-    """Reads a certificate. Raises OSError, and SetupError where there is no openssl."""
+    """Read a certificate. Raise OSError, and SetupError where there is no openssl."""
     command = ["openssl", "x509", "-in", str(certificate), "-noout", "-dates"]
     text = _run([*command, "-ext", "basicConstraints,keyUsage"])
     dates = dict(line.split("=", 1) for line in text.splitlines() if line.startswith("not"))

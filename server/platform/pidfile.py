@@ -17,7 +17,7 @@ RUNTIME_PAUSED = "runtime.paused"
 
 
 def started_at(pid: int) -> int | None:
-    """The start time of a process (clock ticks since the computer started, proc(5)); None where it has ended.
+    """Return a process's start time (clock ticks since the computer's start, proc(5)); None if it has ended.
 
     PIDs are reused; PID and start time together are unique.
     """
@@ -48,41 +48,41 @@ class PidFile:
         self._path = path
 
     def write(self, pid: int, fingerprint: str) -> None:
-        """Raises OSError where it cannot be written; the process runs on, and is not found again."""
+        """Write the file. Raise OSError; the process then runs on, but later servers do not find it."""
         text = json.dumps({"pid": pid, "started": started_at(pid), "made": fingerprint})
         fresh = self._path.with_name(self._path.name + ".new")
         fresh.write_text(text, encoding="utf-8")
         fresh.replace(self._path)
 
     def read(self) -> Running | None:
-        """The process that was written, where that very one still runs."""
+        """Return the written process, if it still runs."""
         try:
-            found = json.loads(self._path.read_text(encoding="utf-8"))
-            running = Running(int(found["pid"]), int(found["started"]), str(found["made"]))
+            document = json.loads(self._path.read_text(encoding="utf-8"))
+            running = Running(int(document["pid"]), int(document["started"]), str(document["made"]))
         except (OSError, ValueError, LookupError, TypeError):
             return None
         return running if started_at(running.pid) == running.started else None
 
     def remove(self) -> None:
-        """The process has ended."""
+        """Remove the file, once the process has ended."""
         with suppress(OSError):
             self._path.unlink(missing_ok=True)
 
 
 def pid_file(run: Path, name: str) -> PidFile:
-    """The file of the process of this name, in the folder `run`."""
+    """Return the file of the process of this name, in the folder `run`."""
     return PidFile(run / f"{name}.pid")
 
 
 def running_parts(run: Path) -> dict[str, Running]:
-    """The processes that still run, by name."""
-    found = {path.stem: PidFile(path).read() for path in run.glob("*.pid")}
-    return {name: running for name, running in found.items() if running is not None}
+    """Return the processes that still run, by name."""
+    processes = {path.stem: PidFile(path).read() for path in run.glob("*.pid")}
+    return {name: running for name, running in processes.items() if running is not None}
 
 
 @contextmanager
 def hold_still(run: Path) -> Iterator[None]:
-    """Keep other processes from entering themselves in this folder meanwhile. Raises OSError."""
+    """Prevent other processes from writing PID files in this folder meanwhile. Raise OSError."""
     handle = os.open(run, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX)
@@ -92,7 +92,7 @@ def hold_still(run: Path) -> Iterator[None]:
 
 
 def end_parts(run: Path, but: Collection[str] = ()) -> None:
-    """End what a killed server has left running, and wait for it; processes of the names in `but` stay.
+    """End the processes of a killed server, and wait for their end; those of the names in `but` stay.
 
     A runtime that systemd starts again waits as long as the caller has claimed the data folder.
     """

@@ -21,18 +21,20 @@ ASK_SECONDS = 10.0
 def announce(settings: Settings) -> None:
     """Write the server's address into its data folder.
 
-    Where that fails, as on a full disk, the server runs all the same: the address of the one before is there.
+    Where that fails, as on a full disk, the server runs all the same: the last server's address is there.
     """
-    host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
+    host = "127.0.0.1" if settings.server.host in ("0.0.0.0", "::") else settings.server.host
     host = f"[{host}]" if ":" in host else host
     try:
-        write_whole(settings.data.address, f"{settings.scheme}://{host}:{settings.port}\n".encode("ascii"))
+        write_whole(
+            settings.data.address, f"{settings.scheme}://{host}:{settings.server.port}\n".encode("ascii")
+        )
     except OSError as problem:
         log.warning("commands in a shell may not find this server: its address is not written: %s", problem)
 
 
 def server_runs(folder: DataFolder) -> bool:
-    """True while a server uses this folder. Raises SetupError where the folder cannot be used."""
+    """Return True while a server uses this folder. Raise SetupError where the folder cannot be used."""
     if not folder.path.is_dir():
         return False
     try:
@@ -49,9 +51,9 @@ def ask(
     body: Mapping[str, Any] | None = None,
     seconds: float = ASK_SECONDS,
 ) -> Any:
-    """The server's answer to a request below /api; None where it is empty.
+    """Return the server's answer to a request below /api; None where it is empty.
 
-    Raises SetupError where none runs, or it refuses, in its words.
+    Raise SetupError where none runs, or with the server's reason where it refuses.
     """
     data = b"" if body is None and method == "POST" else None
     if body is not None:
@@ -60,7 +62,7 @@ def ask(
 
 
 def send_file(folder: DataFolder, path: str, file: Path, seconds: float) -> Any:
-    """The server's answer to a posted file. Raises SetupError as `ask`, OSError."""
+    """Return the server's answer to a posted file. Raise SetupError as `ask`, OSError."""
     with file.open("rb") as body:
         headers = {"content-type": "application/zip", "content-length": str(file.stat().st_size)}
         return _send(folder, "POST", path, body, headers, seconds)

@@ -1,4 +1,4 @@
-"""Identifiers of runs that live in the server's memory, and refusal of those that are over.
+"""Identifiers of runs in the server's memory, and the refusal of ended ones.
 
 A number from 1 would come again with each start of the server: a page or a program from before it would then
 read or cancel another run than it means.
@@ -20,14 +20,14 @@ class RunOverError(ConflictError):
 
 
 def new_run() -> str:
-    """An identifier for a run that begins."""
+    """Return an identifier for a run that begins."""
     return token_hex(RUN_BYTES)
 
 
 def require_run(meant: str | int | None, present: str | int | None, what: str) -> None:
     """Refuse a request that means another run than the present one; one without a run means any.
 
-    Raises RunOverError.
+    Raise RunOverError.
     """
     if meant is not None and meant != present:
         raise RunOverError(what)

@@ -11,8 +11,8 @@ from migrations import HEAD
 from server.platform.database_copies import (
     DAMAGED_REMEDY,
     copy_database,
+    new_copy_path,
     open_database,
-    place,
     thin_out,
 )
 from server.platform.settings import DataFolder, SetupError
@@ -24,7 +24,7 @@ INCREMENTAL = 2
 def prepare(folder: DataFolder) -> None:
     """Create or upgrade the database; an older one is copied to `backups` first.
 
-    Raises SetupError where the database is of a newer version, damaged, or cannot be written.
+    Raise SetupError where the database is of a newer version, damaged, or cannot be written.
     """
     try:
         # Opened for writing, which rolls back the upgrade of a killed server.
@@ -33,7 +33,7 @@ def prepare(folder: DataFolder) -> None:
             return
         if revision is not None:
             refuse_unknown(revision, folder.database, folder)
-            copy = place(folder, "before", revision)
+            copy = new_copy_path(folder, "before", revision)
             copy_database(folder.database, copy)
             thin_out(folder, "before", copy)
         upgrade(folder.database)
@@ -44,24 +44,24 @@ def prepare(folder: DataFolder) -> None:
 
 
 def upgrade(database: Path) -> None:
-    """Create the tables, or upgrade them. Raises sqlite3.DatabaseError, OSError."""
+    """Create the tables, or upgrade them. Raise sqlite3.DatabaseError, OSError."""
     if database.exists():
         _make_shrinkable(database)
     _upgrade(database)
 
 
 def explain(problem: sqlite3.DatabaseError | OSError, folder: Path) -> str:
-    """A sentence for a person with the cause and the remedy."""
-    words = str(problem)
-    if "disk is full" in words or (isinstance(problem, OSError) and problem.errno == errno.ENOSPC):
+    """Return a sentence for a person with the cause and the remedy."""
+    message = str(problem)
+    if "disk is full" in message or (isinstance(problem, OSError) and problem.errno == errno.ENOSPC):
         return f"the disk that holds {folder} is full. Free some space, and try again."
-    if isinstance(problem, OSError) or "readonly" in words or "unable to open" in words:
-        return f"{words}. Check the permissions of {folder}, and whether its disk is read-only."
-    return f"{words}. {DAMAGED_REMEDY}."
+    if isinstance(problem, OSError) or "readonly" in message or "unable to open" in message:
+        return f"{message}. Check the permissions of {folder}, and whether its disk is read-only."
+    return f"{message}. {DAMAGED_REMEDY}."
 
 
 def read_revision(database: Path, mode: Literal["ro", "rw"] = "ro") -> str | None:
-    """The schema revision of a database; None where there is none yet. Raises sqlite3.DatabaseError."""
+    """Return the schema revision of a database; None where there is none yet. Raise sqlite3.DatabaseError."""
     if not database.exists():
         return None
     with closing(open_database(database, mode)) as connection:
@@ -108,7 +108,7 @@ def known_revisions() -> set[str]:
 
 
 def find_copy(folder: DataFolder, known: Collection[str]) -> Path | None:
-    """The newest copy in the folder that has one of these revisions."""
+    """Return the newest copy in the folder that has one of these revisions."""
     for copy in sorted(folder.backups.glob("mucat-*.db"), key=lambda path: path.stem[-19:], reverse=True):
         try:
             if read_revision(copy) in known:

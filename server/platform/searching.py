@@ -1,4 +1,4 @@
-"""Comparison of texts in a search, whatever keyboard, case or spelling in Unicode they were typed with."""
+"""Comparison of texts in a search, without regard to keyboard, case or spelling in Unicode."""
 
 import unicodedata
 
@@ -7,6 +7,6 @@ _FIRST_MARK, _LAST_MARK = "\u0300", "\u036f"
 
 
 def fold(text: str) -> str:
-    """The text without case, accents and other forms of the same letters: "Öö ﬁ ß" is "oo fi ss"."""
+    """Return the text without case, accents and compatible forms: "Öö ﬁ ß" becomes "oo fi ss"."""
     apart = unicodedata.normalize("NFKD", unicodedata.normalize("NFKD", text).casefold())
-    return "".join(one for one in apart if not _FIRST_MARK <= one <= _LAST_MARK)
+    return "".join(character for character in apart if not _FIRST_MARK <= character <= _LAST_MARK)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from robot_runtime.contract.limits import Range
+from server.platform.reverse_proxy import Network, read_proxies, read_public_url
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -16,3 +17,18 @@ class ServerConfig:
     tls: bool = False
     public_url: str = ""
     trusted_proxies: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        # Both are read once so that a wrong one is refused with the file.
+        read_public_url(self.public_url)
+        read_proxies(self.trusted_proxies)
+
+    @property
+    def origin(self) -> str:
+        """`public_url` as browsers write an origin; empty without a reverse proxy."""
+        return read_public_url(self.public_url)
+
+    @property
+    def proxies(self) -> tuple[Network, ...]:
+        """The networks whose X-Forwarded-For is believed."""
+        return read_proxies(self.trusted_proxies)

@@ -11,15 +11,12 @@ from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from ipaddress import ip_address
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 from robot_runtime.config import (
     ADOPTED_CRAFT,
     Config,
-    HilConfig,
-    LinkConfig,
-    ZenohConfig,
-    craft_in,
+    craft_in_force,
     craft_path,
     parse_table,
     read_file,
@@ -27,16 +24,14 @@ from robot_runtime.config import (
 )
 from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.limits import ConfigError
-from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.contract.parsing import read_value
 from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.control.controllers import check_control
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.places import BUILD, DEFAULT_CONFIG, IN_REPOSITORY
-from robot_runtime.profile import Profile, profile_here
+from robot_runtime.profile import profile_here
 from server.feature import Feature, list_features
 from server.platform.pidfile import RUNTIME_PAUSED, hold_still, running_parts
-from server.platform.reverse_proxy import Network, read_proxies, read_public_url
 from server.platform.server_config import ServerConfig
 
 SOCKET_PATH_BYTES_MAX = 107
@@ -54,7 +49,6 @@ SIOCGIFADDR = 0x8915
 ROBOT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,31}")
 
 T = TypeVar("T")
-Mode = Literal["emulated", "robot", "hil"]
 
 
 class SetupError(Exception):
@@ -140,35 +134,21 @@ class DataFolder:
         """Your own panels for the page (docs/use/panels.md)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """The server's settings; `build` is the folder that holds the emulated board and the firmware."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings(Config):
+    """All of robot.toml as it is in force, and what only the command line, the environment and the place say.
+
+    `build` is the folder that holds the emulated board and the firmware.
+    """
 
     data: DataFolder
     config: Path
     config_text: str = ""
     """The text of `config` as it was read; the file may have changed since."""
-    robot: str = "turtle"
-    mode: Mode = "emulated"
-    profile: Profile = "full"
-    link: LinkConfig = field(default_factory=LinkConfig)
-    hil: HilConfig = field(default_factory=HilConfig)
-    missions: MissionLimits = NO_LIMITS
-    zenoh: ZenohConfig = field(default_factory=ZenohConfig)
     features: Mapping[str, bool] = field(default_factory=dict)
     """The optional features that robot.toml switches on or off, by name."""
     sections: Mapping[type, object] = field(default_factory=dict)
-    """The sections of features, by their classes, where they differ from the defaults."""
-    host: str = "127.0.0.1"
-    port: int = 8000
-    tls: bool = False
-    allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
-    public_url: str = ""
-    """The origin that people open, where a reverse proxy stands before the server."""
-    trusted_proxies: tuple[Network, ...] = ()
-    """The networks whose X-Forwarded-For is believed."""
-    craft: Path | None = None
-    """The craft file that the configuration names; None: the adopted one."""
+    """The server's section and those of features, by their classes, where they differ from the defaults."""
     mistakes: tuple[str, ...] = ()
     """Of the emulated board; see robot_runtime/simulation/boards/mistakes.py."""
     uncalibrated: bool = False
@@ -184,16 +164,21 @@ class Settings:
     help_pages: Path = Path(__file__).parents[1] / "help"
 
     def section(self, kind: type[T]) -> T:
-        """The section of robot.toml that a feature declares with this class."""
-        found = self.sections.get(kind)
-        return found if isinstance(found, kind) else kind()
+        """Return the section of robot.toml that the server or a feature declares with this class."""
+        section = self.sections.get(kind)
+        return section if isinstance(section, kind) else kind()
 
     def with_section(self, section: object) -> "Settings":
-        """These settings with another section of a feature."""
+        """Return these settings with another section of the server or of a feature."""
         return replace(self, sections={**self.sections, type(section): section})
 
+    @property
+    def server(self) -> ServerConfig:
+        """The server's own section."""
+        return self.section(ServerConfig)
+
     def has(self, feature: Feature) -> bool:
-        """True where this feature is on."""
+        """Return True where this feature is on."""
         if self.every_feature:
             return True
         if feature.optional and not self.features.get(feature.name, True):
@@ -203,54 +188,54 @@ class Settings:
     @property
     def scheme(self) -> str:
         """The scheme of its addresses."""
-        return "https" if self.tls else "http"
+        return "https" if self.server.tls else "http"
 
     @property
     def only_here(self) -> bool:
         """True where no other computer can reach the server."""
-        return is_loopback(self.host) and not self.public_url
+        return is_loopback(self.server.host) and not self.server.public_url
 
     def base_url(self, called: str = "") -> str:
-        """The server's address for a browser; `called` is the name by which one has just called it.
+        """Return the server's address for a browser; `called` is the host name of the browser's request.
 
-        Where others can reach the server, it is a name that works for them too.
+        Where others can reach the server, the address works for them too.
         """
-        if self.public_url:
-            return self.public_url
+        if self.server.public_url:
+            return self.server.origin
         usable = called in self._names or (_is_address(called) and not is_loopback(called))
         return self._url(called) if usable else self.base_urls()[0]
 
     def base_urls(self) -> list[str]:
-        """Every address by which a browser elsewhere may reach the server; here alone if nobody else can."""
-        if self.public_url:
-            return [self.public_url]
-        return [self._url(name) for name in self._names or [self.host]]
+        """Return every address for browsers elsewhere; the local one if no other computer can connect."""
+        if self.server.public_url:
+            return [self.server.origin]
+        return [self._url(name) for name in self._names or [self.server.host]]
 
     @property
     def _names(self) -> list[str]:
-        return [name for name in self.allowed_hosts if self.only_here or not is_loopback(name)]
+        return [name for name in self.server.allowed_hosts if self.only_here or not is_loopback(name)]
 
     def _url(self, name: str) -> str:
-        return f"{self.scheme}://{name}:{self.port}"
+        return f"{self.scheme}://{name}:{self.server.port}"
 
     @property
     def craft_file(self) -> Path:
         """The craft file in force, which need not exist."""
-        return self.craft or self.data.craft
+        return craft_path(self, self.config, self.data.path)
 
     def read_craft(self) -> Craft:
-        """The craft in force. Raises ConfigError where its file cannot be used."""
-        return craft_in(self.craft_file)
+        """Return the craft in force. Raise ConfigError where its file cannot be used."""
+        return craft_in_force(self, self.config, self.data.path)
 
     @property
     def emulated_board(self) -> bool:
         """True where the robot's board is an emulated one."""
-        return self.mode == "emulated" or (self.mode == "hil" and self.hil.board == "emulated")
+        return self.robot.mode == "emulated" or (self.in_the_loop and self.hil.board == "emulated")
 
     @property
     def in_the_loop(self) -> bool:
         """True where a simulator feeds the board's sensors."""
-        return self.mode == "hil"
+        return self.robot.mode == "hil"
 
 
 def read_settings(
@@ -260,7 +245,7 @@ def read_settings(
     port: int | None,
     environment: Mapping[str, str],
 ) -> Settings:
-    """Command line before environment before `robot.toml`. Raises SetupError on what is not valid.
+    """Read the settings: command line before environment before `robot.toml`. Raise SetupError if invalid.
 
     Without a `config` it is robot.toml in the present folder, else the data folder's, else the default one.
     """
@@ -270,58 +255,46 @@ def read_settings(
         text = read_file(config)
         table = read_table(text, config)
         loaded = parse_table(table, config)
-        server, features, sections = _read_sections(table, DocumentEntry(config.name))
+        features, sections = _read_sections(table, DocumentEntry(config.name))
         check_control(loaded.control)
     except ConfigError as problem:
         raise SetupError(f"{problem}. Correct the file, or name another with --config.") from problem
     _check_socket_paths(folder)
     try:
-        craft = craft_path(loaded, config, folder.path)
-        craft_in(craft)
+        craft_in_force(loaded, config, folder.path)
     except ConfigError as problem:
         raise SetupError(f"{problem}. Correct or remove the craft file.") from problem
     if not ROBOT_NAME.fullmatch(loaded.robot.name):
         raise SetupError(f"{config}: robot.name is {loaded.robot.name!r}; use up to 32 of a-z, 0-9, - and _.")
-    chosen_port = server.port if port is None else port
-    if not 0 < chosen_port < 65536:
-        raise SetupError(f"The port is {chosen_port}; it must be a whole number from 1 to 65535.")
-    chosen_host = host or server.host
-    try:
-        public_url = read_public_url(server.public_url)
-        trusted_proxies = read_proxies(server.trusted_proxies)
-    except ValueError as problem:
-        raise SetupError(f"{config}: {problem}") from problem
+    server = sections[ServerConfig]
+    host = host or server.host
+    server = replace(
+        server,
+        host=host,
+        port=server.port if port is None else port,
+        allowed_hosts=_allowed_hosts(server.allowed_hosts, host),
+    )
+    if not 0 < server.port < 65536:
+        raise SetupError(f"The port is {server.port}; it must be a whole number from 1 to 65535.")
+    sections_of_robot = {field.name: getattr(loaded, field.name) for field in fields(Config)}
     return Settings(
+        **sections_of_robot | {"robot": replace(loaded.robot, profile=profile_here(loaded))},
         data=folder,
         config=config.absolute(),
         config_text=text,
-        robot=loaded.robot.name,
-        mode=loaded.robot.mode,
-        profile=profile_here(loaded),
-        link=loaded.link,
-        hil=loaded.hil,
-        missions=loaded.missions,
-        zenoh=loaded.zenoh,
         features=features,
-        sections=sections,
-        craft=None if craft == folder.craft else craft,
-        host=chosen_host,
-        port=chosen_port,
-        tls=server.tls,
-        allowed_hosts=_allowed_hosts(server.allowed_hosts, chosen_host),
-        public_url=public_url,
-        trusted_proxies=trusted_proxies,
+        sections={**sections, ServerConfig: server},
     )
 
 
 def _read_sections(
     table: Mapping[str, Any], where: DocumentEntry
-) -> tuple[ServerConfig, Mapping[str, bool], Mapping[type, object]]:
-    """The sections of robot.toml beside the robot's own. Raises ConfigError."""
+) -> tuple[Mapping[str, bool], Mapping[type, Any]]:
+    """Return the switches of optional features, and the sections beside the robot's. Raise ConfigError."""
     features = list_features().values()
-    named = {one.name: one for one in features if one.section is not None}
-    optional = [one.name for one in features if one.optional]
-    known = [*(one.name for one in fields(Config)), "server", "features", *named]
+    named = {feature.name: feature for feature in features if feature.section is not None}
+    optional = [feature.name for feature in features if feature.optional]
+    known = [*(field.name for field in fields(Config)), "server", "features", *named]
     problems = [
         where.field(name, repr(name)).problem(f"is not known here; known are {', '.join(known)}")
         for name in table
@@ -337,41 +310,44 @@ def _read_sections(
     ]
     if problems:
         raise ConfigError(*problems)
-    sections: dict[type, object] = {}
+    sections: dict[type, Any] = {}
+    sections[ServerConfig] = read_value(ServerConfig, table.get("server", {}), where.field("server"))
     for name, feature in named.items():
         if name in table and feature.section is not None:
             entries = _without_removed(table[name], feature.removed, where.field(name))
             sections[feature.section] = read_value(feature.section, entries, where.field(name))
-    server = read_value(ServerConfig, table.get("server", {}), where.field("server"))
-    return server, switched, sections
+    return switched, sections
 
 
 def _without_removed(section: Any, removed: Sequence[str], where: DocumentEntry) -> Any:
-    """A section without empty entries of earlier versions. Raises ConfigError where one is not empty."""
+    """Return a section without empty entries of earlier versions.
+
+    Raise ConfigError where one is not empty.
+    """
     if not isinstance(section, dict):
         return section
     used = [name for name in removed if section.get(name)]
     if used:
-        words = "is no longer there; remove the entry. The changelog says what to use"
-        raise ConfigError(*(where.field(name).problem(words) for name in used))
+        reason = "is no longer there; remove the entry. The changelog says what to use"
+        raise ConfigError(*(where.field(name).problem(reason) for name in used))
     return {name: value for name, value in section.items() if name not in removed}
 
 
 def data_folder(data: Path | None, environment: Mapping[str, str]) -> DataFolder:
-    """Returns the data folder that the command line, else the environment names."""
+    """Return the data folder named by the command line, else by the environment."""
     return DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
 
 
 def find_config(folder: DataFolder) -> Path:
-    """Returns the configuration where the command line names none."""
-    found = (path for path in (Path("robot.toml"), folder.config) if path.exists())
-    return next(found, DEFAULT_CONFIG)
+    """Return the path of the configuration if the command line names none."""
+    paths = (path for path in (Path("robot.toml"), folder.config) if path.exists())
+    return next(paths, DEFAULT_CONFIG)
 
 
 def keep_config(settings: Settings) -> Settings:
-    """Puts the default configuration into the data folder, where nobody has one, so that it can be edited.
+    """Put the default configuration into the data folder for editing, where there is no configuration.
 
-    Raises SetupError where it cannot.
+    Raise SetupError where it cannot.
     """
     if settings.config != DEFAULT_CONFIG or IN_REPOSITORY:
         return settings
@@ -385,7 +361,7 @@ def keep_config(settings: Settings) -> Settings:
 def make_folders(folder: DataFolder) -> None:
     """Create the data folder, for this user alone, and empty its `run` where nothing runs.
 
-    Raises SetupError where it cannot.
+    Raise SetupError where it cannot.
     """
     try:
         for path in (folder.path, folder.logs, folder.run):
@@ -403,25 +379,26 @@ def make_folders(folder: DataFolder) -> None:
 
 
 def _make_private(folder: DataFolder) -> None:
-    """Take away what others may do with the folder: older versions let them read it. Raises OSError."""
+    """Remove others' rights on the folder: older versions let them read it. Raise OSError."""
     known = [path for path in vars(folder).values() if path != folder.path and path.is_dir()]
     files = [file for file in folder.path.iterdir() if not file.is_dir()]
-    for path in (folder.path, *files, *known, *(inner for one in known for inner in one.rglob("*"))):
+    for path in (folder.path, *files, *known, *(inner for parent in known for inner in parent.rglob("*"))):
         with suppress(FileNotFoundError):  # a process of a killed server may just have removed it
             status = path.lstat()
             if status.st_uid == os.geteuid() and status.st_mode & OTHERS and not path.is_symlink():
                 path.chmod(stat.S_IMODE(status.st_mode) & ~OTHERS)
 
 
-def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
+def _allowed_hosts(names: list[str], host: str) -> list[str]:
     everywhere = host in ("0.0.0.0", "::")
     own = _own_names() if everywhere else [f"[{host}]" if ":" in host else host]
-    return tuple(dict.fromkeys(name.lower() for name in [*names, *own]))
+    return [*dict.fromkeys(name.lower() for name in [*names, *own])]
 
 
 def _own_names() -> list[str]:
-    """This computer's addresses, first the one in the network that its packets leave by, and its
-    names. No foreign page can make a browser take such an address for the page's own.
+    """Return this computer's addresses, first that of its outgoing packets, and its names.
+
+    No foreign page can make a browser take such an address for the page's own.
     """
     name = socket.gethostname().lower()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
@@ -431,11 +408,15 @@ def _own_names() -> list[str]:
             addresses.insert(0, probe.getsockname()[0])
         except OSError:
             pass  # no network beyond its own
-    return [*(one for one in addresses if one and not is_loopback(one)), f"{name}.local", name]
+    return [
+        *(address for address in addresses if address and not is_loopback(address)),
+        f"{name}.local",
+        name,
+    ]
 
 
 def _interface_address(probe: socket.socket, interface: str) -> str:
-    """The IPv4 address of a network interface; empty where it has none."""
+    """Return the IPv4 address of a network interface; empty where it has none."""
     try:
         request = fcntl.ioctl(probe, SIOCGIFADDR, struct.pack("256s", interface.encode()[:15]))
     except OSError:
@@ -452,7 +433,7 @@ def _is_address(name: str) -> bool:
 
 
 def is_loopback(name: str) -> bool:
-    """True where this address or name always means the computer itself."""
+    """Return True where this address or name always means the computer itself."""
     try:
         return ip_address(name.strip("[]")).is_loopback
     except ValueError:

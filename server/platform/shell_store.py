@@ -15,7 +15,7 @@ from server.platform.store import Reader, Store, StoreError
 def open_reader(folder: DataFolder) -> Iterator[Reader]:
     """Open the database for reading alone, which may be done beside a running server.
 
-    Creating or upgrading it may not, and claims the folder. Raises SetupError where the folder is in use or
+    Creating or upgrading it needs the folder's lock. Raise SetupError where the folder is in use or
     the database fails.
     """
     try:
@@ -31,7 +31,7 @@ def open_reader(folder: DataFolder) -> Iterator[Reader]:
 
 @contextmanager
 def open_writer(folder: DataFolder) -> Iterator[Store]:
-    """Create or upgrade the database of a claimed folder, and open it. Raises SetupError where it fails."""
+    """Create or upgrade the database of a claimed folder, and open it. Raise SetupError where it fails."""
     prepare(folder)
     with _explained(folder), closing(Store(folder.database)) as store:
         yield store

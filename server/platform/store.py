@@ -88,14 +88,14 @@ class Store(Reader):
     async def write(self, change: Callable[[Connection], T], *, frees: bool = False) -> T:
         """Run `change` in one transaction in the writer's thread; committed when this returns.
 
-        `frees` is a change that leads to free room. Raises StoreError where it could not be committed; then
+        `frees` is a change that leads to free room. Raise StoreError where it could not be committed; then
         nothing of it is stored.
         """
         commit = self._commit_freeing if frees else self._commit
         return await asyncio.wrap_future(self._thread.submit(commit, change))
 
     async def execute(self, change: UpdateBase, rows: Sequence[Mapping[str, Any]] | None = None) -> int:
-        """Run one statement in a transaction, for each of `rows` if given; returns the rows changed."""
+        """Run one statement in a transaction, for each of `rows` if given; return the rows changed."""
         return await self.write(
             lambda connection: connection.execute(change, rows).rowcount, frees=isinstance(change, Delete)
         )
@@ -105,7 +105,7 @@ class Store(Reader):
         await asyncio.wrap_future(self._thread.submit(self.reserve.make))
 
     async def probe(self) -> None:
-        """Test writing with a minimal change. Raises StoreError where it does not."""
+        """Test writing with a minimal change. Raise StoreError where it does not."""
         await self.write(_touch)
 
     def close(self) -> None:
@@ -139,7 +139,7 @@ class Store(Reader):
 
 
 def insert_row(connection: Connection, table: type[SQLModel], values: Mapping[str, Any]) -> int:
-    """Insert a row, within a transaction; returns its number."""
+    """Insert a row, within a transaction; return its number."""
     key = connection.execute(insert(table).values(**values)).inserted_primary_key
     assert key is not None
     return int(key[0])
@@ -188,13 +188,13 @@ def _make_durable(connection: sqlite3.Connection, _record: object) -> None:
 
 
 def _explain(problem: DBAPIError) -> str:
-    words = str(problem.orig)
-    if "disk is full" in words:
+    message = str(problem.orig)
+    if "disk is full" in message:
         return FULL
-    if "disk I/O error" in words:
+    if "disk I/O error" in message:
         return "the disk does not take or give data (input/output error): check the SD card or disk"
-    if "readonly" in words:
+    if "readonly" in message:
         return "the data folder cannot be written: check its permissions, and whether the disk is read-only"
-    if "malformed" in words or "not a database" in words:
-        return f"the database is damaged: {words}. {DAMAGED_REMEDY}"
-    return f"the database refuses: {words}"
+    if "malformed" in message or "not a database" in message:
+        return f"the database is damaged: {message}. {DAMAGED_REMEDY}"
+    return f"the database refuses: {message}"

@@ -9,7 +9,7 @@ PLACES = "sys/devices/platform/soc*/soc*:firmware/get_throttled"
 
 
 def read_throttled(root: Path = Path("/")) -> int | None:
-    """The bits now; None where this is no Raspberry Pi."""
+    """Return the present bits; None where this is no Raspberry Pi."""
     for path in root.glob(PLACES):
         try:
             return int(path.read_text(encoding="ascii").strip(), 16)

@@ -1,4 +1,4 @@
-"""Prints texts to a terminal or a log; foreign ones cannot command it."""
+"""Output of texts to a terminal or a log; foreign texts cannot control it."""
 
 import logging
 import re
@@ -12,18 +12,18 @@ _COMMANDS = re.compile(
 
 
 def plain(text: str) -> str:
-    """The text with its control characters and marks of direction as escapes, such as \\x1b."""
-    return _COMMANDS.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+    """Return the text with its control characters and marks of direction as escapes, such as \\x1b."""
+    return _COMMANDS.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
 
 
 def echo(text: object, *, err: bool = False, nl: bool = True) -> None:
-    """Print a text that may hold foreign words."""
+    """Print a text that may hold foreign parts."""
     click.echo(plain(str(text)), err=err, nl=nl)
 
 
 class PlainFormatter(logging.Formatter):
-    """Formats a log's lines, which may hold foreign words."""
+    """Formatter of a log's lines, which may hold foreign parts."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """The line, and a traceback below it."""
+        """Return the line, and a traceback below it."""
         return plain(super().format(record))

@@ -32,9 +32,9 @@ FILE_BYTES_MAX = 50_000_000
 
 
 def store_files(copy: sqlite3.Connection, folder: DataFolder, config: Path) -> list[str]:
-    """Store the files beside the copied tables; returns the names of files that are too large.
+    """Store the files beside the copied tables; return the names of files that are too large.
 
-    Raises sqlite3.DatabaseError, OSError.
+    Raise sqlite3.DatabaseError, OSError.
     """
     copy.execute(f"DROP TABLE IF EXISTS {TABLE}")
     copy.execute(f"CREATE TABLE {TABLE} (name TEXT PRIMARY KEY, content BLOB NOT NULL)")
@@ -51,7 +51,7 @@ def store_files(copy: sqlite3.Connection, folder: DataFolder, config: Path) -> l
 def take_files(database: Path, target: Path) -> list[str] | None:
     """Move the files of a backup out of its copy `database` into the new folder `target`.
 
-    Returns their names, None where the backup has no such table. Raises SetupError for a name that leads
+    Return their names, None where the backup has no such table. Raise SetupError for a name that leads
     elsewhere, sqlite3.DatabaseError, OSError.
     """
     connection = sqlite3.connect(database)
@@ -77,10 +77,10 @@ def take_files(database: Path, target: Path) -> list[str] | None:
 
 
 def put_files(folder: DataFolder, fresh: Path, aside: Path) -> None:
-    """Give the files in `fresh` their places; what was there goes into the new folder `aside`.
+    """Move the files in `fresh` to their paths; existing files go into the new folder `aside`.
 
-    What the backup lacks goes aside as well: afterwards the files are those of the backup. Without `fresh`
-    all stay as they are. Raises OSError.
+    Files that the backup lacks go aside as well: afterwards the files are those of the backup. Without
+    `fresh` all stay as they are. Raise OSError.
     """
     if not fresh.is_dir():
         return
@@ -94,11 +94,11 @@ def put_files(folder: DataFolder, fresh: Path, aside: Path) -> None:
 
 
 def _files(folder: DataFolder, config: Path) -> Iterator[tuple[str, Path]]:
-    """Their names and paths; links and unusual names are left alone."""
+    """Yield the files' names and paths; links and unusual names are omitted."""
     for name in NAMES:
         path = config if name == CONFIG else folder.path / name
         for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
             inner = file.relative_to(path).parts if path.is_dir() else ()
-            place = "/".join((name, *inner))
-            if file.is_file() and (not file.is_symlink() or name == CONFIG) and place.isprintable():
-                yield place, file
+            relative = "/".join((name, *inner))
+            if file.is_file() and (not file.is_symlink() or name == CONFIG) and relative.isprintable():
+                yield relative, file

@@ -25,24 +25,24 @@ STORE_SECONDS = 600.0
 
 
 def is_set(utc: float) -> bool:
-    """True for a time (UTC, s since 1970) that this software can have seen."""
+    """Return True for a time (UTC, s since 1970) that this software can have seen."""
     return utc >= SOFTWARE_MADE
 
 
 def is_synchronised() -> bool:
-    """True where the kernel says so; asking for it needs no right (adjtimex(2) without a mode)."""
+    """Return True where the kernel says so; asking for it needs no right (adjtimex(2) without a mode)."""
     state = int(ctypes.CDLL(None).adjtimex(ctypes.create_string_buffer(TIMEX_BYTES)))
     return 0 <= state < TIME_ERROR
 
 
 def was_suspended() -> bool:
-    """True where the computer has been suspended since its start: the steady clock stood still meanwhile."""
+    """Return True where the computer was suspended since its start, so that the steady clock stood still."""
     return time.clock_gettime(time.CLOCK_BOOTTIME) - time.monotonic() > 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """The time when it was looked at last, and for how many s of running ages stay unknown.
+    """The time at the last check, and the s of running for which ages stay unknown.
 
     `boot` is the start of the computer from which `steady` counts; `by_boot`: the doubt came with a start of
     the computer, and goes where a time server has set the clock.
@@ -56,7 +56,7 @@ class _Known:
 
 
 class WallClock:
-    """Compares the wall clock with the steady one, also from one server to the next.
+    """The comparison of the wall clock with the steady one, also from one server to the next.
 
     After a jump, for a day of running, no age is known. A start of the computer counts as a jump where the
     wall clock went back, or ahead by more than `AWAY_SECONDS`, and no time server has set it. `path` is the
@@ -70,13 +70,13 @@ class WallClock:
         self._stored: _Known | None = None
 
     def knows_ages(self, now: float) -> bool:
-        """True where ages can be told at this time (UTC, s since 1970)."""
+        """Return True where ages are known at this time (UTC, s since 1970)."""
         last = self._known or self._read()
         self._known = self._look(now, last)
         return self._known.doubt <= 0
 
     def store(self) -> None:
-        """Store the time for the next server, if it is news. Raises OSError."""
+        """Store the time for the next server, if it has changed enough. Raise OSError."""
         known, stored = self._known, self._stored
         if known is None:
             return

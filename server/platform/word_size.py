@@ -1,4 +1,4 @@
-"""The size of words as this computer's programs see it: its kernel may have 64 bits where they have 32."""
+"""The word size of this computer's programs: the kernel may have 64 bits where they have 32."""
 
 import struct
 

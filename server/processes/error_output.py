@@ -1,6 +1,6 @@
-"""The standard error of a server: passed on as it comes, with its last lines remembered.
+"""The standard error of a server: passed on at once, with its last lines stored.
 
-A C library that ends the process says why there, and nowhere else.
+A C library that ends the process gives its reason only there.
 """
 
 import os
@@ -22,18 +22,18 @@ class ErrorOutput:
         self._last = b""
 
     def become(self) -> None:
-        """Make it the standard error of this process, the server."""
+        """Make the pipe the standard error of this process, the server."""
         os.dup2(self._other_end, STANDARD_ERROR)
 
     def pass_on(self) -> None:
-        """Write what the server has written to the standard error of this process, its runner."""
+        """Copy the server's output to the standard error of this process, its runner."""
         with suppress(BlockingIOError):
             while data := os.read(self.handle, READ_BYTES):
                 self._last = (self._last + data)[-LAST_BYTES:]
                 _write(data)
 
     def last(self, count: int) -> str:
-        """The server's last lines, on one line; empty where there are none."""
+        """Return the server's last lines, on one line; empty where there are none."""
         return last_lines(self._last, count)
 
     def close(self) -> None:

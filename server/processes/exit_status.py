@@ -1,10 +1,10 @@
-"""The end of a process in words."""
+"""The description of a process's end."""
 
 from signal import Signals
 
 
 def describe_status(status: int | None) -> str:
-    """Describe the end of a process, in words that follow its name; `status` is None if it is not known."""
+    """Describe the end of a process, as text that follows its name; `status` is None if unknown."""
     if status is None:
         return "has ended; its exit status is not known, because an earlier server had started it"
     if status >= 0:
@@ -17,5 +17,5 @@ def describe_status(status: int | None) -> str:
 
 
 def describe_end(status: int | None, last: str) -> str:
-    """The same with its last words, if there are any."""
+    """Return the description with the process's last output, if any."""
     return describe_status(status) + (f". Its last words: {last}" if last else "")

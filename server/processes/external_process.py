@@ -1,7 +1,7 @@
 """A process that systemd starts and restarts: the server only watches it, and asks it to pause.
 
-It enters itself in the folder `run` (`server.processes.runtime_service`), where the server finds it. When the
-server ends, is killed or is updated, the process runs on.
+It writes its PID file in the folder `run` (`server.processes.runtime_service`), where the server finds it.
+When the server ends, is killed or is updated, the process runs on.
 """
 
 import asyncio
@@ -60,7 +60,7 @@ class ExternalProcess(ManagedProcess):
             self._set("ended")
 
     async def end(self) -> None:
-        """Watch it no longer; it runs on."""
+        """Stop watching the process; it runs on."""
         if self._process is not None:
             self._process.leave()
             self._process = None
@@ -68,7 +68,7 @@ class ExternalProcess(ManagedProcess):
     async def pause(self, why: str) -> None:
         """End the process, which waits at its next start until `run` is called again.
 
-        Raises RefusedError where the file that says so cannot be written; the process runs on.
+        Raise RefusedError where the pause file cannot be written; the process runs on.
         """
         try:
             await asyncio.to_thread(write_whole, self._paused, b"")
@@ -76,15 +76,15 @@ class ExternalProcess(ManagedProcess):
             raise RefusedError(
                 f"The robot's runtime cannot be paused. {explain_write_error(problem, self._paused)}"
             ) from problem
-        found = self._pid_file.read()
-        if found is not None:
-            await self._terminate(found)
+        running = self._pid_file.read()
+        if running is not None:
+            await self._terminate(running)
         self.problem = why
         self._set("paused")
 
-    async def _terminate(self, found: Running) -> None:
+    async def _terminate(self, running: Running) -> None:
         with suppress(OSError):
-            process = AdoptedProcess(found.pid, found.started)
+            process = AdoptedProcess(running.pid, running.started)
             process.signal(signal.SIGTERM)
             with suppress(TimeoutError):
                 async with asyncio.timeout(TERM_SECONDS):
@@ -92,12 +92,12 @@ class ExternalProcess(ManagedProcess):
             process.close()
 
     async def _find(self) -> None:
-        """Wait until the process runs; one that does not come is reported once."""
+        """Wait until the process runs; report once if it does not start in time."""
         first, since = self.state == "waiting", self._clock.now()
         while self._process is None:
-            if (found := self._pid_file.read()) is not None:
+            if (running := self._pid_file.read()) is not None:
                 with suppress(OSError):
-                    self._process = AdoptedProcess(found.pid, found.started)
+                    self._process = AdoptedProcess(running.pid, running.started)
                     break
             if self.problem != ABSENT and self._clock.now() - since > ABSENT_SECONDS:
                 self._report(ABSENT)
@@ -109,13 +109,13 @@ class ExternalProcess(ManagedProcess):
             self._set("running")
 
     async def _watch(self) -> None:
-        """Watch it until it ends."""
+        """Watch the process until it ends."""
         assert self._process is not None
         await self._process.wait()
         self._process = None
         # Its exit status is known to systemd alone.
-        words, self._hung = self._hung or "has ended; journalctl -u mucat-runtime says why", ""
-        self._report(f"{words}. systemd starts it again")
+        reason, self._hung = self._hung or "has ended; journalctl -u mucat-runtime says why", ""
+        self._report(f"{reason}. systemd starts it again")
 
     def _report(self, problem: str) -> None:
         self.problem = problem

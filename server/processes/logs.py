@@ -37,14 +37,14 @@ class ProcessLog:
             return
 
     def size(self) -> int:
-        """Size of the file in bytes."""
+        """Return the size of the file in bytes."""
         try:
             return self._path.stat().st_size
         except OSError:
             return 0
 
     def last(self, count: int, since: int = 0) -> str:
-        """The last `count` lines after the first `since` bytes, on one line; empty where there are none."""
+        """Return the last `count` lines after the first `since` bytes, on one line; empty without lines."""
         try:
             with self._path.open("rb") as file:
                 size = file.seek(0, os.SEEK_END)
@@ -55,7 +55,7 @@ class ProcessLog:
 
 
 def last_lines(data: bytes, count: int) -> str:
-    """The last `count` lines, on one line; empty ones are left out."""
+    """Return the last `count` lines, on one line, without empty ones."""
     lines = [line.strip() for line in data.splitlines()]
     chosen = [line[-LINE_BYTES_MAX:] for line in lines if line][-count:]
     return " / ".join(line.decode(errors="replace") for line in chosen)

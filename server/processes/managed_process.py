@@ -49,7 +49,7 @@ class ProcessCommand:
     external: bool = False
 
     def fingerprint(self) -> str:
-        """A hash of the command, its files and the version; equal hashes start the same process."""
+        """Return a hash of the command, its files and the version; equal hashes start the same process."""
         digest = hashlib.sha256(repr((self.arguments, VERSION, DEFINITIONS_HASH)).encode())
         for path in self.made_of:
             with suppress(OSError):
@@ -105,14 +105,14 @@ class ManagedProcess:
     async def _adopt(self) -> bool:
         """Adopt the process that a killed server has left, or end it where its fingerprint differs.
 
-        Returns True if a process was adopted.
+        Return True if a process was adopted.
         """
-        found = self._pid_file.read()
-        if found is None:
+        running = self._pid_file.read()
+        if running is None:
             return False
         with suppress(OSError):
-            self._process = AdoptedProcess(found.pid, found.started)
-        if found.fingerprint != self.command.fingerprint():
+            self._process = AdoptedProcess(running.pid, running.started)
+        if running.fingerprint != self.command.fingerprint():
             await self.end()
         return self._process is not None
 
@@ -123,7 +123,7 @@ class ManagedProcess:
             await asyncio.sleep(NEED_POLL_SECONDS)
 
     async def _run_once(self) -> tuple[str, bool]:
-        """Run the process to its end. Returns a description of the end, and True where it was killed."""
+        """Run the process to its end. Return a description of the end, and True where it was killed."""
         try:
             process = self._process = self._process or self._start()
         except OSError as problem:
@@ -140,8 +140,8 @@ class ManagedProcess:
             trimming.cancel()
         self._release()
         if self._hung:
-            words, self._hung = self._hung, ""
-            return words, True
+            reason, self._hung = self._hung, ""
+            return reason, True
         last = self._log.last(LINES_SHOWN, self._logged_before)
         return describe_end(status, last), is_killed(status)
 
@@ -173,10 +173,10 @@ class ManagedProcess:
         self._see_down(self.command.name, text)
 
     async def end(self) -> None:
-        """End the process, also one that a killed server has left and that was not adopted yet."""
-        if self._process is None and (found := self._pid_file.read()) is not None:
+        """End the process, even if it is a killed server's that was not adopted yet."""
+        if self._process is None and (running := self._pid_file.read()) is not None:
             with suppress(OSError):
-                self._process = AdoptedProcess(found.pid, found.started)
+                self._process = AdoptedProcess(running.pid, running.started)
         if self._process is None:
             return
         self._process.signal(signal.SIGTERM)
@@ -186,7 +186,7 @@ class ManagedProcess:
         self._release()
 
     def end_hung(self, problem: str) -> None:
-        """Kill a process that no longer answers; `problem` follows its name in the alarm. It is restarted."""
+        """Kill a process that no longer answers, to restart it; `problem` follows its name in the alarm."""
         if self._process is not None:
             self._hung = problem
             self._process.signal(signal.SIGKILL)

@@ -9,9 +9,10 @@ import os
 import select
 import subprocess
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from signal import SIGKILL, Signals
+from types import MappingProxyType
 from typing import IO
 
 from server.platform.pidfile import started_at
@@ -34,7 +35,7 @@ class ProcessGroup(ABC):
     async def wait(self) -> int | None:
         """Wait until the process has ended and its group was killed.
 
-        Returns the exit status, negative for the signal that ended it; None if it is not available.
+        Return the exit status, negative for the signal that ended it; None if it is not available.
         """
         return await asyncio.shield(self._ended)
 
@@ -49,7 +50,7 @@ class ProcessGroup(ABC):
             self._end()
 
     def leave(self) -> None:
-        """Watch the process no longer; it runs on."""
+        """Stop watching the process; it runs on."""
         if not self._ended.done():
             self._loop.remove_reader(self._handle)
             os.close(self._handle)
@@ -57,7 +58,7 @@ class ProcessGroup(ABC):
 
     @abstractmethod
     def _reap(self) -> int | None:
-        """Returns the exit status of the process, which has just ended or been killed."""
+        """Return the exit status of the process, which has just ended or been killed."""
 
     def _end(self) -> None:
         # Before the process is reaped its number still belongs to its group alone.
@@ -75,12 +76,16 @@ class ProcessGroup(ABC):
 class Process(ProcessGroup):
     """A process started at once, in a session and group of its own; its output goes to `output`.
 
-    `given` is its standard input, if any. Call `close` when done with it. Raises OSError if it cannot be
-    started.
+    `given` is its standard input, if any; `environment` is added to that of this process. Call `close` when
+    done with it. Raises OSError if it cannot be started.
     """
 
     def __init__(
-        self, arguments: Sequence[str], output: IO[bytes] | int, given: IO[bytes] | None = None
+        self,
+        arguments: Sequence[str],
+        output: IO[bytes] | int,
+        given: IO[bytes] | None = None,
+        environment: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self._popen = subprocess.Popen(
             arguments,
@@ -88,7 +93,7 @@ class Process(ProcessGroup):
             stdout=output,
             stderr=subprocess.STDOUT,
             start_new_session=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+            env={**os.environ, "PYTHONUNBUFFERED": "1", **environment},
         )
         super().__init__(self._popen.pid)
 
@@ -100,10 +105,14 @@ class PipedProcess(Process):
     """A process whose output, with its children's, goes to the function `output`."""
 
     def __init__(
-        self, arguments: Sequence[str], output: Callable[[bytes], None], given: IO[bytes] | None = None
+        self,
+        arguments: Sequence[str],
+        output: Callable[[bytes], None],
+        given: IO[bytes],
+        environment: Mapping[str, str],
     ) -> None:
         self._output = output
-        super().__init__(arguments, subprocess.PIPE, given)
+        super().__init__(arguments, subprocess.PIPE, given, environment)
         assert self._popen.stdout is not None
         self._pipe = self._popen.stdout.fileno()
         os.set_blocking(self._pipe, False)

@@ -27,7 +27,7 @@ def run_runtime(settings: Settings) -> None:
     """
     from server.processes.supervisor import plan
 
-    (command,) = (one for one in plan(settings) if one.name == "runtime")
+    (command,) = (candidate for candidate in plan(settings) if candidate.name == "runtime")
     folder = settings.data
     try:
         make_folder(folder.run)
@@ -44,9 +44,9 @@ def run_runtime(settings: Settings) -> None:
 
 
 def _enter(folder: DataFolder, fingerprint: str) -> bool:
-    """Write this process as the runtime; False where somebody has paused it meanwhile.
+    """Write this process's PID file as the runtime's; return False where the runtime is paused.
 
-    Raises SetupError where another one runs, OSError.
+    Raise SetupError where another one runs, OSError.
     """
     file = pid_file(folder.run, "runtime")
     with hold_still(folder.run):

@@ -1,4 +1,4 @@
-"""Runs the server in a forked child process, and forks the next one when it dies.
+"""The runner of the server: it forks a child process, and the next one when that dies.
 
 Most of a server's start is the loading of its libraries: 2 s here, a minute on a Raspberry Pi Zero. The
 runner has loaded them once and never runs a thread, so that a fork of it serves at once. It also holds the
@@ -45,7 +45,7 @@ SIGNALS_MAX = 1024
 
 
 class ServerRunner:
-    """Forks servers that call `serve`. Create and `run` it before any thread is started."""
+    """Runner of forked servers that call `serve`. Create and `run` it before any thread is started."""
 
     def __init__(self, serve: Serve, folder: DataFolder) -> None:
         self._serve = serve
@@ -54,7 +54,7 @@ class ServerRunner:
         """The state of the server, which it shares with the runner."""
 
     def run(self) -> int:
-        """Run servers until one ends in order or the first cannot start; returns the exit status."""
+        """Run servers until one ends in order or the first cannot start; return the exit status."""
         # Keeps the loaded modules' memory shared with the children: a garbage collection would write to it.
         gc.freeze()
         _set_name("mucat-runner")
@@ -87,7 +87,7 @@ class ServerRunner:
                 return max(status, 0)
 
     def _run_server(self, ended: str) -> tuple[int, bool, str]:
-        """Run a server to its end. Returns its status, true if told to stop, and its last words."""
+        """Run a server to its end. Return its status, true if told to stop, and its last output."""
         self._state[0] = STARTING
         with closing(ErrorOutput()) as errors:
             server = self._fork(ended, errors)
@@ -129,7 +129,7 @@ class ServerRunner:
 
 
 def _wait(server: int, errors: ErrorOutput) -> tuple[int, bool]:
-    """Wait for a server's end. Returns its status, negative for a signal, and true if told to stop."""
+    """Wait for a server's end. Return its status, negative for a signal, and true if told to stop."""
     stopping = False
     with _signals() as arrived:
         while True:
@@ -148,7 +148,7 @@ def _wait(server: int, errors: ErrorOutput) -> tuple[int, bool]:
 
 @contextmanager
 def _signals() -> Iterator[int]:
-    """A handle from which the numbers of signals can be read as they arrive."""
+    """Yield a handle from which the numbers of signals can be read as they arrive."""
     arrived, other_end = os.pipe()
     os.set_blocking(arrived, False)
     os.set_blocking(other_end, False)

@@ -1,4 +1,4 @@
-"""Supervises the robot's processes: starts them in order, restarts them, ends them.
+"""The supervisor of the robot's processes: it starts them in order, restarts them and ends them.
 
 Each process runs in a session of its own, so that Ctrl-C reaches the server alone and no child outlives the
 process. It writes its log itself and does not depend on the server: when the server is killed, the robot goes
@@ -40,7 +40,7 @@ class ProcessSupervisor:
         self._tasks: dict[str, asyncio.Task[None]] = {}
 
     async def end_others(self) -> None:
-        """End processes that a killed server has left and this one does not use, such as another mode's."""
+        """End processes of a killed server that this one does not use, such as another mode's."""
         await asyncio.to_thread(end_parts, self._run, self._processes)
 
     def start(self) -> None:
@@ -50,7 +50,7 @@ class ProcessSupervisor:
                 self._tasks[name] = asyncio.create_task(part.run())
 
     async def stop(self) -> None:
-        """End every process, also those that a killed server has left, and wait for their end."""
+        """End every process, also those of a killed server, and wait for their end."""
         tasks = self._tasks.values()
         for task in tasks:
             task.cancel()
@@ -60,7 +60,7 @@ class ProcessSupervisor:
     async def pause(self, name: str, why: str) -> None:
         """End a process until it is resumed; `why` is a sentence for a person.
 
-        Raises RefusedError where a process that systemd starts cannot be paused: it is watched as before.
+        Raise RefusedError where a process that systemd starts cannot be paused: it is watched as before.
         """
         task = self._tasks.pop(name, None)
         if task is not None:
@@ -83,7 +83,7 @@ class ProcessSupervisor:
             self._tasks[name] = asyncio.create_task(part.run())
 
     def get(self, name: str) -> ManagedProcess | None:
-        """The process of this name; None where this robot has none."""
+        """Return the process of this name; None where this robot has none."""
         return self._processes.get(name)
 
 
@@ -97,11 +97,11 @@ def _supervise(
 
 
 def plan(settings: Settings) -> list[ProcessCommand]:
-    """The commands of this robot's processes, each after those that it needs."""
+    """Return the commands of this robot's processes, each after those that it needs."""
     folder, build = settings.data, settings.build
     runtime = [sys.executable, "-m", "robot_runtime", "--config", str(settings.config)]
     runtime += ["--data", str(folder.path), "--heartbeat", f"{HEARTBEAT_SECONDS:g}"]
-    if settings.mode == "robot":
+    if settings.robot.mode == "robot":
         # Without --server-lock it outlives the server: it must go on controlling a robot under water.
         return [_plan_runtime(settings, runtime)]
     lock = ("--server-lock", str(folder.lock))
@@ -112,14 +112,14 @@ def plan(settings: Settings) -> list[ProcessCommand]:
         simulator += ["--board", str(folder.board_socket)]
         for socket in (folder.runtime_socket, folder.server_socket, folder.scene_socket):
             simulator += ["--connect", f"unixsock-stream/{socket}"]
-    simulator += ["--robot", settings.robot, "--craft", str(settings.craft_file), *lock]
+    simulator += ["--robot", settings.robot.name, "--craft", str(settings.craft_file), *lock]
     needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
     water = ProcessCommand("simulator", "simulator", tuple(simulator), needs, (settings.craft_file,))
     scene = [sys.executable, "-m", "robot_runtime.simulation.scene"]
     scene += ["--listen", f"unixsock-stream/{folder.scene_socket}"]
     for socket in (folder.runtime_socket, folder.server_socket):
         scene += ["--connect", f"unixsock-stream/{socket}"]
-    scene += ["--robot", settings.robot, *lock]
+    scene += ["--robot", settings.robot.name, *lock]
     sight = ProcessCommand("scene", "simulated scene", tuple(scene), (folder.runtime_socket,))
     if not settings.emulated_board:
         return [

@@ -16,8 +16,9 @@ from functools import partial
 from time import monotonic
 from typing import Any
 
+from robot_runtime.contract.commands import StopCommand
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import SENT_BY
+from robot_runtime.contract.topics import SENT_BY, AnyTopic
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.blocks import Block, read_blocks
@@ -62,7 +63,7 @@ QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
 
 
 class RuntimeSilentError(ApiError):
-    """The runtime did not answer; `waited` is false where it was not reachable at all."""
+    """The runtime did not answer; `waited` is False where it was not reachable at all."""
 
     def __init__(self, text: str, waited: bool) -> None:
         super().__init__(text)
@@ -71,7 +72,7 @@ class RuntimeSilentError(ApiError):
 
     @classmethod
     def answers(cls) -> Mapping[int, str]:
-        """Both statuses with their meanings."""
+        """Return both statuses with their meanings."""
         return {503: "It is not running", 504: f"It did not answer within {ANSWER_SECONDS:g} s"}
 
 
@@ -105,25 +106,27 @@ class Bridge:
         """True while the queue will be emptied without another arrival."""
         self._emptied = float("-inf")
         """Time of the last emptying, by the event loop's clock."""
-        self._pictures: dict[str, Subscription] = {}
+        self._pictures: dict[AnyTopic, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(AT_ONCE, "stop")
-        self._shared_stop = SharedStop(lambda: self._ask("command/stop", {}, self._stops))
+        self._shared_stop = SharedStop(self._send_stop)
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
         self._questions = ThreadPoolExecutor(COMMANDS_AT_ONCE, "question")
         self._leases = ThreadPoolExecutor(1, "lease")
-        self._turns = {one: asyncio.Semaphore(COMMANDS_AT_ONCE) for one in (self._commands, self._questions)}
+        self._turns = {
+            client: asyncio.Semaphore(COMMANDS_AT_ONCE) for client in (self._commands, self._questions)
+        }
         self._waiting: Counter[ThreadPoolExecutor] = Counter()
         self._opened = False
 
     async def open(self) -> None:
-        """Open the Zenoh session; the other processes may start and end at any time. Raises SetupError."""
+        """Open the Zenoh session; the other processes may start and end at any time. Raise SetupError."""
         self._loop = asyncio.get_running_loop()
         folder = self._settings.data
         try:
             self._messages = await asyncio.to_thread(
                 ZenohTransport,
-                self._settings.robot,
+                self._settings.robot.name,
                 listen=[f"unixsock-stream/{folder.server_socket}"],
                 connect=[f"unixsock-stream/{folder.runtime_socket}"],
             )
@@ -134,7 +137,7 @@ class Bridge:
             self._messages.subscribe_runs(stream, self._receive)
 
     async def catch_up(self, names: Iterable[str]) -> dict[str, BacklogReply]:
-        """The backlogs of the running processes of these names; those that do not answer are left out."""
+        """Return the backlogs of the running processes of these names that answer."""
         named = [name for name in names if name in self._fillers]
         answers = await asyncio.gather(*map(self._contact, named))
         return {name: backlog for name, backlog in zip(named, answers, strict=True) if backlog is not None}
@@ -150,9 +153,9 @@ class Bridge:
         self._gathering = False
         self._hand_over()
 
-    def send_heartbeat(self, pages: int) -> None:
-        """Send the runtime the server's heartbeat, with the number of operators' pages."""
-        self._messages.publish(HEARTBEAT, str(pages).encode())
+    def send_heartbeat(self, sockets: int, programs: int) -> None:
+        """Send the runtime the server's heartbeat: operators' live sockets, and programs in control."""
+        self._messages.publish(HEARTBEAT, f"{sockets} {programs}".encode())
 
     @property
     def run(self) -> str:
@@ -166,7 +169,7 @@ class Bridge:
     async def send_lease(self, epoch: int) -> None:
         """Make the runtime drop driving commands of earlier epochs.
 
-        Raises RefusedError, or RuntimeSilentError.
+        Raise RefusedError, or RuntimeSilentError.
         """
         try:
             await self._loop.run_in_executor(
@@ -175,41 +178,43 @@ class Bridge:
         except NoAnswerError as problem:
             raise RuntimeSilentError(str(problem), waited=False) from problem
 
-    def watch_pictures(self, topics: frozenset[str]) -> None:
+    def watch_pictures(self, topics: frozenset[AnyTopic]) -> None:
         """Subscribe to these picture topics and no other; a picture is encoded only for subscribers."""
-        for name in self._pictures.keys() - topics:
-            self._pictures.pop(name).close()
-        for name in topics - self._pictures.keys():
-            self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
+        for topic in self._pictures.keys() - topics:
+            self._pictures.pop(topic).close()
+        for topic in topics - self._pictures.keys():
+            self._pictures[topic] = self._messages.subscribe_runs(topic.name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Make the runtime execute a command; returns its answer. Raises RefusedError, RuntimeSilentError.
+        """Make the runtime execute a command; return its answer. Raise RefusedError, RuntimeSilentError.
 
-        Commands that change parameters go through `Changes`, which records them.
+        STOP has `stop`. Commands that change parameters go through `Changes`, which records them.
         """
-        if name == "stop":
-            for see_stop in self.on_stop:
-                see_stop()
-            answer = await self._shared_stop.ask()
-        else:
-            answer = await self._ask(f"command/{name}", payload, self._commands)
+        answer = await self._ask(f"command/{name}", payload, self._commands)
         self.answered = monotonic()
         return answer
 
+    async def stop(self) -> None:
+        """Disarm the robot and end its task; wait behind no command. Raise RuntimeSilentError."""
+        for see_stop in self.on_stop:
+            see_stop()
+        await self.disarm()
+
     async def disarm(self) -> None:
-        """Send a STOP as a step of a scenario, without ending the scenario. Raises RuntimeSilentError."""
+        """Send a STOP as a step of a scenario, without ending the scenario. Raise RuntimeSilentError."""
         await self._shared_stop.ask()
+        self.answered = monotonic()
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The simulator's answer. Raises RefusedError, RuntimeSilentError."""
+        """Return the simulator's answer. Raise RefusedError, RuntimeSilentError."""
         return await self._ask(f"simulator/{name}", payload, self._commands)
 
     async def query(self, name: str, question: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
-        """The runtime's answer to a question. Raises RefusedError, RuntimeSilentError."""
+        """Return the runtime's answer to a question. Raise RefusedError, RuntimeSilentError."""
         return await self._ask(f"query/{name}", question or {}, self._questions)
 
     async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The simulated scene's answer. Raises RefusedError, RuntimeSilentError."""
+        """Return the simulated scene's answer. Raise RefusedError, RuntimeSilentError."""
         try:
             return await self._ask(f"scene/{name}", payload, self._commands)
         except RuntimeSilentError as problem:
@@ -231,11 +236,8 @@ class Bridge:
     async def _ask(
         self, name: str, payload: Mapping[str, Any], threads: ThreadPoolExecutor
     ) -> Mapping[str, Any]:
-        stop = threads is self._stops
-        if self.reserved_reason is not None and not stop:
+        if self.reserved_reason is not None:
             raise RefusedError(self.reserved_reason)
-        if stop:
-            return await self._ask_now(name, payload, threads, stop)
         if self._waiting[threads] >= WAITING_MAX:
             raise RuntimeSilentError(BUSY, waited=False)
         turns = self._turns[threads]
@@ -248,12 +250,20 @@ class Bridge:
         finally:
             self._waiting[threads] -= 1
         try:
-            return await self._ask_now(name, payload, threads, stop)
+            return await self._ask_now(name, payload, threads)
         finally:
             turns.release()
 
+    async def _send_stop(self) -> Mapping[str, Any]:
+        try:
+            return await self._ask_now(f"command/{StopCommand.policy.name}", {}, self._stops)
+        except RuntimeSilentError:
+            if self.stopped:
+                return {}
+            raise
+
     async def _ask_now(
-        self, name: str, payload: Mapping[str, Any], threads: ThreadPoolExecutor, stop: bool
+        self, name: str, payload: Mapping[str, Any], threads: ThreadPoolExecutor
     ) -> Mapping[str, Any]:
         started = self._loop.time()
         try:
@@ -261,8 +271,6 @@ class Bridge:
                 threads, lambda: self._messages.query(name, payload, ANSWER_SECONDS)
             )
         except NoAnswerError as problem:
-            if stop and self.stopped:
-                return {}
             waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
             raise RuntimeSilentError(_silence(name, waited), waited) from problem
 
@@ -298,7 +306,7 @@ class Bridge:
         return backlog
 
     def _receive(self, name: str, data: bytes, run: str) -> None:
-        """Queue a message. Called in Zenoh's thread."""
+        """Queue a message, in Zenoh's thread."""
         self._queue.append((name, data, run))
         if name == SIMULATOR_STREAM and len(self._queue) == 1:
             return
@@ -312,7 +320,7 @@ class Bridge:
             log.debug("a block of %s arrived after the event loop had ended", name)
 
     def _schedule(self) -> None:
-        """Empties the queue now, or `ROUND_SECONDS` after it was emptied last."""
+        """Empty the queue now, or `ROUND_SECONDS` after it was emptied last."""
         wait = self._emptied + ROUND_SECONDS - self._loop.time()
         if wait > 0:
             self._loop.call_later(wait, self._drain)
@@ -356,7 +364,7 @@ class Bridge:
 
 
 def _read_own_blocks(name: str, data: bytes, run: str) -> list[Block]:
-    """The blocks of a message. Raises LayoutError where they are damaged, or not of its sender."""
+    """Return the blocks of a message. Raise LayoutError where they are damaged, or not of its sender."""
     blocks = read_blocks(data, run)
     if name in STREAMS:
         _require_sender(blocks, STREAMS[name])

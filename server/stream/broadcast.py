@@ -57,13 +57,13 @@ class BroadcastBuffer:
             self.first += 1
 
     def get(self, number: int) -> Message:
-        """The message of this number. Raises IndexError where it was dropped or does not exist yet."""
+        """Return the message of this number. Raise IndexError where it was dropped or does not exist yet."""
         if not self.first <= number < self.end:
             raise IndexError(f"message {number} is not among {self.first} to {self.end - 1}")
         return self._messages[number - self.first]
 
     def lost(self, seen: Totals) -> list[tuple[AnyTopic, int]]:
-        """Dropped samples after the totals `seen`, by topic."""
+        """Return the numbers of dropped samples after the totals `seen`, by topic."""
         before = self._messages[0].before if self._messages else self.totals
         counts = ((topic, total - seen.get(topic, 0)) for topic, total in before.items())
         return [(BY_ID[topic], count) for topic, count in counts if count > 0]
@@ -90,7 +90,7 @@ class _TopicBacklog:
         self._tick = 0
 
     def add(self, block: Block, tick: int, time: float) -> bool:
-        """Add a block; returns True where it completed a chunk."""
+        """Add a block; return True where it completed a chunk."""
         if not self._blocks:
             self._since = time
         self._blocks.append(block)
@@ -150,7 +150,7 @@ class TopicHistory:
             backlog.forget(now - self._seconds, self._bytes_max)
 
     def since(self, tick: int, message_bytes: int, rows_from: float = -inf) -> list[list[bytes]]:
-        """Every block sent after `tick`, topic by topic, in groups of about `message_bytes`.
+        """Return every block sent after `tick`, topic by topic, in groups of about `message_bytes`.
 
         Rows before `rows_from` (s, steady clock) are left out, but for up to `CHUNK_SECONDS`.
         """
@@ -158,27 +158,27 @@ class TopicHistory:
         room = 0
         for backlog in self._topics.values():
             first = rows_from - CHUNK_SECONDS if backlog.topic.kind is Kind.ROWS else -inf
-            for one in backlog.chunks():
-                if one.tick <= tick or one.since < first:
+            for chunk in backlog.chunks():
+                if chunk.tick <= tick or chunk.since < first:
                     continue
-                if len(one.data) > room:
+                if len(chunk.data) > room:
                     groups.append([])
                     room = message_bytes
-                groups[-1].append(one.data)
-                room -= len(one.data)
+                groups[-1].append(chunk.data)
+                room -= len(chunk.data)
         return groups
 
     def rows(self, topics: Collection[str], until: float) -> list[bytes]:
-        """The stored rows of these topics up to `until` (s, steady clock), and up to `CHUNK_SECONDS` more.
+        """Return the stored rows of these topics until `until` (s, steady clock), up to `CHUNK_SECONDS` more.
 
-        They are the stored chunks themselves: however many ask, they are in memory once.
+        They are the stored chunks themselves, in memory only once for all callers.
         """
         return [
-            one.data
+            chunk.data
             for backlog in self._topics.values()
             if backlog.topic.name in topics
-            for one in backlog.chunks()
-            if one.since < until
+            for chunk in backlog.chunks()
+            if chunk.since < until
         ]
 
 

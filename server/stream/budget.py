@@ -19,20 +19,20 @@ STREAM_PER_SECOND, STREAM_BURST = 65_536.0, 524_288.0
 
 
 class Allowance:
-    """An amount that comes back at `rate` per s, up to `most`."""
+    """An amount that refills at `rate` per s, up to `most`."""
 
     def __init__(self, clock: Clock, rate: float, most: float) -> None:
         self._clock = clock
         self._rate = rate
-        self._most = self._left = most
+        self._most = self._balance = most
         self._last = clock.now()
 
     def spend(self, amount: float) -> float:
-        """Take this amount; returns the s to wait until it has come back, 0 where it was there."""
+        """Spend this amount; return the time (s) to wait until it has refilled, 0 where it was available."""
         now = self._clock.now()
-        self._left = min(self._most, self._left + (now - self._last) * self._rate) - amount
+        self._balance = min(self._most, self._balance + (now - self._last) * self._rate) - amount
         self._last = now
-        return max(0.0, -self._left / self._rate)
+        return max(0.0, -self._balance / self._rate)
 
 
 class DeviceBudget:
@@ -56,7 +56,7 @@ class DeviceBudget:
             await asyncio.sleep(wait)
 
     def open_stream(self) -> Allowance:
-        """The bytes of a new connection: a viewer's share one allowance, an operator's have one each."""
+        """Return the allowance of a new connection: a viewer's connections share it, an operator's not."""
         return self._streamed if self._limited else self._make_streamed()
 
     def _make_streamed(self) -> Allowance:
@@ -71,7 +71,7 @@ class Budgets:
         self._of: dict[tuple[int, bool], DeviceBudget] = {}
 
     def of(self, caller: Identity) -> DeviceBudget:
-        """The budget of a caller's device."""
+        """Return the budget of a caller's device."""
         limited = caller.role != "operator"
         key = caller.device, limited
         if key not in self._of:

@@ -1,4 +1,4 @@
-"""Ends of runs that other programs are told of."""
+"""Ends of runs, reported to other programs."""
 
 from collections.abc import Callable
 
@@ -7,7 +7,7 @@ SeeEnd = Callable[[int, str, str, str], None]
 
 
 class RunEnds:
-    """Passes the ends of communication tests on."""
+    """The channel for the ends of communication tests."""
 
     def __init__(self) -> None:
         self.listeners: list[SeeEnd] = []

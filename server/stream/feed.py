@@ -1,4 +1,4 @@
-"""The server's bus: blocks of the robot and of the server itself, for whoever listens to their topics."""
+"""The server's bus: blocks of the robot and of the server itself, for the listeners of their topics."""
 
 import logging
 from collections import defaultdict
@@ -14,10 +14,10 @@ RoundListener = Callable[[Sequence[Block]], None]
 
 
 class Feed:
-    """Delivers each block to the listeners of its topic, and each round of blocks that came together.
+    """Delivery of each block to the listeners of its topic, and of each round of blocks that came together.
 
     A listener must be quick. The first failure of each is logged and reported to `on_failure`; the others
-    still hear.
+    are still called.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""Fills gaps in the stream of a process: requests missing samples again.
+"""The filler of gaps in the stream of a process: it requests missing samples again.
 
 Samples are numbered by topic, and their sender stores those of the last minutes
 (`robot_runtime.transport.replay_cache`). While a request is pending, received blocks wait, so that every
@@ -36,7 +36,7 @@ class GapFiller:
         self._asking: asyncio.Task[None] | None = None
 
     def everything(self) -> dict[str, int]:
-        """The request for the whole backlog."""
+        """Return the request for the whole backlog."""
         return {topic.name: 0 for topic in self.topics}
 
     def begin_delivery(self, backlog: BacklogReply | None) -> None:
@@ -108,7 +108,7 @@ class GapFiller:
         self.run, self._expected, self._last_request = run, {}, {}
 
     def _follow(self, blocks: list[Block]) -> bool:
-        """Expects what comes after these blocks; does nothing and returns False where one is missing."""
+        """Expect the samples after these blocks; return False, without a change, where one is missing."""
         expected = dict(self._expected)
         for block in blocks:
             topic = block.topic.id

@@ -10,11 +10,11 @@ filled (measured).
 import asyncio
 import json
 from collections import deque
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.topics import TOPICS, Kind
+from robot_runtime.contract.topics import PICTURE, WATCHABLE, AnyTopic, Kind
 from robot_runtime.transport.blocks import Block
 from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.identity import SHELL, Identity
@@ -69,12 +69,12 @@ class Client:
         self._newest: dict[str, str] = {}
         self._rows = self._documents = 0
         self._seen: Totals = {}
-        self._pictures: dict[str, int] = {}
-        self.watching = frozenset({"picture"})
+        self._pictures: dict[AnyTopic, int] = {}
+        self.watching: frozenset[AnyTopic] = frozenset({PICTURE})
         """Picture topics that it has subscribed to."""
 
     def answer(self, message: dict[str, Any]) -> None:
-        """Queue a message; all are sent, in order. Raises EvictedError where too many wait already."""
+        """Queue a message; all are sent, in order. Raise EvictedError where too many wait already."""
         if len(self._answers) >= ANSWERS_MAX:
             raise EvictedError("Too many answers wait unread.")
         # In ASCII: text from a client may hold lone surrogates, which UTF-8 cannot encode.
@@ -91,7 +91,7 @@ class Client:
         self._wake.set()
 
     async def run(self) -> None:
-        """Send the history, then live messages. Raises EvictedError where the client is too slow."""
+        """Send the history, then live messages. Raise EvictedError where the client is too slow."""
         await self._send_history()
         while True:
             while self._behind:
@@ -122,7 +122,7 @@ class Client:
         return bool(self._answers or self._newest or self._picture)
 
     @property
-    def _picture(self) -> str | None:
+    def _picture(self) -> AnyTopic | None:
         """A subscribed topic with a picture that was not sent yet."""
         for topic in self.watching:
             if self._pictures.get(topic, 0) < self._hub.pictures.get(topic, _NO_PICTURE)[0]:
@@ -167,22 +167,24 @@ class Client:
 
 
 class Hub:
-    """Takes in blocks and hands them to all clients; `audience` gets the picture topics in use."""
+    """Hub of blocks for all clients; `audience` gets the picture topics in use."""
 
-    def __init__(self, clock: Clock, audience: Callable[[frozenset[str]], None]) -> None:
+    def __init__(self, clock: Clock, audience: Callable[[frozenset[AnyTopic]], None]) -> None:
         self.rows = BroadcastBuffer(ROWS_MESSAGES, ROWS_BYTES)
         self.documents = BroadcastBuffer(DOCUMENTS_MESSAGES, DOCUMENTS_BYTES)
         self.history = TopicHistory(HISTORY_SECONDS, HISTORY_TOPIC_BYTES)
         self.tick = 0
-        self.pictures: dict[str, tuple[int, bytes]] = {}
+        self.pictures: dict[AnyTopic, tuple[int, bytes]] = {}
         """The newest picture of each subscribed topic, with its number."""
         self._picture_number = 0
-        self._watched: frozenset[str] = frozenset()
-        self._required: frozenset[str] = frozenset()
+        self._watched: frozenset[AnyTopic] = frozenset()
+        self._required: frozenset[AnyTopic] = frozenset()
         self._clock = clock
         self._audience = audience
         self.listeners: list[Callable[[dict[str, Any]], None]] = []
         """Get every message that the pages are sent."""
+        self.programs: Callable[[], int] = lambda: 0
+        """Returns the number of programs that have control, and so watch the robot without a socket."""
         self._clients: dict[Client, asyncio.Task[None]] = {}
         self._newest: dict[str, str] = {}
 
@@ -197,18 +199,18 @@ class Hub:
         return sum(client.is_operator for client in self._clients)
 
     def add(self, blocks: Sequence[Block]) -> None:
-        """Pass these blocks to all clients, as one message each for rows and for documents."""
+        """Pass these blocks to all clients, in one message for rows and one for documents."""
         self.tick += 1
         now = self._clock.now()
         rows: list[Block] = []
         documents: list[Block] = []
         for block in blocks:
-            if block.topic.name == "thumbnail":
+            if block.topic.stands_for is not None:
                 continue
             if block.topic.kind is Kind.PICTURE:
                 self._picture_number += 1
-                if block.topic.name in self._watched:
-                    self.pictures[block.topic.name] = (self._picture_number, block.data)
+                if block.topic in self._watched:
+                    self.pictures[block.topic] = (self._picture_number, block.data)
                 continue
             self.history.add(block, self.tick, now)
             (rows if block.topic.kind is Kind.ROWS else documents).append(block)
@@ -232,16 +234,15 @@ class Hub:
         for client in self._clients:
             client.notify(kind, text)
 
-    def show(self, client: Client, topics: frozenset[str]) -> None:
+    def show(self, client: Client, topics: frozenset[AnyTopic]) -> None:
         """Subscribe this client to pictures of these topics and no other."""
         client.watching = topics
         self._count_audience()
         client.wake()
 
-    def require_pictures(self, topics: frozenset[str]) -> None:
-        """Have these pictures sent by the runtime, for others than the pages; other topics are ignored."""
-        pictures = {topic.name for topic in TOPICS if topic.kind is Kind.PICTURE}
-        self._required = topics & pictures
+    def require_pictures(self, names: Iterable[str]) -> None:
+        """Have the runtime send the pictures of these names, for others than the pages."""
+        self._required = frozenset(WATCHABLE[name] for name in names if name in WATCHABLE)
         self._count_audience()
 
     def dismiss(self, device: int, reason: str) -> None:
@@ -257,7 +258,7 @@ class Hub:
         receive: Callable[[Client], Awaitable[None]],
         caller: Identity,
     ) -> None:
-        """Serve one socket of a caller until `receive` returns. Raises EvictedError with the
+        """Serve one socket of a caller until `receive` returns. Raise EvictedError with the
         reason where it is disconnected.
         """
         self._check_room(caller)
@@ -292,7 +293,7 @@ class Hub:
             raise EvictedError(f"{limit} pages are open already; close one.")
 
     async def watch(self) -> None:
-        """Disconnect clients that have stopped reading; runs for ever."""
+        """Disconnect clients that have stopped reading; run for ever."""
         while True:
             await asyncio.sleep(WATCH_SECONDS)
             limit = self._clock.now() - STALL_SECONDS

@@ -18,22 +18,22 @@ BEAT_SECONDS = 1.0
 
 
 def make_notices(clock: Clock, feed: Feed) -> Notices:
-    """The server's own messages, delivered as the robot's are."""
+    """Return the server's own messages, delivered as the robot's are."""
     return Notices(clock, lambda block: feed.deliver([block]))
 
 
 def make_bridge(settings: Settings, feed: Feed) -> Bridge:
-    """The connection to the robot."""
+    """Return the connection to the robot."""
     return Bridge(settings, feed.deliver)
 
 
 def make_hub(clock: Clock, bridge: Bridge) -> Hub:
-    """The pages."""
+    """Return the pages."""
     return Hub(clock, bridge.watch_pictures)
 
 
 class StreamPlug(Plug):
-    """Joins the robot and the pages."""
+    """The plug that connects the robot and the pages."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_notices, make_bridge, make_hub)
 
@@ -45,7 +45,7 @@ class StreamPlug(Plug):
         closers.add(hub.dismiss)
 
     async def open(self) -> None:
-        """Connect. The heart beats from now on: catching up may take longer than the runtime waits for it."""
+        """Connect. Heartbeats start now: catching up may take longer than the runtime waits for them."""
         await self._bridge.open()
         self._beating = asyncio.create_task(self._beat())
 
@@ -61,5 +61,5 @@ class StreamPlug(Plug):
 
     async def _beat(self) -> None:
         while True:
-            self._bridge.send_heartbeat(self._hub.operators)
+            self._bridge.send_heartbeat(self._hub.operators, self._hub.programs())
             await asyncio.sleep(BEAT_SECONDS)

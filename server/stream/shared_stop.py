@@ -1,4 +1,4 @@
-"""STOPs share their way to the robot: those that wait are one, so that nobody's can hold up another's."""
+"""STOPs share their way to the robot: waiting ones are merged, so that none delays another."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
@@ -13,7 +13,7 @@ Answer = Mapping[str, Any]
 
 
 class SharedStop:
-    """Sends STOPs by `send`, however many ask for one.
+    """STOPs sent by `send`, shared by all that wait.
 
     STOP is idempotent, so that all who wait get the answer of the same one. It begins after they asked:
     the robot may have been armed since the one before.
@@ -27,7 +27,7 @@ class SharedStop:
         """When the next one may begin, by the event loop's clock."""
 
     async def ask(self) -> Answer:
-        """The answer of a STOP that begins after this call. Raises as `send`."""
+        """Return the answer of a STOP that begins after this call. Raise as `send`."""
         if self._next is None:
             self._next = asyncio.create_task(self._begin())
         # It is carried out also where the one who asked has left.

@@ -14,7 +14,7 @@ CLOSE_SECONDS = 1.0
 async def close_with_reason(socket: WebSocket, reason: EvictedError) -> None:
     """Close a socket with this reason.
 
-    A client that does not read does not read the reason either; the kernel then ends the connection.
+    A client that does not read misses the reason, too; the kernel then ends the connection.
     """
     try:
         async with asyncio.timeout(CLOSE_SECONDS):
@@ -24,7 +24,7 @@ async def close_with_reason(socket: WebSocket, reason: EvictedError) -> None:
 
 
 async def end_after(seconds: float | None, serving: Awaitable[None]) -> None:
-    """Serve until the client leaves, or its token ends: after these seconds, which raises EvictedError."""
+    """Serve until the client leaves. Raise EvictedError when its token ends, after these seconds."""
     try:
         async with asyncio.timeout(seconds) as limit:
             await serving

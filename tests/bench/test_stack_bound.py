@@ -1,13 +1,16 @@
 """The bound of a program's stack, on programs whose stack is known, and on the firmware."""
 
+import re
+import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from bench.firmware import RAM_BYTES, count_flash, count_static
-from bench.stack_bound import StackBoundError, stack_bound
-from tests.board.host import Robot, start
+from bench.firmware import count_flash
+from bench.stack_bound import MARGIN_MIN, RAM_BYTES, StackBoundError, count_static, find_shortage, stack_bound
+from robot_runtime.simulation.boards.firmware import make
+from tests.board.host import EmulatedRobot, start
 from tests.board.rig import ROOT, build
 from tests.firmware.test_build import FLASH_BYTES
 
@@ -49,7 +52,7 @@ def test_a_frame_counts(tmp_path: Path, size: int, frame: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "words"),
+    ("text", "message"),
     [
         (
             "__attribute__((noinline)) uint16_t f(volatile uint16_t n) { return n ? n * f(n - 1) : 1; }\n"
@@ -70,8 +73,8 @@ def test_a_frame_counts(tmp_path: Path, size: int, frame: int) -> None:
         ),
     ],
 )
-def test_a_program_without_a_bound_is_refused(tmp_path: Path, text: str, words: str) -> None:
-    with pytest.raises(StackBoundError, match=words):
+def test_a_program_without_a_bound_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(StackBoundError, match=message):
         stack_bound(program(tmp_path, text))
 
 
@@ -83,7 +86,7 @@ def test_the_firmware_s_stack_fits_and_is_not_deeper_than_its_bound(tmp_path: Pa
     bound = stack_bound(elf)
     room = RAM_BYTES - count_static(elf)
     with start("robot", tmp_path) as rig:
-        robot = Robot(rig)
+        robot = EmulatedRobot(rig)
         robot.listen(0.5)
         robot.arm()
         robot.converse(1.0)
@@ -97,4 +100,44 @@ def test_the_other_programs_fit_the_chip_too(name: str, options: list[str]) -> N
     build(ROOT / "firmware", *options)
     elf = ROOT / f"build/firmware/{name}.elf"
     assert count_flash(elf) <= FLASH_BYTES
-    assert stack_bound(elf) <= RAM_BYTES - count_static(elf)
+    assert find_shortage(elf) == ""
+
+
+BUFFER = """
+uint8_t samples[SIZE];
+
+void loop() {
+  robot.step();
+  static uint8_t at;
+  samples[at++ % sizeof samples] = TCNT1L;
+  if (at == 0 && samples[samples[0] % sizeof samples]) robot.step();
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("loop", "message"),
+    [
+        (BUFFER, r"too full for robot: .* At least 100 must stay free, and (only \d+ of them|none) would"),
+        ("void (*volatile task)();\nvoid loop() { robot.step(); task(); }\n", "no upper bound: a pointer to"),
+    ],
+)
+def test_a_sketch_that_would_run_out_of_memory_is_not_built(tmp_path: Path, loop: str, message: str) -> None:
+    shutil.copytree(ROOT / "firmware", tmp_path / "firmware")
+    (tmp_path / "bench").mkdir()
+    shutil.copy(ROOT / "bench/stack_bound.py", tmp_path / "bench")
+    sketch = tmp_path / "firmware/examples/robot/robot.ino"
+    text = sketch.read_text("utf-8")
+    assert "void loop() { robot.step(); }\n" in text
+    elf = ROOT / "build/firmware/robot.elf"
+    too_much = RAM_BYTES - count_static(elf) - stack_bound(elf) - MARGIN_MIN + 20
+    loop = loop.replace("SIZE", str(too_much))
+    sketch.write_text(text.replace("void loop() { robot.step(); }\n", loop), "utf-8")
+    build = tmp_path / "build/firmware"
+    # What is not changed is not compiled again.
+    shutil.copytree(ROOT / "build/firmware/core", build / "core", copy_function=shutil.copy2)
+    made = make(tmp_path / "firmware", "robot", products=build)
+    assert made.returncode != 0
+    assert re.search(message, made.stderr)
+    assert not (build / "robot.elf").exists()
+    assert not (build / "robot.hex").exists()

@@ -18,8 +18,8 @@ from robot_runtime.simulation.boards.workbench import (
     Pose,
     Workbench,
 )
-from tests.board.host import BAUD, Host, P, start
-from tests.board.rig import Rig
+from tests.board.host import BAUD, EmulatedHost, P, start
+from tests.board.rig import BoardRig
 
 POSES: tuple[Pose, ...] = ("level", "nose_up", "right_down")
 NAMED = [
@@ -43,6 +43,7 @@ NAMED = [
     ),
     ("strap-shared:front-right,back-left", "motor_2", "have the same straps"),
     ("missing:motor-front-left", "motor_3", "the motor at its bridge"),
+    ("stiction:24", "motor_0", "loosen its shaft's seal"),
     ("beacons-swapped", "beacons", "The detectors are swapped"),
     ("missing:beacon-right", "beacons", "Does the lamp blink"),
 ]
@@ -56,8 +57,8 @@ HOLD = 0.1
 class EmulatedBench:
     """The bench of `BringUp`, in emulated time."""
 
-    def __init__(self, rig: Rig) -> None:
-        self.host = Host(rig, BAUD)
+    def __init__(self, rig: BoardRig) -> None:
+        self.host = EmulatedHost(rig, BAUD)
         self._marked = 0
         self.host.until(lambda: bool(self._all(Raw)), 3.0)
 
@@ -126,6 +127,7 @@ class Person:
             "fin": self.turn_by_hand,
             "motor": self.hold,
             "beacons": lambda _: self.shine(),
+            "leak": lambda _: self.wet(),
             "store": lambda _: self.press("store", "store"),
         }
         steps[name](int(number or 0))
@@ -175,6 +177,14 @@ class Person:
         self.press("beacons", "left")
         self.change()
 
+    def wet(self) -> None:
+        self.rig.board.fault("leak", "wet")
+        self.bench.host.run(SETTLE)
+        self.press("leak", "wet")
+        self.rig.board.fault("leak", "none")
+        self.bench.host.run(SETTLE)
+        self.press("leak", "dry")
+
     def advice(self, step: str) -> str:
-        """All advice of a step."""
+        """Return all advice of a step."""
         return " ".join(result.advice for result in self.work.results(step))

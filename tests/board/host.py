@@ -17,7 +17,7 @@ from robot_runtime.contract.packets import (
     decode,
 )
 from robot_runtime.link.session import LinkSession
-from tests.board.rig import OPTIBOOT, ROOT, Rig
+from tests.board.rig import OPTIBOOT, ROOT, BoardRig
 from tests.line_end import LineEnd
 
 FIRMWARE = ROOT / "build/firmware"
@@ -28,10 +28,10 @@ HEARTBEAT_TICKS = 10
 P = TypeVar("P", bound=Packet)
 
 
-class Robot:
+class EmulatedRobot:
     """A paused board with the firmware, and a host in step with it."""
 
-    def __init__(self, rig: Rig) -> None:
+    def __init__(self, rig: BoardRig) -> None:
         self.rig = rig
         self.board = rig.board
         self.heard: list[Packet] = []
@@ -79,11 +79,11 @@ class Robot:
         self.send(Stop())
 
     def status(self) -> Status:
-        """The next status of the board, which may describe the last 100 ms."""
+        """Return the next status of the board, which may describe the last 100 ms."""
         return last(self.converse(0.2), Status)
 
     def until(self, holds: Callable[[Status], bool], limit: float) -> float:
-        """Receive until a status meets the condition; returns the emulated time. Fails beyond the limit."""
+        """Receive until a status meets the condition; return the emulated time. Fails beyond the limit."""
         passed = 0.0
         while passed <= limit:
             packets = self.listen(TICK)
@@ -98,21 +98,21 @@ def all_of(packets: list[Packet], cls: type[P]) -> list[P]:
 
 
 def last(packets: list[Packet], cls: type[P]) -> P:
-    found = all_of(packets, cls)
-    assert found, f"no {cls.__name__} in {packets}"
-    return found[-1]
+    result = all_of(packets, cls)
+    assert result, f"no {cls.__name__} in {packets}"
+    return result[-1]
 
 
-def start(name: str, folder: Path, *options: str, boot_loader: bool = True) -> Rig:
+def start(name: str, folder: Path, *options: str, boot_loader: bool = True) -> BoardRig:
     """Start a board with this program of the firmware, behind the boot loader of the robot's board."""
     loader = ("--bootloader", str(OPTIBOOT)) if boot_loader else ()
-    return Rig(FIRMWARE / f"{name}.elf", folder, *loader, *options, baud=BAUD)
+    return BoardRig(FIRMWARE / f"{name}.elf", folder, *loader, *options, baud=BAUD)
 
 
-class Host:
+class EmulatedHost:
     """The runtime's own session with a paused board; both see emulated time, tick by tick."""
 
-    def __init__(self, rig: Rig, baud: int) -> None:
+    def __init__(self, rig: BoardRig, baud: int) -> None:
         self.rig = rig
         self.board = rig.board
         self.session = LinkSession(77, baud)
@@ -146,7 +146,7 @@ class Host:
         return self.now - start
 
     def last(self, cls: type[P]) -> P:
-        """The newest packet of this type."""
+        """Return the newest packet of this type."""
         return last([packet for _, packet in self.heard], cls)
 
     def _write(self, data: bytes) -> None:

@@ -2,7 +2,7 @@
 
 import struct
 
-from tests.board.rig import Rig
+from tests.board.rig import BoardRig
 
 TICK = 0.5e-6
 """s."""
@@ -13,64 +13,64 @@ ARBITRATION_LOST = 0x38
 LAST_DATA = 0x58
 
 
-class Monitor:
+class SerialMonitor:
     """Commands the sketch; each command takes a little emulated time."""
 
-    def __init__(self, rig: Rig) -> None:
+    def __init__(self, rig: BoardRig) -> None:
         self._rig = rig
 
     def boot(self) -> int:
-        """Start the board; returns the reset cause as in MCUSR."""
+        """Start the board; return the reset cause as in MCUSR."""
         self._rig.board.run(0.002)
-        said = self._rig.port.read()
-        assert len(said) == 2, said
-        assert said[:1] == b"R"
-        return said[1]
+        output = self._rig.port.read()
+        assert len(output) == 2, output
+        assert output[:1] == b"R"
+        return output[1]
 
     def transfer(self, address: int, out: bytes = b"", count: int = 0) -> tuple[int, float, bytes]:
         """Write and then read on I2C: the last status, the duration (s), and what was read."""
-        said = self._ask(b"T" + bytes([address, len(out)]) + out + bytes([count]), 3 + count)
-        status, ticks = struct.unpack_from("<BH", said)
-        return status, ticks * TICK, said[3:]
+        answer = self._ask(b"T" + bytes([address, len(out)]) + out + bytes([count]), 3 + count)
+        status, ticks = struct.unpack_from("<BH", answer)
+        return status, ticks * TICK, answer[3:]
 
     def set_bit_rate(self, twbr: int) -> None:
         """Choose the I2C clock."""
         self._ask(b"t" + bytes([twbr]), 0)
 
     def encoder(self, number: int) -> tuple[float, int]:
-        """The duration of three bytes on SPI (s), and the word without its leading one."""
+        """Return the duration of three bytes on SPI (s), and the word without its leading one."""
         duration, bits = self.encoder_bits(number)
         assert bits >> 23 == 1
         return duration, bits >> 7 & 0xFFFF
 
     def encoder_bits(self, number: int) -> tuple[float, int]:
-        """The duration of three bytes on SPI (s), and their bits."""
-        said = self._ask(b"S" + bytes([number]), 5)
-        (ticks,) = struct.unpack_from("<H", said)
-        return ticks * TICK, int.from_bytes(said[2:], "big")
+        """Return the duration of three bytes on SPI (s), and their bits."""
+        answer = self._ask(b"S" + bytes([number]), 5)
+        (ticks,) = struct.unpack_from("<H", answer)
+        return ticks * TICK, int.from_bytes(answer[2:], "big")
 
     def set_spi_mode(self, clock_rests_high: bool, second_edge: bool) -> None:
         """Choose polarity and phase of the SPI clock."""
         self._ask(b"M" + bytes([8 * clock_rests_high + 4 * second_edge]), 0)
 
     def adc(self, channel: int) -> int:
-        """Counts of 1023."""
+        """Return counts of 1023."""
         return int.from_bytes(self._ask(b"A" + bytes([channel]), 2), "little")
 
     def write_eeprom(self, address: int, value: int) -> float:
-        """The duration (s)."""
+        """Return the duration (s)."""
         return int.from_bytes(self._ask(b"E" + bytes([address, value]), 2), "little") * TICK
 
     def read_eeprom(self, address: int) -> int:
         return self._ask(b"e" + bytes([address]), 1)[0]
 
     def flood(self) -> float:
-        """The duration (s) of sending 16 bytes."""
-        said = self._ask(b"F", 18)
-        return int.from_bytes(said[16:], "little") * TICK
+        """Return the duration (s) of sending 16 bytes."""
+        answer = self._ask(b"F", 18)
+        return int.from_bytes(answer[16:], "little") * TICK
 
     def phase_correct_period(self) -> float:
-        """The duration (s) between two overflows of an 8-bit timer at 2 MHz in phase-correct PWM."""
+        """Return the duration (s) between two overflows of an 8-bit timer at 2 MHz in phase-correct PWM."""
         return int.from_bytes(self._ask(b"P", 2), "little") * TICK
 
     def fill_memory(self) -> None:
@@ -89,6 +89,6 @@ class Monitor:
         return self._ask(b"I", 1)[0]
 
     def _ask(self, command: bytes, count: int) -> bytes:
-        said = self._rig.exchange(command, 0.02)
-        assert len(said) == count, (command, said)
-        return said
+        output = self._rig.exchange(command, 0.02)
+        assert len(output) == count, (command, output)
+        return output

@@ -38,7 +38,7 @@ def wait_for(condition: Callable[[], bool], what: str) -> None:
         time.sleep(0.0002)
 
 
-class Port:
+class EmulatedPort:
     """The host's end of the serial line. No emulated time passes while it writes or reads."""
 
     def __init__(self, tty: Path, board: EmulatorClient, baud: float) -> None:
@@ -59,7 +59,7 @@ class Port:
         wait_for(lambda: self._board.stats()["bytes_from_host"] == self._taken, "the board to take the bytes")
 
     def read(self) -> bytes:
-        """All bytes that the board has handed over since the last call."""
+        """Return all bytes that the board has handed over since the last call."""
         given = self._board.stats()["bytes_to_host"]
         data = bytearray()
 
@@ -76,13 +76,13 @@ class Port:
         self._serial.close()
 
 
-class Rig:
+class BoardRig:
     """A paused board with this program on it, a connection to its socket, and its serial port."""
 
     def __init__(self, elf: Path | None, folder: Path, *options: str, baud: int = 115200) -> None:
         self.process = EmulatorProcess(PROGRAM, elf, folder / "tty", folder / "board", "--paused", *options)
         self.board = self.process.connect()
-        self.port = Port(self.process.tty, self.board, baud)
+        self.port = EmulatedPort(self.process.tty, self.board, baud)
 
     def __enter__(self) -> Self:
         return self

@@ -21,8 +21,18 @@ from robot_runtime.simulation.boards.emulator_process import (
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.host import BAUD
-from tests.board.monitor import REFUSED_ADDRESS, Monitor
-from tests.board.rig import OPTIBOOT, PATIENCE, PROGRAM, ROOT, SKETCHES, Port, Rig, build, wait_for
+from tests.board.monitor import REFUSED_ADDRESS, SerialMonitor
+from tests.board.rig import (
+    OPTIBOOT,
+    PATIENCE,
+    PROGRAM,
+    ROOT,
+    SKETCHES,
+    BoardRig,
+    EmulatedPort,
+    build,
+    wait_for,
+)
 
 pytestmark = pytest.mark.usefixtures("built")
 
@@ -44,14 +54,14 @@ def upload(tty: Path, program: Path, *options: str, baud: int = BOOT_BAUD) -> su
 
 
 def finish(avrdude: subprocess.Popen[str]) -> tuple[int, str]:
-    said, _ = avrdude.communicate(timeout=LIMIT)
-    return avrdude.returncode, said
+    output, _ = avrdude.communicate(timeout=LIMIT)
+    return avrdude.returncode, output
 
 
 def insist_on_upload(tty: Path, program: Path) -> None:
-    status, said = finish(upload(tty, program))
-    assert status == 0, said
-    assert "bytes of flash verified" in said
+    status, answer = finish(upload(tty, program))
+    assert status == 0, answer
+    assert "bytes of flash verified" in answer
 
 
 @contextmanager
@@ -66,7 +76,7 @@ def empty_board(folder: Path) -> Iterator[tuple[EmulatorProcess, EmulatorClient]
 
 
 def echoes(process: EmulatorProcess, board: EmulatorClient) -> bool:
-    """True if the sketch `echo` runs after the boot loader's waiting time."""
+    """Return True if the sketch `echo` runs after the boot loader's waiting time."""
     with serial.Serial(str(process.tty), BOOT_BAUD, timeout=PATIENCE) as port:
         opened = board.stats()["time"]
         wait_for(lambda: board.stats()["time"] > opened + TIMEOUT + 0.1, "the boot loader's timeout")
@@ -74,20 +84,20 @@ def echoes(process: EmulatorProcess, board: EmulatorClient) -> bool:
         return bool(port.read(5) == b"hello")
 
 
-def both(folder: Path) -> Rig:
-    return Rig(SKETCHES / "monitor.elf", folder, "--bootloader", str(OPTIBOOT))
+def both(folder: Path) -> BoardRig:
+    return BoardRig(SKETCHES / "monitor.elf", folder, "--bootloader", str(OPTIBOOT))
 
 
 def test_after_power_on_it_starts_the_program_at_once(tmp_path: Path) -> None:
     with both(tmp_path) as rig:
         # It clears the reset cause.
-        assert Monitor(rig).boot() == 0
+        assert SerialMonitor(rig).boot() == 0
         assert rig.board.stats()["watchdog_resets"] == 0
 
 
 def test_after_a_reset_it_waits_and_then_starts_the_program(tmp_path: Path) -> None:
     with both(tmp_path) as rig:
-        Monitor(rig).boot()
+        SerialMonitor(rig).boot()
         rig.board.reset()
         rig.board.run(TIMEOUT - 0.01)
         assert rig.port.read() == b""
@@ -98,7 +108,7 @@ def test_after_a_reset_it_waits_and_then_starts_the_program(tmp_path: Path) -> N
 
 def test_after_a_reset_it_listens(tmp_path: Path) -> None:
     with both(tmp_path) as rig:
-        Monitor(rig).boot()
+        SerialMonitor(rig).boot()
         rig.board.reset()
         rig.board.run(0.5)
         assert rig.exchange(SYNCHRONISE, 0.01) == IN_STEP
@@ -110,23 +120,23 @@ def test_after_a_reset_it_listens(tmp_path: Path) -> None:
 
 
 def test_without_a_boot_loader_nothing_waits(tmp_path: Path) -> None:
-    with Rig(SKETCHES / "monitor.elf", tmp_path) as rig:
-        Monitor(rig).boot()
+    with BoardRig(SKETCHES / "monitor.elf", tmp_path) as rig:
+        SerialMonitor(rig).boot()
         rig.board.reset()
-        assert Monitor(rig).boot() == RESET_PIN
+        assert SerialMonitor(rig).boot() == RESET_PIN
 
 
 def test_a_signal_pulls_the_reset_pin(tmp_path: Path) -> None:
-    with Rig(SKETCHES / "monitor.elf", tmp_path) as rig:
-        Monitor(rig).boot()
+    with BoardRig(SKETCHES / "monitor.elf", tmp_path) as rig:
+        SerialMonitor(rig).boot()
         os.kill(rig.process.process.pid, signal.SIGUSR1)
         wait_for(lambda: rig.board.stats()["resets"] == 2, "the reset")
-        assert Monitor(rig).boot() == RESET_PIN
+        assert SerialMonitor(rig).boot() == RESET_PIN
 
 
 def test_another_program_leaves_the_boot_loader_in_place(tmp_path: Path) -> None:
     with both(tmp_path) as rig:
-        Monitor(rig).boot()
+        SerialMonitor(rig).boot()
         rig.board.load(SKETCHES / "echo.elf")
         rig.board.run(0.01)
         assert rig.exchange(SYNCHRONISE, 0.01) == IN_STEP
@@ -143,8 +153,8 @@ def test_a_program_that_reaches_into_the_boot_loader_is_refused(tmp_path: Path) 
     with both(tmp_path) as rig:
         with pytest.raises(BoardError, match=r"reaches up to 0x7e..; programs have the .* below 0x7e00"):
             rig.board.load(elf)
-        assert Monitor(rig).boot() == 0
-    with Rig(elf, tmp_path) as rig:
+        assert SerialMonitor(rig).boot() == 0
+    with BoardRig(elf, tmp_path) as rig:
         rig.board.run(0.01)
         assert rig.board.stats()["crashes"] == 0
 
@@ -160,8 +170,8 @@ def test_avrdude_uploads_a_program_and_then_the_robots(tmp_path: Path) -> None:
             board.reset()
             # Before its hello there may be frames from before the reset, the last one cut off.
             decoder, types = Decoder(), set[int]()
-            while Hello.type not in types and (said := port.read_until(b"\0")):
-                types |= {type_ for frame in decoder.feed(said) for type_, _ in frame.messages}
+            while Hello.type not in types and (output := port.read_until(b"\0")):
+                types |= {type_ for frame in decoder.feed(output) for type_, _ in frame.messages}
         assert Hello.type in types
 
 
@@ -183,9 +193,9 @@ def test_an_interrupted_upload_can_be_done_again(tmp_path: Path) -> None:
 def test_an_upload_at_a_wrong_speed_fails_and_changes_nothing(tmp_path: Path) -> None:
     with empty_board(tmp_path) as (process, board):
         insist_on_upload(process.tty, SKETCHES / "echo.hex")
-        status, said = finish(upload(process.tty, SKETCHES / "monitor.hex", "-x", "attempts=2", baud=57600))
+        status, answer = finish(upload(process.tty, SKETCHES / "monitor.hex", "-x", "attempts=2", baud=57600))
         assert status == 1
-        assert "not in sync" in said
+        assert "not in sync" in answer
         assert board.stats()["framing_errors_board"] > 0
         assert echoes(process, board)
 
@@ -211,17 +221,17 @@ def test_a_file_that_is_no_boot_loader_is_refused(tmp_path: Path, text: str, mes
 def test_power_off_and_on_leaves_only_the_memories(tmp_path: Path) -> None:
     with both(tmp_path) as rig:
         fresh = rig.board.stats()
-        Monitor(rig).boot()
-        Monitor(rig).write_eeprom(5, 0x5A)
+        SerialMonitor(rig).boot()
+        SerialMonitor(rig).write_eeprom(5, 0x5A)
         rig.board.disturb_line("to_board", "drop", 1.0)
         rig.board.fault("imu", "absent")
         rig.exchange(b"lost", 0.5)
         rig.board.reset()
         rig.board.power()
         rig.port.close()
-        rig.port = Port(rig.process.tty, rig.board, BOOT_BAUD)
+        rig.port = EmulatedPort(rig.process.tty, rig.board, BOOT_BAUD)
         assert rig.board.stats() == fresh
-        monitor = Monitor(rig)
+        monitor = SerialMonitor(rig)
         assert monitor.boot() == 0  # from the boot loader, at once
         assert monitor.read_eeprom(5) == 0x5A
         assert monitor.transfer(0x69, b"\x75", 1)[0] != REFUSED_ADDRESS

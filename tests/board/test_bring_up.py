@@ -14,7 +14,7 @@ from robot_runtime.experiments.bring_up.guide import STEPS
 from robot_runtime.simulation.boards.workbench import ALONG
 from server.features.bring_up.report import write_report
 from tests.board.bring_up import HOLD, NAMED, Person
-from tests.board.host import TICK, Robot, start
+from tests.board.host import TICK, EmulatedRobot, start
 from tests.board.rig import ROOT, build
 
 Begin = Callable[..., Person]
@@ -29,11 +29,11 @@ def _sketch(built: None) -> None:  # noqa: ARG001 - the board comes first
 def begin(tmp_path: Path) -> Iterator[Begin]:
     begun: list[Person] = []
 
-    def one(*mistakes: str) -> Person:
+    def start(*mistakes: str) -> Person:
         begun.append(Person(tmp_path, *mistakes))
         return begun[-1]
 
-    yield one
+    yield start
     for person in begun:
         person.close()
 
@@ -44,29 +44,29 @@ def test_a_fresh_board_is_brought_up_and_calibrated(begin: Begin) -> None:
     assert {step.name: person.work.state(step.name) for step in STEPS} == {
         step.name: "done" for step in STEPS
     }, [person.work.results(step.name) for step in STEPS]
-    found = person.work.calibration()
-    assert found.missing == []
+    result = person.work.calibration()
+    assert result.missing == []
     # The emulated board's own calibration, which its firmware begins with, is what a person finds.
-    assert found.fin_zeros == pytest.approx(EMULATED.fin_zeros, abs=1)
-    assert found.encoders_reversed == EMULATED.encoders_reversed
-    assert found.motors_reversed == EMULATED.motors_reversed
-    assert found.axes == EMULATED.axes
-    assert found.gyro_bias == pytest.approx((0, 0, 0), abs=0.001)
-    assert found.pressure_offset == pytest.approx(0, abs=20)
-    assert found.battery_factor == pytest.approx(1, abs=0.005)
-    assert found.beacons_inverted == EMULATED.beacons_inverted
+    assert result.fin_zeros == pytest.approx(EMULATED.fin_zeros, abs=1)
+    assert result.encoders_reversed == EMULATED.encoders_reversed
+    assert result.motors_reversed == EMULATED.motors_reversed
+    assert result.axes == EMULATED.axes
+    assert result.gyro_bias == pytest.approx((0, 0, 0), abs=0.001)
+    assert result.pressure_offset == pytest.approx(0, abs=20)
+    assert result.battery_factor == pytest.approx(1, abs=0.005)
+    assert result.beacons_inverted == EMULATED.beacons_inverted
 
 
-@pytest.mark.parametrize(("mistake", "step", "words"), NAMED)
-def test_each_mistake_is_found_and_named(begin: Begin, mistake: str, step: str, words: str) -> None:
+@pytest.mark.parametrize(("mistake", "step", "message"), NAMED)
+def test_each_mistake_is_found_and_named(begin: Begin, mistake: str, step: str, message: str) -> None:
     person = begin(mistake)
     person.do(step)
     assert person.work.state(step) == "wrong", person.work.results(step)
-    assert words in person.advice(step)
+    assert message in person.advice(step)
 
 
 def test_what_can_be_calibrated_away_is(begin: Begin) -> None:
-    """Leads and a magnet the other way round, a chip that lies askew, and parts that are off."""
+    """Lead and a magnet the other way round, a chip that lies askew, and parts that are off."""
     person = begin(
         "leads-reversed:front-right",
         "encoder-reversed:back-left",
@@ -74,19 +74,20 @@ def test_what_can_be_calibrated_away_is(begin: Begin) -> None:
         "gyro-offset:-3,12,20",
         "beacons-inverted",
         "regulator-off:5",
+        "stiction:18",
     )
     person.everything()
     assert {step.name: person.work.state(step.name) for step in STEPS} == {
         step.name: "done" for step in STEPS
     }, [person.work.results(step.name) for step in STEPS]
-    found = person.work.calibration()
-    assert found.motors_reversed == (False, True, False, True)
-    assert found.encoders_reversed == (True, True, True, False)
-    assert found.beacons_inverted
-    assert found.battery_factor == pytest.approx(1.05, abs=0.006)
+    result = person.work.calibration()
+    assert result.motors_reversed == (False, True, False, True)
+    assert result.encoders_reversed == (True, True, True, False)
+    assert result.beacons_inverted
+    assert result.battery_factor == pytest.approx(1.05, abs=0.006)
     # The chip's x lies along -y of the body, its y along x: forward is y, right is -x.
-    assert found.axes == ("y", "-x", "z")
-    assert found.gyro_bias == pytest.approx((radians(12), radians(3), radians(20)), abs=0.002)
+    assert result.axes == ("y", "-x", "z")
+    assert result.gyro_bias == pytest.approx((radians(12), radians(3), radians(20)), abs=0.002)
 
 
 @pytest.mark.parametrize("axes", ["+x-y-z", "+z+x+y", "-y-x-z"])
@@ -137,7 +138,7 @@ def test_a_motor_is_never_driven_hard_and_the_sketch_never_arms(begin: Begin) ->
 
 def test_a_host_of_other_definitions_gets_no_motor_power(tmp_path: Path) -> None:
     with start("bring_up", tmp_path, "--uncalibrated") as rig:
-        robot = Robot(rig)
+        robot = EmulatedRobot(rig)
         robot.listen(0.5)
         robot.send(Hello(definitions=DEFINITIONS_HASH ^ 1, epoch=77, credit=4096))
         robot.listen(0.1)
@@ -150,7 +151,7 @@ def test_a_host_of_other_definitions_gets_no_motor_power(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(
-    ("step", "action", "given", "words"),
+    ("step", "action", "given", "message"),
     [
         ("devices", "dance", {}, "no step 'devices' with the action 'dance'"),
         ("battery", "compare", {}, "Multimeter must be between 4 and 9 V"),
@@ -165,10 +166,25 @@ def test_a_host_of_other_definitions_gets_no_motor_power(tmp_path: Path) -> None
     ],
 )
 def test_what_cannot_be_done_is_refused_in_words(
-    begin: Begin, step: str, action: str, given: dict[str, float | str], words: str
+    begin: Begin, step: str, action: str, given: dict[str, float | str], message: str
 ) -> None:
-    with pytest.raises(RefusedError, match=words):
+    with pytest.raises(RefusedError, match=message):
         begin().work.perform(step, action, given)
+
+
+def test_a_leak_sensor_is_done_only_when_it_was_wet_and_dry(begin: Begin) -> None:
+    person = begin()
+    person.press("leak", "dry")
+    assert person.work.state("leak") == "open"
+    # Its ends are still dry, or nothing is connected.
+    person.press("leak", "wet")
+    assert person.work.state("leak") == "wrong"
+    assert "Is one wire at D2" in person.advice("leak")
+    person.rig.board.fault("leak", "wet")
+    person.press("leak", "dry")
+    assert "Dry the ends well" in person.advice("leak")
+    person.wet()
+    assert person.work.state("leak") == "done"
 
 
 def test_a_held_motor_stays_stopped_after_stop_until_its_button_is_pressed_anew(begin: Begin) -> None:

@@ -8,7 +8,7 @@ import pytest
 from bench.firmware import BAUD, FloodHost
 from robot_runtime.contract.packets import DeviceFault, StatusFlag
 from tests.board.host import start
-from tests.board.rig import ROOT, Rig, build
+from tests.board.rig import ROOT, BoardRig, build
 
 TICK_US = 10_000
 CAPACITY = BAUD / 10
@@ -22,7 +22,7 @@ BUS |= DeviceFault(sum(DeviceFault.BRIDGE_FRONT_RIGHT << fin for fin in range(4)
 
 
 @pytest.fixture
-def rig(built: None, tmp_path: Path) -> Iterator[Rig]:  # noqa: ARG001 - built first
+def rig(built: None, tmp_path: Path) -> Iterator[BoardRig]:  # noqa: ARG001 - built first
     build(ROOT / "firmware", "robot")
     with start("robot", tmp_path) as rig:
         yield rig
@@ -62,7 +62,7 @@ def rig(built: None, tmp_path: Path) -> Iterator[Rig]:  # noqa: ARG001 - built f
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
 def test_no_device_delays_a_tick_while_the_line_is_full(
-    rig: Rig, commands: list[str], faults: DeviceFault, bus: bool
+    rig: BoardRig, commands: list[str], faults: DeviceFault, bus: bool
 ) -> None:
     host = FloodHost(rig, BAUD)
     host.arm()
@@ -75,7 +75,7 @@ def test_no_device_delays_a_tick_while_the_line_is_full(
         host.flood(0.33)
     passed = host.now - began
     assert (host.sent - sent) / passed > 0.95 * CAPACITY
-    # The board says all it can: telemetry, and a line of text at every tick.
+    # The board says all it can: telemetry, and at every tick an event or its calibration.
     assert (host.heard - heard) / passed > 0.25 * CAPACITY
     assert host.status is not None
     assert host.status.flags & StatusFlag.ARMED
@@ -91,10 +91,10 @@ def test_no_device_delays_a_tick_while_the_line_is_full(
     assert rig.board.stats()["watchdog_resets"] == 0
 
 
-def movement(rig: Rig, seconds: float) -> float:
+def movement(rig: BoardRig, seconds: float) -> float:
     """rad between the ends of the fin's way that moves farthest."""
     angles: list[tuple[float, ...]] = []
     for _ in range(round(seconds / 0.01)):
         rig.board.run(0.01)
         angles.append(rig.board.fins().angles)
-    return max(max(one[fin] for one in angles) - min(one[fin] for one in angles) for fin in range(4))
+    return max(max(angle[fin] for angle in angles) - min(angle[fin] for angle in angles) for fin in range(4))

@@ -16,7 +16,7 @@ from robot_runtime.contract.packets import (
     StatusFlag,
 )
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER, FaultKind
-from tests.board.host import Robot, all_of, last, start
+from tests.board.host import EmulatedRobot, all_of, last, start
 from tests.board.rig import ROOT, build
 
 DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
@@ -29,17 +29,17 @@ TICK_US = 10_000
 
 
 @pytest.fixture
-def robot(built: None, tmp_path: Path) -> Iterator[Robot]:  # noqa: ARG001 - built first
+def robot(built: None, tmp_path: Path) -> Iterator[EmulatedRobot]:  # noqa: ARG001 - built first
     build(ROOT / "firmware", "robot")
     with start("robot", tmp_path) as rig:
-        robot = Robot(rig)
+        robot = EmulatedRobot(rig)
         robot.listen(0.5)
         robot.arm()
         robot.converse(0.5, DOWN)
         yield robot
 
 
-def assert_untroubled(robot: Robot, statuses: list[Status]) -> None:
+def assert_untroubled(robot: EmulatedRobot, statuses: list[Status]) -> None:
     """No tick was late, and the robot is armed throughout."""
     assert {status.missed_ticks for status in statuses} == {0}
     assert max(status.loop_worst for status in statuses) < TICK_US
@@ -61,7 +61,7 @@ def assert_untroubled(robot: Robot, statuses: list[Status]) -> None:
     ],
 )
 def test_no_device_delays_a_tick_and_each_is_reported_and_found_again(
-    robot: Robot, device: str, kind: FaultKind, faults: DeviceFault
+    robot: EmulatedRobot, device: str, kind: FaultKind, faults: DeviceFault
 ) -> None:
     robot.board.fault(device, kind)
     statuses = all_of(robot.converse(1.5, DOWN), Status)
@@ -78,6 +78,7 @@ def test_no_device_delays_a_tick_and_each_is_reported_and_found_again(
         ("gyro-offset:20,-20,20", 0),
         ("encoder-noise:2", 0),
         ("backlash:0.05", 0),
+        ("stiction:18", 0),
         ("pack-resistance:0.5", 0),
         ("regulator-off:5", 0),
         ("regulator-off:-5", 0),
@@ -90,7 +91,7 @@ def test_no_device_delays_a_tick_and_each_is_reported_and_found_again(
     ],
 )
 def test_a_mistake_delays_no_tick_and_stops_no_sound_fin(
-    robot: Robot, mistake: str, faults: DeviceFault
+    robot: EmulatedRobot, mistake: str, faults: DeviceFault
 ) -> None:
     robot.board.mistake(mistake)
     statuses = all_of(robot.converse(2.5, DOWN), Status)
@@ -98,7 +99,7 @@ def test_a_mistake_delays_no_tick_and_stops_no_sound_fin(
     assert_untroubled(robot, statuses)
 
 
-def test_a_brown_out_stops_the_fins_at_once_and_the_board_comes_back(robot: Robot) -> None:
+def test_a_brown_out_stops_the_fins_at_once_and_the_board_comes_back(robot: EmulatedRobot) -> None:
     before = last(robot.heard, Status)
     for lost, cause in ((0.0, ResetCause.EXTERNAL), (0.5, ResetCause.POWER_ON)):
         robot.board.brown_out(lost)
@@ -117,7 +118,7 @@ def test_a_brown_out_stops_the_fins_at_once_and_the_board_comes_back(robot: Robo
 
 
 @pytest.mark.parametrize("lost", [0.1, 0.2, 1.0])
-def test_no_brown_out_under_water_moves_the_surface(robot: Robot, lost: float) -> None:
+def test_no_brown_out_under_water_moves_the_surface(robot: EmulatedRobot, lost: float) -> None:
     """The surface's pressure in the memory may be damaged; that in EEPROM is not."""
     robot.board.sense(STILL_WATER._replace(pressure=STILL_WATER.pressure + 1.5 * 9810))
     robot.converse(0.1, DOWN)
@@ -137,7 +138,7 @@ def test_no_brown_out_under_water_moves_the_surface(robot: Robot, lost: float) -
     robot.arm()
 
 
-def test_a_brown_out_is_never_called_a_hang(robot: Robot) -> None:
+def test_a_brown_out_is_never_called_a_hang(robot: EmulatedRobot) -> None:
     """The memory that tells a hang may be damaged, while the mark that it was running survives."""
     causes = set()
     for _ in range(60):
@@ -149,7 +150,7 @@ def test_a_brown_out_is_never_called_a_hang(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("kind", ["refused", "stretched", "contested"])
-def test_fins_stop_in_time_on_a_bus_that_misbehaves(robot: Robot, kind: FaultKind) -> None:
+def test_fins_stop_in_time_on_a_bus_that_misbehaves(robot: EmulatedRobot, kind: FaultKind) -> None:
     """The motor power goes by a pin of its own, whatever the bus does."""
     robot.board.fault("i2c", kind)
     robot.listen(1.2)  # the host is silent
@@ -158,7 +159,7 @@ def test_fins_stop_in_time_on_a_bus_that_misbehaves(robot: Robot, kind: FaultKin
     assert fins.speeds == pytest.approx((0, 0, 0, 0), abs=0.02)
 
 
-def test_nine_clocks_free_a_bus_whose_data_line_is_held_low(robot: Robot) -> None:
+def test_nine_clocks_free_a_bus_whose_data_line_is_held_low(robot: EmulatedRobot) -> None:
     for _ in range(5):
         robot.board.fault("i2c", "stuck")
         statuses = all_of(robot.converse(0.5, DOWN), Status)
@@ -168,7 +169,7 @@ def test_nine_clocks_free_a_bus_whose_data_line_is_held_low(robot: Robot) -> Non
     assert robot.board.stats()["watchdog_resets"] == 0
 
 
-def test_an_imu_that_fell_asleep_is_woken_within_100_ms(robot: Robot) -> None:
+def test_an_imu_that_fell_asleep_is_woken_within_100_ms(robot: EmulatedRobot) -> None:
     before = last(robot.heard, Imu)
     robot.board.fault("imu", "dip")
     packets = robot.converse(0.5, DOWN)
@@ -179,7 +180,20 @@ def test_an_imu_that_fell_asleep_is_woken_within_100_ms(robot: Robot) -> None:
     assert last(packets, Status).faults == 0
 
 
-def test_a_tripped_bridge_is_reported_and_cleared(robot: Robot) -> None:
+@pytest.mark.parametrize("identity", ["0x70", "0x71", "0x72", "0x98"])
+def test_each_imu_measures_rightly_again_within_1_100_ms_after_a_dip(
+    robot: EmulatedRobot, identity: str
+) -> None:
+    robot.board.mistake(f"imu-clone:{identity}")
+    robot.converse(1.2, DOWN)
+    robot.board.fault("imu", "dip")
+    robot.converse(1.1, DOWN)
+    packets = robot.converse(0.5, DOWN)
+    assert [reading.force[2] for reading in all_of(packets, Imu)] == pytest.approx([-9.81] * 50, abs=0.1)
+    assert last(packets, Status).faults == 0
+
+
+def test_a_tripped_bridge_is_reported_and_cleared(robot: EmulatedRobot) -> None:
     robot.board.fault("bridge1", "tripped")
     statuses = all_of(robot.converse(1.0, DOWN), Status)
     assert DeviceFault.BRIDGE_BACK_RIGHT in {status.faults for status in statuses}

@@ -16,7 +16,7 @@ from robot_runtime.contract.packets import (
     Sense,
     StatusFlag,
 )
-from tests.board.host import TICK, Robot, all_of, last, start
+from tests.board.host import TICK, EmulatedRobot, all_of, last, start
 from tests.board.rig import ROOT, build
 
 FORWARD = Navigation(x=1.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
@@ -38,17 +38,19 @@ def word(depth: float) -> Sense:
 
 
 @pytest.fixture
-def robot(built: None, tmp_path: Path) -> Iterator[Robot]:  # noqa: ARG001 - built first
+def robot(built: None, tmp_path: Path) -> Iterator[EmulatedRobot]:  # noqa: ARG001 - built first
     build(ROOT / "firmware", "robot", "HIL=1")
     with start("hil/robot", tmp_path) as rig:
         for device in DEVICES:
             rig.board.fault(device, "absent")
-        robot = Robot(rig)
+        robot = EmulatedRobot(rig)
         robot.listen(0.5)
         yield robot
 
 
-def feel(robot: Robot, depth: float, seconds: float, command: Navigation | None = None) -> list[object]:
+def feel(
+    robot: EmulatedRobot, depth: float, seconds: float, command: Navigation | None = None
+) -> list[object]:
     """Send these values to the board for this time, fifty times a second."""
     heard: list[object] = []
     for _ in range(round(seconds / (2 * TICK))):
@@ -57,7 +59,7 @@ def feel(robot: Robot, depth: float, seconds: float, command: Navigation | None 
     return heard
 
 
-def test_simulated_readings_come_back_as_telemetry(robot: Robot) -> None:
+def test_simulated_readings_come_back_as_telemetry(robot: EmulatedRobot) -> None:
     robot.greet()
     feel(robot, 0.0, 1.0)
     feel(robot, 0.75, 0.2)
@@ -71,7 +73,7 @@ def test_simulated_readings_come_back_as_telemetry(robot: Robot) -> None:
     assert status.battery == pytest.approx(7.9, abs=0.02)
 
 
-def test_it_flaps_without_any_fin(robot: Robot) -> None:
+def test_it_flaps_without_any_fin(robot: EmulatedRobot) -> None:
     feel(robot, 0.0, 0.5)
     robot.arm()
     feel(robot, 0.3, 2.0, FORWARD)
@@ -85,7 +87,7 @@ def test_it_flaps_without_any_fin(robot: Robot) -> None:
     assert robot.status().stack_free > 50
 
 
-def test_a_silent_simulator_is_a_fault_of_its_sensors(robot: Robot) -> None:
+def test_a_silent_simulator_is_a_fault_of_its_sensors(robot: EmulatedRobot) -> None:
     robot.greet()
     feel(robot, 0.0, 0.5)
     assert robot.status().faults == 0

@@ -7,7 +7,7 @@ import pytest
 
 from robot_runtime.simulation.boards.emulator_process import BoardError, LineDirection, LineFault
 from tests.board.conftest import Make
-from tests.board.rig import Rig
+from tests.board.rig import BoardRig
 
 BIT = 1 / 115200
 START = 0.01
@@ -17,7 +17,7 @@ HOST_BYTES_MAX = 4096
 
 
 @pytest.fixture
-def rig(make_rig: Make) -> Rig:
+def rig(make_rig: Make) -> BoardRig:
     rig = make_rig("echo")
     rig.board.run(START)
     rig.board.seed_line(1)
@@ -29,22 +29,22 @@ def data(count: int) -> bytes:
     return bytes(random.Random(3).choices(range(5, 256), k=count))
 
 
-def say(rig: Rig, sent: bytes) -> bytes:
+def say(rig: BoardRig, sent: bytes) -> bytes:
     return rig.exchange(sent, 12 * len(sent) * 2 * BIT + 0.01)
 
 
-def count(rig: Rig, direction: LineDirection, what: str) -> int:
+def count(rig: BoardRig, direction: LineDirection, what: str) -> int:
     return int(rig.board.stats()[f"{direction}_{what}"])
 
 
 def is_part(part: bytes, whole: bytes) -> bool:
-    """True if `part` is `whole` without some bytes."""
+    """Return True if `part` is `whole` without some bytes."""
     rest = iter(whole)
     return all(byte in rest for byte in part)
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_dropped_characters_are_missing(rig: Rig, direction: LineDirection) -> None:
+def test_dropped_characters_are_missing(rig: BoardRig, direction: LineDirection) -> None:
     rig.board.disturb_line(direction, "drop", 0.2)
     sent = data(300)
     heard = say(rig, sent)
@@ -55,7 +55,7 @@ def test_dropped_characters_are_missing(rig: Rig, direction: LineDirection) -> N
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_doubled_characters_come_twice(rig: Rig, direction: LineDirection) -> None:
+def test_doubled_characters_come_twice(rig: BoardRig, direction: LineDirection) -> None:
     rig.board.disturb_line(direction, "double", 0.2)
     sent = bytes(range(5, 255))  # no two neighbours are alike
     heard = say(rig, sent)
@@ -68,7 +68,7 @@ def test_doubled_characters_come_twice(rig: Rig, direction: LineDirection) -> No
     assert rig.board.stats()["overruns"] == 0
 
 
-def test_inserted_characters_come_in_between(rig: Rig) -> None:
+def test_inserted_characters_come_in_between(rig: BoardRig) -> None:
     rig.board.disturb_line("from_board", "insert", 0.2)
     sent = data(300)
     heard = say(rig, sent)
@@ -78,7 +78,7 @@ def test_inserted_characters_come_in_between(rig: Rig) -> None:
     assert is_part(sent, heard)
 
 
-def test_doubling_and_inserting_together_delay_and_lose_nothing(rig: Rig) -> None:
+def test_doubling_and_inserting_together_delay_and_lose_nothing(rig: BoardRig) -> None:
     rig.board.disturb_line("from_board", "insert", 1.0)
     rig.board.disturb_line("from_board", "double", 1.0)
     sent = data(80)
@@ -88,7 +88,7 @@ def test_doubling_and_inserting_together_delay_and_lose_nothing(rig: Rig) -> Non
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_wrong_bits_are_exactly_the_counted_ones(rig: Rig, direction: LineDirection) -> None:
+def test_wrong_bits_are_exactly_the_counted_ones(rig: BoardRig, direction: LineDirection) -> None:
     rig.board.disturb_line(direction, "bit_errors", 0.03)
     seen = wrong_stop_bits = 0
     # A few wrong bits must not make one of the sketch's commands of a byte.
@@ -109,7 +109,7 @@ def test_wrong_bits_are_exactly_the_counted_ones(rig: Rig, direction: LineDirect
     assert wrong_stop_bits > 0
 
 
-def test_every_wrong_bit_of_a_stream_can_be_accounted_for(rig: Rig) -> None:
+def test_every_wrong_bit_of_a_stream_can_be_accounted_for(rig: BoardRig) -> None:
     rig.board.disturb_line("to_board", "bit_errors", 0.002)
     heard = b"".join(say(rig, b"\xff" * 200) for _ in range(10))
     missing = 2000 - len(heard)
@@ -122,7 +122,7 @@ def test_every_wrong_bit_of_a_stream_can_be_accounted_for(rig: Rig) -> None:
     assert 0 < rig.board.stats()["framing_errors_board"] < missing
 
 
-def test_bursts_last_their_time_on_the_line(rig: Rig) -> None:
+def test_bursts_last_their_time_on_the_line(rig: BoardRig) -> None:
     rig.board.burst_line("from_board", 0.002, 30)
     sent = data(2000)
     heard = b"".join(say(rig, sent[i : i + 200]) for i in range(0, len(sent), 200))
@@ -134,7 +134,7 @@ def test_bursts_last_their_time_on_the_line(rig: Rig) -> None:
     assert heard != sent
 
 
-def test_a_cut_wire_carries_nothing_until_it_is_mended(rig: Rig) -> None:
+def test_a_cut_wire_carries_nothing_until_it_is_mended(rig: BoardRig) -> None:
     rig.board.cut_line("to_board", True)
     assert say(rig, data(50)) == b""
     assert rig.board.stats()["bytes_to_board"] == 0
@@ -144,7 +144,7 @@ def test_a_cut_wire_carries_nothing_until_it_is_mended(rig: Rig) -> None:
     assert count(rig, "to_board", "cuts") == 50
 
 
-def test_the_other_direction_of_a_cut_line_works(rig: Rig) -> None:
+def test_the_other_direction_of_a_cut_line_works(rig: BoardRig) -> None:
     rig.board.cut_line("from_board", True)
     assert say(rig, data(50)) == b""
     stats = rig.board.stats()
@@ -153,7 +153,7 @@ def test_the_other_direction_of_a_cut_line_works(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_a_stall_delays_and_loses_nothing(rig: Rig, direction: LineDirection) -> None:
+def test_a_stall_delays_and_loses_nothing(rig: BoardRig, direction: LineDirection) -> None:
     sent = data(100)
     rig.board.stall_line(direction, 0.5)
     assert rig.exchange(sent, 0.499) == b""
@@ -162,7 +162,7 @@ def test_a_stall_delays_and_loses_nothing(rig: Rig, direction: LineDirection) ->
     assert say(rig, sent) == sent
 
 
-def test_a_stall_that_is_too_long_for_the_hosts_memory_loses_bytes(rig: Rig) -> None:
+def test_a_stall_that_is_too_long_for_the_hosts_memory_loses_bytes(rig: BoardRig) -> None:
     rig.board.stall_line("from_board", 3600)
     sent = data(HOST_BYTES_MAX + 4)
     rig.port.write(sent[:HOST_BYTES_MAX])
@@ -189,7 +189,7 @@ def test_the_same_seed_gives_the_same_faults(make_rig: Make) -> None:
     assert heard[0] != heard[2]
 
 
-def test_clean_ends_all_faults_and_keeps_the_counts(rig: Rig) -> None:
+def test_clean_ends_all_faults_and_keeps_the_counts(rig: BoardRig) -> None:
     rig.board.disturb_line("to_board", "bit_errors", 0.01)
     rig.board.disturb_line("to_board", "drop", 0.5)
     rig.board.burst_line("to_board", 0.01, 20)
@@ -225,7 +225,7 @@ def test_clean_ends_all_faults_and_keeps_the_counts(rig: Rig) -> None:
         "seed",
     ],
 )
-def test_invalid_faults_are_refused(rig: Rig, command: str) -> None:
+def test_invalid_faults_are_refused(rig: BoardRig, command: str) -> None:
     with pytest.raises(BoardError, match=r"^(line|seed) takes "):
         rig.board.command(command)
     assert say(rig, data(20)) == data(20)

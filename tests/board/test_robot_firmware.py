@@ -9,11 +9,14 @@ from pathlib import Path
 
 import pytest
 
+from robot_runtime.contract.board_events import describe_event
 from robot_runtime.contract.calibration import EMULATED, RECORD_ADDRESS, CalibrationValues, record
 from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     Beacon,
-    Debug,
+    BoardEvent,
+    BoardEventKind,
+    Countdown,
     Depth,
     DeviceFault,
     Hello,
@@ -30,7 +33,7 @@ from robot_runtime.simulation.boards.emulator_process import STILL_WATER
 from robot_runtime.simulation.boards.mistakes import FINS
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
-from tests.board.host import Robot, all_of, last, start
+from tests.board.host import EmulatedRobot, all_of, last, start
 from tests.board.rig import ROOT, build
 
 DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
@@ -63,14 +66,14 @@ class Programs:
         self._boards = boards
         self._folder = folder
 
-    def start(self, name: str, *options: str) -> Robot:
-        robot = Robot(self._boards.enter_context(start(name, self._folder, *options)))
+    def start(self, name: str, *options: str) -> EmulatedRobot:
+        robot = EmulatedRobot(self._boards.enter_context(start(name, self._folder, *options)))
         robot.listen(0.3)
         return robot
 
 
 @pytest.fixture
-def robot(programs: Programs) -> Robot:
+def robot(programs: Programs) -> EmulatedRobot:
     """The booted robot in still water."""
     return programs.start("robot")
 
@@ -78,7 +81,7 @@ def robot(programs: Programs) -> Robot:
 # Drivers
 
 
-def test_it_finds_every_device(robot: Robot) -> None:
+def test_it_finds_every_device(robot: EmulatedRobot) -> None:
     status = robot.status()
     assert status.faults == 0
     assert status.reset_cause == ResetCause.POWER_ON
@@ -86,18 +89,18 @@ def test_it_finds_every_device(robot: Robot) -> None:
     assert robot.board.stats()["framing_errors_host"] == 0
 
 
-def test_a_host_that_comes_late_reads_what_is_and_no_line_is_lost(robot: Robot) -> None:
+def test_a_host_that_comes_late_reads_what_is_and_no_line_is_lost(robot: EmulatedRobot) -> None:
     """At power-on the encoders do not answer for 50 ms; nobody is there who would read of it."""
     robot.listen(1.0)
     robot.greet()
     robot.converse(0.5)
-    lines = [packet.text for packet in robot.heard if isinstance(packet, Debug)]
+    lines = [describe_event(event).text for event in all_of(robot.heard, BoardEvent)]
     devices = ("IMU", "pressure sensor", *(f"encoder {fin.replace('-', ' ')}" for fin in FINS))
     assert lines == ["boot 1, power on", *(f"{device}: ok" for device in devices)]
     assert robot.status().debug_lost == 0
 
 
-def test_its_drivers_return_the_true_readings(robot: Robot) -> None:
+def test_its_drivers_return_the_true_readings(robot: EmulatedRobot) -> None:
     robot.listen(1.0)  # at the surface, whose pressure it takes as zero depth
     reading = Reading(
         pressure=101325.0 + 1.5 * 9810,
@@ -120,12 +123,12 @@ def test_its_drivers_return_the_true_readings(robot: Robot) -> None:
     assert last(packets, Status).battery == pytest.approx(7.1, abs=0.01)
 
 
-def test_it_measures_the_fins(robot: Robot) -> None:
+def test_it_measures_the_fins(robot: EmulatedRobot) -> None:
     motor = last(robot.listen(0.1), Motor)
     assert motor.angle == pytest.approx(robot.board.fins().angles, abs=math.tau / 1024)
 
 
-def test_its_attitude_follows_the_turn_rate(robot: Robot) -> None:
+def test_its_attitude_follows_the_turn_rate(robot: EmulatedRobot) -> None:
     robot.board.sense(STILL_WATER._replace(rate=(0.0, 0.0, 0.5)))
     before = last(robot.listen(0.1), Imu).attitude
     after = last(robot.listen(1.0), Imu).attitude
@@ -136,7 +139,7 @@ def test_its_attitude_follows_the_turn_rate(robot: Robot) -> None:
 # Pace
 
 
-def test_it_keeps_100_hz(robot: Robot) -> None:
+def test_it_keeps_100_hz(robot: EmulatedRobot) -> None:
     robot.arm()
     packets = robot.converse(5.0, DOWN)
     times = [imu.time for imu in all_of(packets, Imu)]
@@ -152,8 +155,8 @@ def test_it_keeps_100_hz(robot: Robot) -> None:
     assert robot.board.stats()["overruns"] == 0
 
 
-def test_its_parameters_are_taken_and_clamped_while_it_swims(robot: Robot) -> None:
-    numbers = {one.name: number for number, one in enumerate(CHIP_PARAMETERS)}
+def test_its_parameters_are_taken_and_clamped_while_it_swims(robot: EmulatedRobot) -> None:
+    numbers = {parameter.name: number for number, parameter in enumerate(CHIP_PARAMETERS)}
     robot.arm()
     robot.converse(1.0, DOWN)
     for name, value in (("fins.amplitude", 0.4), ("fins.gain", 1.3), ("battery.alarm", 7.0)):
@@ -167,14 +170,14 @@ def test_its_parameters_are_taken_and_clamped_while_it_swims(robot: Robot) -> No
         numbers["battery.alarm"]: pytest.approx(6.2),
     }
     packets = robot.converse(1.6, DOWN)
-    wanted = [motor.wanted[0] for motor in all_of(packets, Motor)]
-    assert max(wanted) - min(wanted) == pytest.approx(0.4, abs=0.02)
+    set_points = [motor.wanted[0] for motor in all_of(packets, Motor)]
+    assert max(set_points) - min(set_points) == pytest.approx(0.4, abs=0.02)
     status = last(packets, Status)
     assert status.loop_worst < 10_000
     assert status.stack_free > 50
 
 
-def test_a_motor_packet_carries_the_time_of_its_measurement(robot: Robot) -> None:
+def test_a_motor_packet_carries_the_time_of_its_measurement(robot: EmulatedRobot) -> None:
     robot.arm()
     packets = robot.converse(1.0, DOWN)
     # They share a frame, and the fins' turn in a tick comes first.
@@ -188,7 +191,7 @@ def test_a_motor_packet_carries_the_time_of_its_measurement(robot: Robot) -> Non
 # Safety
 
 
-def test_start_is_refused_without_steady_traffic_or_with_another_epoch(robot: Robot) -> None:
+def test_start_is_refused_without_steady_traffic_or_with_another_epoch(robot: EmulatedRobot) -> None:
     hello = robot.greet()
     robot.send(Start(epoch=hello.epoch))
     assert not robot.status().flags & StatusFlag.ARMED
@@ -197,11 +200,11 @@ def test_start_is_refused_without_steady_traffic_or_with_another_epoch(robot: Ro
     assert not robot.status().flags & StatusFlag.ARMED
     robot.send(Start(epoch=hello.epoch))
     assert robot.status().flags & StatusFlag.ARMED
-    refusals = [debug.text for debug in all_of(robot.heard, Debug) if "refused" in debug.text]
+    refusals = [event for event in all_of(robot.heard, BoardEvent) if event.kind == BoardEventKind.REFUSED]
     assert len(refusals) == 2
 
 
-def record_fins(robot: Robot, period: float = 0.01) -> list[FinMotion]:
+def record_fins(robot: EmulatedRobot, period: float = 0.01) -> list[FinMotion]:
     fins: list[FinMotion] = []
 
     def water(motion: FinMotion) -> Reading:
@@ -212,7 +215,7 @@ def record_fins(robot: Robot, period: float = 0.01) -> list[FinMotion]:
     return fins
 
 
-def test_the_fins_follow_a_command(robot: Robot) -> None:
+def test_the_fins_follow_a_command(robot: EmulatedRobot) -> None:
     robot.arm()
     robot.converse(1.5, DOWN)
     fins = record_fins(robot)
@@ -233,7 +236,7 @@ def frequency(values: list[float], middle: float, period: float) -> float:
     return (len(rising) - 1) / ((rising[-1] - rising[0]) * period)
 
 
-def test_a_silent_host_leads_to_rest_and_then_to_disarming(robot: Robot) -> None:
+def test_a_silent_host_leads_to_rest_and_then_to_disarming(robot: EmulatedRobot) -> None:
     robot.arm()
     robot.converse(1.5, DOWN)
     fins = record_fins(robot)
@@ -249,7 +252,7 @@ def test_a_silent_host_leads_to_rest_and_then_to_disarming(robot: Robot) -> None
     assert not fins[-1].powered
 
 
-def test_stop_stops_within_a_tick(robot: Robot) -> None:
+def test_stop_stops_within_a_tick(robot: EmulatedRobot) -> None:
     robot.arm()
     robot.converse(1.5, DOWN)
     robot.stop()
@@ -292,7 +295,7 @@ def test_the_watchdog_brings_a_hung_board_back_disarmed(programs: Programs) -> N
         ("encoder3", DeviceFault.ENCODER_FRONT_LEFT),
     ],
 )
-def test_an_absent_device_shows_and_heals(robot: Robot, device: str, fault: DeviceFault) -> None:
+def test_an_absent_device_shows_and_heals(robot: EmulatedRobot, device: str, fault: DeviceFault) -> None:
     robot.board.fault(device, "absent")
     assert last(robot.listen(0.4), Status).faults == fault
     robot.board.fault(device, "none")
@@ -302,22 +305,22 @@ def test_an_absent_device_shows_and_heals(robot: Robot, device: str, fault: Devi
 @pytest.mark.parametrize("fin", range(4))
 @pytest.mark.parametrize("mistake", ["leads-reversed", "encoder-reversed"])
 def test_a_fin_with_swapped_leads_or_encoder_is_stopped_within_300_ms(
-    robot: Robot, mistake: str, fin: int
+    robot: EmulatedRobot, mistake: str, fin: int
 ) -> None:
     robot.board.mistake(f"{mistake}:{FINS[fin]}")
     robot.arm()
     motors = all_of(robot.converse(1.5, DOWN), Motor)
-    driven = [one.time for one in motors if one.drive[fin]]
+    driven = [motor.time for motor in motors if motor.drive[fin]]
     assert driven[-1] - driven[0] < 300_000  # µs
     assert robot.status().faults == DeviceFault.TRACKING_FRONT_RIGHT << fin
     assert robot.board.fins().speeds[fin] == pytest.approx(0, abs=0.02)
-    assert all(max(abs(one.drive[other]) for one in motors[-20:]) > 10 for other in {0, 1, 2, 3} - {fin})
+    assert all(max(abs(motor.drive[other]) for motor in motors[-20:]) > 10 for other in {0, 1, 2, 3} - {fin})
 
 
 @pytest.mark.parametrize("gain", [0.3, 1.2])
 @pytest.mark.parametrize("frequency", [0.3, 2.0])
-def test_no_sound_fin_is_stopped_by_any_command(robot: Robot, gain: float, frequency: float) -> None:
-    numbers = {one.name: number for number, one in enumerate(CHIP_PARAMETERS)}
+def test_no_sound_fin_is_stopped_by_any_command(robot: EmulatedRobot, gain: float, frequency: float) -> None:
+    numbers = {parameter.name: number for number, parameter in enumerate(CHIP_PARAMETERS)}
     robot.arm()
     for name, value in (("fins.gain", gain), ("fins.frequency", frequency)):
         robot.send(Parameter(number=numbers[name], value=value))
@@ -326,9 +329,19 @@ def test_no_sound_fin_is_stopped_by_any_command(robot: Robot, gain: float, frequ
         assert robot.status().faults == 0
 
 
-def test_no_sound_fin_with_imperfect_parts_is_stopped(robot: Robot) -> None:
-    numbers = {one.name: number for number, one in enumerate(CHIP_PARAMETERS)}
-    for mistake in ("encoder-noise:3", "backlash:0.1", "pack-resistance:0.5"):
+IMPERFECT = [
+    ["encoder-noise:3", "backlash:0.1", "pack-resistance:0.5"],
+    ["stiction:6"],
+    ["stiction:12"],
+    ["stiction:18"],
+    ["stiction:18", "backlash:0.05", "pack-resistance:0.5"],
+]
+
+
+@pytest.mark.parametrize("mistakes", IMPERFECT, ids=" ".join)
+def test_no_sound_fin_with_imperfect_parts_is_stopped(robot: EmulatedRobot, mistakes: list[str]) -> None:
+    numbers = {parameter.name: number for number, parameter in enumerate(CHIP_PARAMETERS)}
+    for mistake in mistakes:
         robot.board.mistake(mistake)
     robot.arm()
     for gain, frequency in ((0.3, 0.3), (1.2, 2.0)):
@@ -339,7 +352,16 @@ def test_no_sound_fin_with_imperfect_parts_is_stopped(robot: Robot) -> None:
             assert robot.status().faults == 0
 
 
-def test_an_absent_bridge_shows_while_it_has_power(robot: Robot) -> None:
+def test_fins_that_hardly_turn_are_stopped_within_300_ms(robot: EmulatedRobot) -> None:
+    robot.board.mistake("stiction:40")
+    robot.arm()
+    motors = all_of(robot.converse(1.0, DOWN), Motor)
+    driven = [motor.time for motor in motors if any(motor.drive)]
+    assert driven[-1] - driven[0] < 300_000  # µs
+    assert robot.status().faults == sum(DeviceFault.TRACKING_FRONT_RIGHT << fin for fin in range(4))
+
+
+def test_an_absent_bridge_shows_while_it_has_power(robot: EmulatedRobot) -> None:
     robot.arm()
     robot.board.fault("bridge2", "absent")
     assert robot.status().faults == DeviceFault.BRIDGE_BACK_LEFT
@@ -373,12 +395,51 @@ def test_the_boot_counter_survives(programs: Programs, tmp_path: Path) -> None:
     assert last(second.heard, Hello).epoch == epoch + 1
 
 
-@pytest.mark.parametrize("place", [RECORD_ADDRESS, RECORD_ADDRESS + 20], ids=["another layout", "torn"])
+@pytest.mark.parametrize(
+    ("counted", "next_epochs"), [(0, (1, 2, 3)), (1234, (1235, 1236, 1237)), (0xFFFE, (1, 2, 3))]
+)
+def test_no_two_boots_in_a_row_write_the_counter_at_one_place(
+    programs: Programs, tmp_path: Path, counted: int, next_epochs: tuple[int, ...]
+) -> None:
+    contents = eeprom(EMULATED)  # an erased place looks like the epoch 0xFFFF, which is left out
+    contents[:2] = counted.to_bytes(2, "little")
+    file = tmp_path / "eeprom"
+    file.write_bytes(contents)
+    robot = programs.start("robot", "--eeprom", str(file))
+    written: list[int] = []
+    for epoch in next_epochs:
+        assert robot.status().epoch == epoch
+        after = file.read_bytes()
+        written += [at for at in (0, *range(256, 766, 2)) if after[at : at + 2] != contents[at : at + 2]]
+        contents = bytearray(after)
+        robot.board.reset()
+        robot.listen(BOOT_SECONDS)
+        robot.greet()
+    assert len(written) == len(next_epochs)
+    assert all(before != after for before, after in pairwise(written))
+
+
+def test_the_boot_counter_begins_anew_where_its_room_is_full(programs: Programs, tmp_path: Path) -> None:
+    contents = eeprom(EMULATED)
+    contents[:2] = b"\7\0"
+    contents[256:766] = b"".join(epoch.to_bytes(2, "little") for epoch in range(8, 263))
+    file = tmp_path / "eeprom"
+    file.write_bytes(contents)
+    robot = programs.start("robot", "--eeprom", str(file))
+    assert robot.status().epoch == 263
+    robot.board.reset()
+    robot.listen(BOOT_SECONDS)
+    robot.greet()
+    assert robot.status().epoch == 264
+    assert file.read_bytes()[:2] == (263).to_bytes(2, "little")
+
+
+@pytest.mark.parametrize("index", [RECORD_ADDRESS, RECORD_ADDRESS + 20], ids=["another layout", "torn"])
 def test_a_calibration_that_the_firmware_refuses_is_replaced(
-    programs: Programs, tmp_path: Path, place: int
+    programs: Programs, tmp_path: Path, index: int
 ) -> None:
     contents = eeprom(EMULATED)
-    contents[place] ^= 0x55
+    contents[index] ^= 0x55
     file = tmp_path / "eeprom"
     file.write_bytes(contents)
     programs.start("robot", "--eeprom", str(file)).arm()
@@ -389,10 +450,34 @@ def test_a_calibration_that_is_not_complete_stays(programs: Programs, tmp_path: 
     file = tmp_path / "eeprom"
     file.write_bytes(contents)
     programs.start("robot", "--eeprom", str(file))
-    kept = slice(RECORD_ADDRESS, RECORD_ADDRESS + 30)
-    assert file.read_bytes()[kept] == contents[kept]
+    stored = slice(RECORD_ADDRESS, RECORD_ADDRESS + 30)
+    assert file.read_bytes()[stored] == contents[stored]
 
 
 def eeprom(calibration: CalibrationValues) -> bytearray:
-    """The contents of an EEPROM with this calibration."""
+    """Return the contents of an EEPROM with this calibration."""
     return bytearray(RECORD_ADDRESS * b"\xff" + record(calibration.packet())).ljust(1024, b"\xff")
+
+
+def test_the_led_of_the_chip_counts_down_and_shows_a_fault_first(programs: "Programs") -> None:
+    robot = programs.start("robot")
+    robot.listen(BOOT_SECONDS)
+
+    def levels(countdown: bool) -> str:
+        """Return the LED's levels in the tenths of the last 5 s of a countdown."""
+        seen = ""
+        for tenth in range(50, 0, -1):
+            if countdown:
+                robot.send(Countdown(remaining=tenth / 10))
+            robot.converse(0.1)
+            seen += str(int(robot.board.led()))
+        return seen
+
+    robot.arm()
+    assert levels(countdown=False) == "1" * 50
+    assert levels(countdown=True) == "01100" * 4 + "1111111000" * 3
+    robot.converse(0.4)
+    assert robot.board.led(), "armed, and the countdown is over"
+    robot.board.fault("leak", "wet")
+    robot.converse(0.3)
+    assert levels(countdown=True).replace("10", "") in ("", "0", "1"), "five blinks a second"

@@ -7,7 +7,7 @@ import psutil
 import pytest
 
 from tests.board.conftest import Make
-from tests.board.monitor import Monitor
+from tests.board.monitor import SerialMonitor
 from tests.board.rig import CLOCK, wait_for
 
 CHARACTER_BITS = 10
@@ -78,10 +78,10 @@ def test_a_program_that_does_not_read_keeps_three_bytes_and_detects_the_overrun(
     rig = make_rig("deaf")
     rig.board.run(START)
     data = random_bytes(100)
-    said = rig.exchange(data, 0.06)
-    assert said[0::2] == data[:3]
+    output = rig.exchange(data, 0.06)
+    assert output[0::2] == data[:3]
     data_overrun = 1 << 3
-    assert said[1] & data_overrun
+    assert output[1] & data_overrun
     stats = rig.board.stats()
     assert stats["overruns"] == 97
     assert stats["bytes_to_board"] == 100
@@ -114,14 +114,14 @@ def test_the_program_sees_framing_errors(make_rig: Make) -> None:
     # At half the speed a zero lasts as long as 18 of the chip's bits: a zero byte and no stop bit.
     rig.exchange(b"\0", 0.02)
     rig.port.set_baud(115200)
-    said = rig.exchange(b"", 0.04)
+    output = rig.exchange(b"", 0.04)
     framing_error = 1 << 4
-    assert said[0] == 0
-    assert said[1] & framing_error
+    assert output[0] == 0
+    assert output[1] & framing_error
 
 
 def test_characters_leave_without_gaps(make_rig: Make) -> None:
-    monitor = Monitor(rig := make_rig("monitor"))
+    monitor = SerialMonitor(rig := make_rig("monitor"))
     monitor.boot()
     # The last character has gone when its stop bit has, and the loop that sees it takes a few cycles.
     assert monitor.flood() == pytest.approx(16 * CHARACTER_BITS * CHIP_BIT, abs=3e-6)
@@ -176,7 +176,7 @@ def test_opening_the_port_resets_the_board_with_reset_on_open(make_rig: Make) ->
     rig = make_rig("monitor", "--reset-on-open")
     external = 1 << 1
     wait_for(lambda: rig.board.stats()["resets"] == 2, "the reset")
-    assert Monitor(rig).boot() == external
+    assert SerialMonitor(rig).boot() == external
     os.close(os.open(rig.process.tty, os.O_RDWR | os.O_NOCTTY))  # it is open already: no reset
     rig.board.run(0.01)
     assert rig.board.stats()["resets"] == 2

@@ -8,7 +8,7 @@ import pytest
 
 from robot_runtime.contract.packets import (
     FRAME_BYTES_MAX,
-    Debug,
+    BoardEvent,
     Depth,
     Imu,
     Motor,
@@ -22,8 +22,8 @@ from robot_runtime.contract.packets import (
 from robot_runtime.link.session import SessionStage
 from robot_runtime.link.timing import airtime, periods
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
-from tests.board.host import TICK, Host
-from tests.board.rig import ROOT, Rig
+from tests.board.host import TICK, EmulatedHost
+from tests.board.rig import ROOT, BoardRig
 
 BUILD = ROOT / "build"
 DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
@@ -32,7 +32,7 @@ STOP_BYTES = 9
 ROUNDS = 6
 """Of the rarest telemetry, over which rates are counted."""
 
-Join = Callable[[int, int], Host]
+Join = Callable[[int, int], EmulatedHost]
 
 
 @pytest.fixture
@@ -40,10 +40,10 @@ def join(built: None, tmp_path: Path) -> Iterator[Join]:  # noqa: ARG001 - the b
     """Starts a board with the firmware for one baud, and a host with the same or another one."""
     with ExitStack() as boards:
 
-        def make(board_baud: int, host_baud: int) -> Host:
+        def make(board_baud: int, host_baud: int) -> EmulatedHost:
             build_firmware(BUILD, board_baud)
             elf = firmware_path(BUILD, board_baud, ".elf")
-            return Host(boards.enter_context(Rig(elf, tmp_path, baud=host_baud)), host_baud)
+            return EmulatedHost(boards.enter_context(BoardRig(elf, tmp_path, baud=host_baud)), host_baud)
 
         yield make
 
@@ -53,8 +53,8 @@ def test_telemetry_at_each_speed_is_what_the_line_carries(join: Join, baud: int)
     host = join(baud, baud)
     frame = airtime(FRAME_BYTES_MAX, baud)
     host.until(lambda: host.session.stage is SessionStage.ESTABLISHED, 0.5 + 4 * frame)
-    # The debug lines of the start arrive beside the telemetry.
-    host.until(lambda: count(host.heard, Debug) == 7, 1.0 + 16 * frame)
+    # The events of the start arrive beside the telemetry.
+    host.until(lambda: count(host.heard, BoardEvent) == 7, 1.0 + 16 * frame)
     host.run(1.0 + 3 * periods(baud)[Status])
 
     measured = max(ROUNDS * periods(baud)[Status], 2.0)
@@ -80,9 +80,9 @@ def test_telemetry_at_each_speed_is_what_the_line_carries(join: Join, baud: int)
     host.until(lambda: not host.board.fins().powered, airtime(FRAME_BYTES_MAX + STOP_BYTES, baud) + 3 * TICK)
 
     host.run(3 * periods(baud)[Status])
-    said = host.session.statistics()
+    answer = host.session.statistics()
     status = host.last(Status)
-    assert (said.frames_missed, said.frames_invalid) == (0, 0)
+    assert (answer.frames_missed, answer.frames_invalid) == (0, 0)
     assert (status.frames_invalid, status.bytes_lost, status.debug_lost) == (0, 0, 0)
     assert host.board.stats()["overruns"] == 0
 

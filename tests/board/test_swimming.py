@@ -17,7 +17,7 @@ from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.zenoh_transport import ZenohTransport
-from tests.board.host import TICK, Robot, all_of, last, start
+from tests.board.host import TICK, EmulatedRobot, all_of, last, start
 from tests.board.rig import PATIENCE, ROOT, build, wait_for
 
 PERIOD = 0.005
@@ -43,16 +43,16 @@ def water() -> Simulator:
 
 
 @pytest.fixture
-def robot(built: None, tmp_path: Path, water: Simulator) -> Iterator[Robot]:  # noqa: ARG001 - built first
+def robot(built: None, tmp_path: Path, water: Simulator) -> Iterator[EmulatedRobot]:  # noqa: ARG001 - built first
     build(ROOT / "firmware", "robot")
     with start("robot", tmp_path) as rig:
         rig.board.attach(PERIOD, lambda fins: water.advance(PERIOD, fins))
-        made = Robot(rig)
+        made = EmulatedRobot(rig)
         made.listen(1.0)
         yield made
 
 
-def test_it_dives_and_measures_its_depth(robot: Robot, water: Simulator) -> None:
+def test_it_dives_and_measures_its_depth(robot: EmulatedRobot, water: Simulator) -> None:
     robot.arm()
     robot.converse(4.0, DOWN)
     shown = [packet.depth for packet in all_of(robot.converse(0.5, DOWN), Depth)]
@@ -63,7 +63,9 @@ def test_it_dives_and_measures_its_depth(robot: Robot, water: Simulator) -> None
     assert len(set(shown)) > 5
 
 
-def test_a_stuck_pressure_sensor_shows_the_same_depth_while_it_dives(robot: Robot, water: Simulator) -> None:
+def test_a_stuck_pressure_sensor_shows_the_same_depth_while_it_dives(
+    robot: EmulatedRobot, water: Simulator
+) -> None:
     robot.arm()
     robot.converse(1.0, DOWN)
     water.set_fault("pressure", SimulatedFault(kind="stuck"))
@@ -73,7 +75,7 @@ def test_a_stuck_pressure_sensor_shows_the_same_depth_while_it_dives(robot: Robo
     assert water.truth().position[2] > 0.2
 
 
-def test_an_encoder_that_drifts_turns_its_fin_away(robot: Robot, water: Simulator) -> None:
+def test_an_encoder_that_drifts_turns_its_fin_away(robot: EmulatedRobot, water: Simulator) -> None:
     robot.arm()
     robot.converse(2.0, DOWN)
     water.set_fault("encoder1", SimulatedFault(kind="drift", speed=0.2))
@@ -82,7 +84,9 @@ def test_an_encoder_that_drifts_turns_its_fin_away(robot: Robot, water: Simulato
     for _ in range(FLAPS_TICKS):
         packets += robot.converse(TICK, DOWN)
         angles.append(robot.board.fins().angles)
-    shown = [fmean(told) for told in zip(*[packet.angle for packet in all_of(packets, Motor)], strict=True)]
+    shown = [
+        fmean(report) for report in zip(*[packet.angle for packet in all_of(packets, Motor)], strict=True)
+    ]
     true = [fmean(angle) for angle in zip(*angles, strict=True)]
     # The firmware sees its fin where it wants it, and it stands 0.57 rad behind that by then.
     assert shown == pytest.approx([-math.pi / 2] * 4, abs=0.2)
@@ -90,7 +94,7 @@ def test_an_encoder_that_drifts_turns_its_fin_away(robot: Robot, water: Simulato
     assert true[2] - true[3] == pytest.approx(0, abs=0.15)
 
 
-def test_a_jumping_gyroscope_and_a_disappearing_beacon(robot: Robot, water: Simulator) -> None:
+def test_a_jumping_gyroscope_and_a_disappearing_beacon(robot: EmulatedRobot, water: Simulator) -> None:
     quiet = all_of(robot.listen(1.0), Imu)
     assert max(abs(part) for packet in quiet for part in packet.rate) < 0.05
     assert last(robot.listen(0.3), Beacon).right
@@ -112,7 +116,7 @@ def test_a_requested_bus_error_reaches_the_firmware(
         thread.start()
         try:
             wait_for(lambda: is_wet(rig.board), "the water")
-            robot = Robot(rig)
+            robot = EmulatedRobot(rig)
             robot.listen(1.0)
             assert robot.status().faults == 0
             for sensor, fault in (
@@ -130,7 +134,7 @@ def test_a_requested_bus_error_reaches_the_firmware(
 
 
 def is_wet(board: EmulatorClient) -> bool:
-    """True if another connection supplies the water."""
+    """Return True if another connection supplies the water."""
     try:
         board.sense(STILL_WATER)
     except BoardError:

@@ -17,7 +17,7 @@ from robot_runtime.simulation.boards.emulator_process import (
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.conftest import Make
-from tests.board.monitor import Monitor
+from tests.board.monitor import SerialMonitor
 from tests.board.rig import PATIENCE, PROGRAM, SKETCHES, wait_for
 
 
@@ -38,7 +38,7 @@ def test_the_water_is_asked_at_every_period(make_rig: Make) -> None:
 
 def test_the_answer_applies_before_time_advances(make_rig: Make) -> None:
     rig = make_rig("monitor")
-    monitor = Monitor(rig)
+    monitor = SerialMonitor(rig)
     monitor.boot()
     monitor.transfer(0x69, b"\x6b\0")
     count = 0
@@ -49,12 +49,12 @@ def test_the_answer_applies_before_time_advances(make_rig: Make) -> None:
         return STILL_WATER._replace(rate=(count * 0.01, 0.0, 0.0))
 
     rig.board.attach(0.005, water)
-    said = rig.exchange(b"T" + bytes([0x69, 1, 0x43, 2]), 0.05)
+    output = rig.exchange(b"T" + bytes([0x69, 1, 0x43, 2]), 0.05)
     # The transfer was over before the first answer; the next one sees the answers until then.
-    assert said[-2:] == b"\0\0"
+    assert output[-2:] == b"\0\0"
     assert count == 10
-    said = rig.exchange(b"T" + bytes([0x69, 1, 0x43, 2]), 0.05)
-    (counts,) = struct.unpack(">h", said[-2:])
+    output = rig.exchange(b"T" + bytes([0x69, 1, 0x43, 2]), 0.05)
+    (counts,) = struct.unpack(">h", output[-2:])
     assert counts == round(10 * 0.01 * 131.072 * 57.29577951308232)
 
 
@@ -103,7 +103,7 @@ def refused(board: EmulatorClient) -> bool:
 
 def test_after_losing_the_water_the_board_runs_on_with_the_last_values(make_rig: Make) -> None:
     rig = make_rig("monitor")
-    monitor = Monitor(rig)
+    monitor = SerialMonitor(rig)
     monitor.boot()
     with rig.process.connect() as water:
         water.attach(0.001, lambda _: STILL_WATER._replace(beacon_left=True))
@@ -171,10 +171,10 @@ def test_commands_may_come_in_pieces_or_several_at_once(make_rig: Make) -> None:
         for piece in (b"fau", b"lt imu abs", b"ent\nfault imu none\nst", b"ats\n"):
             client.sendall(piece)
             rig.board.stats()  # it has been read by now
-        said = b""
-        while said.count(b"\n") < 3:
-            said += client.recv(4096)
-    assert said.startswith(b"ok\nok\nstats time=0.000000 ")
+        answer = b""
+        while answer.count(b"\n") < 3:
+            answer += client.recv(4096)
+    assert answer.startswith(b"ok\nok\nstats time=0.000000 ")
 
 
 def test_a_line_without_an_end_closes_the_connection(make_rig: Make) -> None:

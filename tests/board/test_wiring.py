@@ -20,9 +20,8 @@ from robot_runtime.contract.wiring import (
 )
 from robot_runtime.generate.hardware import chip_pin
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER
-from tests.board.conftest import Make
-from tests.board.monitor import ACKNOWLEDGED_ADDRESS, Monitor
-from tests.board.rig import ROOT, Rig, build
+from tests.board.monitor import ACKNOWLEDGED_ADDRESS, SerialMonitor
+from tests.board.rig import ROOT, BoardRig, build
 
 SERIAL = {"D0", "D1"}
 """The chip's serial unit takes these whatever their direction says."""
@@ -38,36 +37,38 @@ def notes(built: None) -> Notes:  # noqa: ARG001 - it builds as well
     build(ROOT / "tests/board/pin_probe")
     command = [str(ROOT / "build/pin_probe/pin_probe"), str(ROOT / "build/firmware/robot.elf"), SECONDS]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    found: Notes = defaultdict(list)
+    result: Notes = defaultdict(list)
     for line in printed.splitlines():
         word, *rest = line.split()
-        found[word].append(rest)
-    return found
+        result[word].append(rest)
+    return result
 
 
 def board_pins(net: Net | None = None, *, driven: bool) -> set[str]:
-    """The board's pins that it drives, or reads, by the table; I2C is neither."""
-    wires = [one for one in WIRES if one.net is not Net.I2C and net in (None, one.net)]
+    """Return the board's pins that it drives, or reads, by the table; I2C is neither."""
+    wires = [wire for wire in WIRES if wire.net is not Net.I2C and net in (None, wire.net)]
     if driven:
-        return {one.source_pin for one in wires if one.source == "board"}
-    return {one.sink_pin for one in wires if one.sink == "board"} - {"VCC", "GND", "RST"}
+        return {wire.source_pin for wire in wires if wire.source == "board"}
+    return {wire.sink_pin for wire in wires if wire.sink == "board"} - {"VCC", "GND", "RST"}
 
 
 def find_wire(source: str, sink: str) -> Conductor:
-    """The only wire between these parts that is no supply."""
+    """Return the only wire between these parts that is no supply."""
     supplies = (Net.SUPPLY, Net.GROUND)
-    (wire,) = [one for one in WIRES if (one.source, one.sink) == (source, sink) and one.net not in supplies]
+    (wire,) = [
+        wire for wire in WIRES if (wire.source, wire.sink) == (source, sink) and wire.net not in supplies
+    ]
     return wire
 
 
 def find_pin(source: str, sink: str) -> str:
-    """The board's pin of the only wire between these parts."""
+    """Return the board's pin of the only wire between these parts."""
     wire = find_wire(source, sink)
     return wire.source_pin if source == "board" else wire.sink_pin
 
 
 def bits(rows: list[list[str]]) -> set[str]:
-    """The chip's pins in lines of a port and a mask."""
+    """Return the chip's pins in lines of a port and a mask."""
     return {f"P{port}{bit}" for port, mask in rows for bit in range(8) if int(mask, 16) >> bit & 1}
 
 
@@ -76,7 +77,7 @@ def on_chip(pins: set[str]) -> set[str]:
 
 
 def mask(pin: str) -> int:
-    """The bit of a pin in its port."""
+    """Return the bit of a pin in its port."""
     return 1 << int(chip_pin(pin)[2])
 
 
@@ -96,8 +97,9 @@ def test_each_fin_s_encoder_is_selected_by_its_pin(notes: Notes) -> None:
     assert low == 2 * in_turn
 
 
-def test_only_the_encoders_data_line_has_a_pull_up(notes: Notes) -> None:
-    assert bits(notes["pulled"]) == on_chip(board_pins(Net.SPI, driven=False))
+def test_only_the_encoders_data_line_and_the_leak_sensor_have_a_pull_up(notes: Notes) -> None:
+    pulled = board_pins(Net.SPI, driven=False) | {find_pin("leak_sensor", "board")}
+    assert bits(notes["pulled"]) == on_chip(pulled)
 
 
 def test_the_i2c_addresses_are_those_of_the_table(notes: Notes) -> None:
@@ -135,22 +137,10 @@ def test_the_serial_line_is_that_of_the_table(notes: Notes) -> None:
 # The emulated devices
 
 
-@pytest.fixture
-def rig(make_rig: Make) -> Rig:
-    return make_rig("monitor")
-
-
-@pytest.fixture
-def monitor(rig: Rig) -> Monitor:
-    monitor = Monitor(rig)
-    monitor.boot()
-    return monitor
-
-
-def test_the_emulated_bus_has_the_devices_of_the_table(rig: Rig, monitor: Monitor) -> None:
+def test_the_emulated_bus_has_the_devices_of_the_table(rig: BoardRig, monitor: SerialMonitor) -> None:
     monitor.outputs(mask(find_pin("board", "motor_regulator")))
     assert rig.board.fins().powered
-    answering = {one for one in range(8, 120) if monitor.transfer(one)[0] == ACKNOWLEDGED_ADDRESS}
+    answering = {address for address in range(8, 120) if monitor.transfer(address)[0] == ACKNOWLEDGED_ADDRESS}
     assert answering == {fin.address for fin in FINS} | {IMU_ADDRESS, PRESSURE_ADDRESS}
     for number, fin in enumerate(FINS):
         monitor.transfer(fin.address, bytes([0, 20 << 2 | 1]))
@@ -158,14 +148,18 @@ def test_the_emulated_bus_has_the_devices_of_the_table(rig: Rig, monitor: Monito
         assert rig.board.fins().drives[number] == 20
 
 
-def test_the_emulated_pins_are_those_of_the_table(rig: Rig, monitor: Monitor) -> None:
+def test_the_emulated_pins_are_those_of_the_table(rig: BoardRig, monitor: SerialMonitor) -> None:
     monitor.outputs(mask(find_pin("board", "led")))
     assert rig.board.led()
-    sides = {one.source_pin: mask(one.sink_pin) for one in WIRES if one.source == "detector"}
+    sides = {wire.source_pin: mask(wire.sink_pin) for wire in WIRES if wire.source == "detector"}
     rig.board.sense(STILL_WATER._replace(beacon_right=True, battery=BATTERY_MAX))
     assert monitor.inputs() & (sides["right"] | sides["left"]) == sides["right"]
     rig.board.sense(STILL_WATER._replace(beacon_left=True, battery=BATTERY_MAX))
     assert monitor.inputs() & (sides["right"] | sides["left"]) == sides["left"]
+    water = mask(find_pin("leak_sensor", "board"))
+    assert monitor.inputs() & water
+    rig.board.fault("leak", "wet")
+    assert not monitor.inputs() & water
     divider = find_wire("battery", "board")
     counts = monitor.adc(int(divider.sink_pin.removeprefix("A")))
     assert counts == pytest.approx(divider.level / 5 * 1023, abs=1)

@@ -6,7 +6,7 @@ from playwright.sync_api import Locator, Page, expect
 
 
 def arrange(page: Page) -> Locator:
-    """Begins to arrange; returns the bar of it."""
+    """Begin to arrange; return the bar of it."""
     page.get_by_role("button", name="Arrange", exact=True).click()
     bar = page.get_by_role("region", name="Arrange the panels")
     expect(bar).to_be_visible()
@@ -14,12 +14,12 @@ def arrange(page: Page) -> Locator:
 
 
 def handle(page: Page, title: str) -> Locator:
-    """The handle of the panel with this title."""
+    """Return the handle of the panel with this title."""
     return page.get_by_role("application", name=re.compile(f"^{title}: "))
 
 
 def add(page: Page, bar: Locator, title: str) -> None:
-    """Adds a panel."""
+    """Add a panel."""
     bar.get_by_role("button", name="Add a panel").click()
     bar.get_by_role("button", name=re.compile(f"^{title}")).click()
     expect(handle(page, title)).to_be_focused()

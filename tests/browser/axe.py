@@ -13,7 +13,7 @@ from tests.stack import ROOT
 
 AXE = ROOT / "frontend/node_modules/axe-core/axe.min.js"
 USUAL = "document, { resultTypes: ['violations'] }"
-PALE = "['.stale', '.away', '.old', '[style*=background]']"
+PALE = "['.dimmed', '.stale', '.old', '[style*=background]']"
 FOR_SUNLIGHT = f"{{ exclude: {PALE} }}, {{ runOnly: ['color-contrast-enhanced'] }}"
 """7:1, but for what is too old to be trusted, and on colours that are data, where black or white reach 4.5:1.
 
@@ -42,10 +42,10 @@ def opened_for_axe(browser: Browser, site: Site, cookies: StorageState, size: Vi
 
 def faults(page: Page, how: str = USUAL) -> list[str]:
     """Violations on the present page: the rule, and the place."""
-    found: dict[str, Any] = page.evaluate(f"axe.run({how})")
+    result: dict[str, Any] = page.evaluate(f"axe.run({how})")
     return [
         f"{fault['id']}: {fault['help']}: {node['target']} {node.get('failureSummary', '')}"
-        for fault in found["violations"]
+        for fault in result["violations"]
         if fault["impact"] in GRAVE
         for node in fault["nodes"][:3]
     ]

@@ -34,7 +34,7 @@ class PagePerson:
         expect(self.page.get_by_text(f"of {len(STEPS)} steps done").first).to_be_visible(timeout=UPLOAD_MS)
 
     def report(self) -> str:
-        """The newest report, written at the end."""
+        """Return the newest report, written at the end."""
         self.end()
         return self._stack.api.get("/bring-up/report").text
 
@@ -64,6 +64,7 @@ class PagePerson:
             "fin": self._turn_by_hand,
             "motor": self._hold,
             "beacons": lambda _: self._shine(),
+            "leak": lambda _: self._wet(),
             "store": lambda _: self._press("Store it in the board"),
         }
         self.open(step)
@@ -77,13 +78,13 @@ class PagePerson:
         expect(self.page.get_by_role("heading", name=TITLES[step])).to_be_visible()
 
     def state(self, step: str) -> str:
-        """The state of a step, as the list says it."""
-        words = self._steps.get_by_role("link", name=TITLES[step]).inner_text()
+        """Return the state of a step, as the list says it."""
+        text = self._steps.get_by_role("link", name=TITLES[step]).inner_text()
         states = {"done": "done", "something is wrong": "wrong", "skipped": "skipped"}
-        return next((state for said, state in states.items() if words.endswith(said)), "open")
+        return next((state for answer, state in states.items() if text.endswith(answer)), "open")
 
     def advice(self) -> str:
-        """All advice of the open step."""
+        """Return all advice of the open step."""
         table = self.page.get_by_role("table", name="Results")
         return " ".join(table.locator(".advice").all_inner_texts())
 
@@ -123,7 +124,7 @@ class PagePerson:
     def _settle(self) -> None:
         """Wait until the board's readings have followed: for two more looks of the page at them."""
         for _ in range(2):
-            with self.page.expect_response(lambda one: one.url.endswith("/api/bring-up")):
+            with self.page.expect_response(lambda response: response.url.endswith("/api/bring-up")):
                 pass
 
     def _compare(self) -> None:
@@ -149,13 +150,13 @@ class PagePerson:
         self._choose("Place of the pressure sensor", "Above the water")
 
     def _turn_by_hand(self, fin: int) -> None:
-        place = self.page.get_by_role("listitem", name=f"Fin {FINS[fin]}")
+        element = self.page.get_by_role("listitem", name=f"Fin {FINS[fin]}")
         for way, angle, action in (
             ("Along", "0", "It points along its mount"),
             ("Tip down", "90", "Its tip points down"),
         ):
-            place.get_by_role("button", name=way).click()
-            expect(place.get_by_role("img", name=f"{angle}° from its mount")).to_be_visible()
+            element.get_by_role("button", name=way).click()
+            expect(element.get_by_role("img", name=f"{angle}° from its mount")).to_be_visible()
             self._settle()
             self._press(action)
 
@@ -176,7 +177,7 @@ class PagePerson:
         self._press("This one turned")
 
     def angles(self) -> list[float]:
-        """The fins' angles as the page shows them, rad."""
+        """Return the fins' angles as the page shows them, rad."""
         shown = []
         for name in FINS:
             picture = self.page.get_by_role("listitem", name=f"Fin {name}").get_by_role("img")
@@ -193,6 +194,12 @@ class PagePerson:
         self._choose("Place of the lamp", "left")
         self._press("Lamp at the left")
         self._choose("Place of the lamp", "Away")
+
+    def _wet(self) -> None:
+        self._choose("Ends of the leak sensor", "In water")
+        self._press("The ends are in water")
+        self._choose("Ends of the leak sensor", "Dry")
+        self._press("They are dry again")
 
 
 def wait_for_the_robot(stack: Stack) -> None:

@@ -7,7 +7,7 @@ import httpx
 from playwright.sync_api import BrowserContext
 
 from server.platform.settings import DataFolder
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 
 EXECUTABLE = Path(__file__).with_name("chromium.sh")
 """The whole browser, for the benchmark, the screenshots, and what needs a window."""
@@ -30,8 +30,8 @@ SECRET = "mucat.page_secret"
 
 
 def sign_in(context: BrowserContext, url: str, data: Path) -> str:
-    """Pair this browser with the server of this data folder, as an operator's; returns its page's secret."""
-    with httpx.Client(base_url=f"{url}/api/access", auth=ShellToken(DataFolder(data))) as shell:
+    """Pair this browser with the server of this data folder, as an operator's; return its page's secret."""
+    with httpx.Client(base_url=f"{url}/api/access", auth=ShellAuth(DataFolder(data))) as shell:
         made = shell.post("/codes", json={"role": "operator"}).raise_for_status().json()
     paired = context.request.post(
         f"{url}/api/access/pair", data={"code": made["code"], "name": "Chromium"}, headers={"Origin": url}

@@ -12,7 +12,7 @@ REFUSED = (409, 503, 504)
 
 
 def wait_for_depth(page: Page, low: float, high: float) -> None:
-    """Waits until the shown depth (m) lies between `low` and `high`."""
+    """Wait until the shown depth (m) lies between `low` and `high`."""
     page.wait_for_function(
         """([low, high]) => {
             const readings = [...document.querySelectorAll('.reading')];
@@ -26,7 +26,7 @@ def wait_for_depth(page: Page, low: float, high: float) -> None:
 
 
 def hold_to_arm(page: Page, armed: Locator | None = None) -> None:
-    """Holds the button until the robot is armed, which `armed` shows, or the usual words.
+    """Hold the button until the robot is armed, which `armed` shows, or the usual words.
 
     On a busy computer a board may be late at that moment, and the runtime refuses; or news may be, and the
     button does nothing. Then it is held again, as a person does.
@@ -34,7 +34,10 @@ def hold_to_arm(page: Page, armed: Locator | None = None) -> None:
     button = page.get_by_role("button", name="Hold to arm")
     in_vain = page.get_by_role("button", name=re.compile("^Not now|^Release, then"))
     answers: list[int] = []
-    page.on("response", lambda one: answers.append(one.status) if one.url.endswith("/commands/arm") else None)
+    page.on(
+        "response",
+        lambda response: answers.append(response.status) if response.url.endswith("/commands/arm") else None,
+    )
     end = time.monotonic() + HOLD_SECONDS
     while not answers or answers[-1] in REFUSED:
         assert time.monotonic() < end, answers
@@ -50,13 +53,13 @@ def hold_to_arm(page: Page, armed: Locator | None = None) -> None:
 
 
 def arm_by_hand(page: Page) -> None:
-    """Chooses manual and arms."""
+    """Choose manual and arm."""
     page.get_by_role("button", name="Manual", exact=True).click()
     hold_to_arm(page)
     expect(page.get_by_role("region", name="Drive")).to_be_visible()
 
 
-def expect_surge(page: Page, words: str) -> None:
-    """Expects these words for the surge of the navigation command."""
+def expect_surge(page: Page, message: str) -> None:
+    """Expect these words for the surge of the navigation command."""
     command = page.get_by_role("region", name="Navigation command")
-    expect(command.locator(".word").first).to_have_text(words)
+    expect(command.locator(".word").first).to_have_text(message)

@@ -62,7 +62,7 @@ class Firefox:
         self._process.communicate(timeout=ANSWER_SECONDS)
 
     def call(self, method: str, **params: Any) -> dict[str, Any]:
-        """The result of a BiDi command; errors that the console shows meanwhile become complaints."""
+        """Return the result of a BiDi command; errors that the console shows meanwhile become complaints."""
         number = next(self._numbers)
         self._socket.send(json.dumps({"id": number, "method": method, "params": params}))
         while True:
@@ -78,7 +78,7 @@ class Firefox:
         self.call("browsingContext.navigate", context=self._page, url=url, wait="complete")
 
     def evaluate(self, expression: str) -> dict[str, Any]:
-        """The value of a JavaScript expression, or of its promise, with its type."""
+        """Return the value of a JavaScript expression, or of its promise, with its type."""
         answer = self.call(
             "script.evaluate", expression=expression, target={"context": self._page}, awaitPromise=True
         )

@@ -42,11 +42,12 @@ PAGES = (
     View("sessions-compare", "sessions/compare/{first},{second}", "Over time"),
     View("replay", "replay/{first}/{moment}", "of Dive to half"),
     View("system", "system", "Parts"),
+    View("gamepads", "gamepads", "Gamepads"),
     View("people", "people", "Browsers and programs"),
     View("bring-up", "bring-up", "Bring-up"),
 )
 
-LIVE = tuple(one for one in PAGES if one.address.startswith(("operate", "tune", "system")))
+LIVE = tuple(page for page in PAGES if page.address.startswith(("operate", "tune", "system")))
 """Those that show the state of the robot."""
 
 
@@ -63,7 +64,7 @@ def fill(site: Site) -> None:
 
 
 def topics(site: Site, session: int) -> set[str]:
-    """Names of the topics of which a session holds samples."""
+    """Return the names of the topics of which a session holds samples."""
     return {topic["name"] for topic in site.api.get(f"/sessions/{session}").json()["topics"]}
 
 
@@ -74,7 +75,7 @@ def samples(site: Site, session: int) -> int:
 
 def show(page: Page, site: Site, view: View) -> None:
     """Open a page, and wait until its contents are shown."""
-    there = {one["name"]: one for one in site.api.get("/sessions").json()}
+    there = {session["name"]: session for session in site.api.get("/sessions").json()}
     first, second = (there[name] for name in SESSIONS)
     names = {
         "first": first["id"],

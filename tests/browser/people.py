@@ -9,7 +9,7 @@ from tests.browser.site import Site
 
 
 def make_link(site: Site, role: str) -> str:
-    """A link that signs one browser in."""
+    """Return a link that signs one browser in."""
     made = site.api.post("/access/codes", json={"role": role}).raise_for_status()
     # At the address that the tests open, where the link of a shell has the name that a start prints.
     return f"{site.url}/#pair={made.json()['code']}"

@@ -37,8 +37,8 @@ RELAY = {"kind": "relay", "set_point": 0.6, "amplitude": 1.0, "hysteresis": 0.01
 
 def choose(stack: Stack, controller: str) -> None:
     """Steer the depth by this controller."""
-    wanted = {"name": "depth", "controller": controller}
-    stack.api.post("/robot/commands/loop", json=wanted).raise_for_status()
+    request = {"name": "depth", "controller": controller}
+    stack.api.post("/robot/commands/loop", json=request).raise_for_status()
 
 
 def tune_parameters(stack: Stack, **values: float | str) -> None:
@@ -72,8 +72,8 @@ def tune(stack: Stack) -> None:
     stack.api.post("/robot/stop").raise_for_status()
 
 
-def experiment(stack: Stack, wanted: dict[str, object]) -> None:
-    stack.api.post("/tuning/runs", json=wanted).raise_for_status()
+def experiment(stack: Stack, request: dict[str, object]) -> None:
+    stack.api.post("/tuning/runs", json=request).raise_for_status()
     wait(lambda: stack.api.get("/tuning/state").json()["active"] is None, "the experiment to end", 90.0)
 
 
@@ -105,7 +105,7 @@ def take(browser: Browser, stack: Stack, folder: Path) -> None:
             context.add_init_script(f"localStorage.setItem('mucat-theme', '{theme}')")
             page = context.new_page()
             page.goto(stack.url)
-            expect(page.get_by_role("button", name=re.compile("^Control: this page"))).to_be_visible()
+            expect(page.get_by_role("button", name=re.compile("^Control: you have control"))).to_be_visible()
             for view in PAGES:
                 show(page, stack, view)
                 draw(page)

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Literal
 from urllib.parse import urlencode
 
-from server.features.doors.layouts import FOLDER
 from tests.browser.site import Site
 from tests.stack import ROOT
 
 CLIENTS = ROOT / "tests/clients"
 PACKAGES = CLIENTS / "node_modules"
+LAYOUTS = ROOT / "server/features/doors/documents"
 
 
 class _QuietHandler(SimpleHTTPRequestHandler):
@@ -31,7 +31,7 @@ def serve_studio(folder: Path) -> Iterator[str]:
         "assets": PACKAGES / "@foxglove/studio-base/assets",
         "react": PACKAGES / "react/umd",
         "react-dom": PACKAGES / "react-dom/umd",
-        "layouts": FOLDER,
+        "layouts": LAYOUTS,
         "index.html": CLIENTS / "studio/index.html",
         "studio.js": CLIENTS / "studio/studio.js",
     }
@@ -46,7 +46,7 @@ def serve_studio(folder: Path) -> Iterator[str]:
 
 
 def studio_address(program: str, site: Site, layout: Literal["foxglove", "lichtblick"]) -> str:
-    """The address at which the program opens the site's Foxglove door, with a new token and this layout."""
+    """Return the address at which the program opens the site's Foxglove door, with a new token."""
     made = site.api.post("/access/tokens", json={"name": "Studio", "scope": "operate"}).raise_for_status()
     door = f"ws://127.0.0.1:{site.port}/foxglove?token={made.json()['token']}"
     query = {"layout": f"layouts/{layout}.json", "ds": "foxglove-websocket", "ds.url": door}

@@ -56,9 +56,9 @@ def test_a_saved_profile_has_no_serious_violation(seen: Page, stack: Stack) -> N
     (parameters,) = (view for view in LIVE if view.name == "tune-parameters")
     show(seen, stack, parameters)
     expect(seen.get_by_role("link", name="Download seen")).to_be_visible()
-    found = faults(seen)
+    result = faults(seen)
     stack.api.delete(f"/profiles/{saved}").raise_for_status()
-    assert found == []
+    assert result == []
 
 
 def test_menus_of_the_bar_have_no_serious_violation(seen: Page, stack: Stack) -> None:
@@ -103,8 +103,8 @@ def test_a_viewer_sees_the_reason_before_an_attempt(browser: Browser, stack: Sta
         "system": ["Download a backup", "Hold to check the fins"],
         "operate": ["Hold to arm"],
     }
-    for place, names in refused.items():
-        page.goto(f"{stack.url}/#/{place}")
+    for position, names in refused.items():
+        page.goto(f"{stack.url}/#/{position}")
         for name in names:
             expect(page.get_by_role("button", name=name).first).to_be_disabled()
     expect(page.get_by_role("button", name="STOP")).to_be_enabled()

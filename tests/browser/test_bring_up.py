@@ -37,11 +37,11 @@ def person(page: Page, stack: Stack) -> Iterator[PagePerson]:
 def test_a_robot_is_brought_up_step_by_step(person: PagePerson, page: Page) -> None:
     for step in STEPS:
         if step.name in FOUND:
-            mistake, words = FOUND[step.name]
+            mistake, text = FOUND[step.name]
             person.spoil(mistake)
             person.do(step.name)
             assert person.state(step.name) == "wrong"
-            assert words in person.advice()
+            assert text in person.advice()
             person.mend()
         person.do(step.name)
         assert person.state(step.name) == "done", person.advice()
@@ -74,7 +74,7 @@ def test_a_held_motor_is_released_a_step_skipped_and_a_step_accessible(
     expect(page.get_by_text("The runtime does not answer")).to_have_count(0)
     person.skip("battery")
     page.reload()
-    expect(page.get_by_role("link", name="Battery")).to_have_text("– Battery skipped")
+    expect(page.get_by_role("link", name="Battery")).to_have_text("Battery skipped")
 
     person.open("motor_1")
     with EmulatorClient(stack.data / "run/board.sock") as board:

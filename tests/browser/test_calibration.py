@@ -69,8 +69,8 @@ def test_the_gyroscope_is_measured_saved_and_restored(any_page: Page, stack: Sta
     assert measured["gyro_bias"] != before["gyro_bias"]
     assert {**measured, "gyro_bias": 0} == {**before, "gyro_bias": 0}
 
-    wanted = before | {"pressure_offset": 250, "fin_zeros": [188, 161, 700, 356]}
-    choose(panel, tmp_path / "other.json", wanted)
+    expected = before | {"pressure_offset": 250, "fin_zeros": [188, 161, 700, 356]}
+    choose(panel, tmp_path / "other.json", expected)
     rows = panel.get_by_role("region", name="other.json would change:").get_by_role("row")
     offset = f"{before['pressure_offset'] / 100:.2f} hPa"
     expect(rows.filter(has_text="Pressure sensor")).to_have_text(f"Pressure sensor{offset}2.50 hPa")
@@ -80,7 +80,7 @@ def test_the_gyroscope_is_measured_saved_and_restored(any_page: Page, stack: Sta
     panel.get_by_text("Values on the board").click()
     expect(panel.get_by_role("row", name="back left")).to_have_text("back left700risefall")
     expect(panel.get_by_role("definition").filter(has_text="hPa")).to_have_text("2.50hPa")
-    assert saved(page, panel)[1] == wanted
+    assert saved(page, panel)[1] == expected
 
 
 def test_files_that_cannot_be_stored_are_refused_in_words(page: Page, stack: Stack, tmp_path: Path) -> None:

@@ -120,12 +120,12 @@ def test_instruments_move_without_a_change_of_any_element(moving: Page) -> None:
     wait_for_depth(moving, 0.2, 1.0)
     # A message that comes or goes moves the panels once; a drawing would change its elements each time.
     seen = [moving.evaluate(CHANGES) for _ in range(WINDOWS)]
-    assert all(one["parts"] >= 3 for one in seen)
-    assert [] in [one["changes"] for one in seen]
+    assert all(frame["parts"] >= 3 for frame in seen)
+    assert [] in [frame["changes"] for frame in seen]
 
 
 def find_shift(before: NDArray[np.float64], after: NDArray[np.float64]) -> int:
-    """The columns by which the later trace is the earlier one moved to the left."""
+    """Return the columns by which the later trace is the earlier one moved to the left."""
     most = len(before) // 2
     errors = [np.nanmean(np.abs(before[shift:] - after[: len(after) - shift])) for shift in range(most)]
     return int(np.argmin(errors))
@@ -141,15 +141,15 @@ def check_heights(page: Page, rows: list[Any]) -> None:
     steps = np.abs(np.diff(heights, prepend=heights[0], append=heights[-1]))
     drawn = np.flatnonzero(np.maximum(steps[1:], steps[:-1]) < STEEP).tolist()
     assert len(drawn) > len(rows) / 2
-    found = []
+    results = []
     for column in drawn[20 : -20 : len(drawn) // 10]:
         page.mouse.move(box["x"] + column, box["y"] + box["height"] / 2)
-        words = cursor.get_attribute("aria-valuetext") or ""
-        told = re.search(r"depth (−?[\d.]+)(?: to (−?[\d.]+))? m", words)
-        assert told is not None
-        depths = [float(one.replace("−", "-")) for one in told.groups() if one is not None]
-        found.append((float(np.mean(depths)), heights[column]))
-    depths, seen = np.array(found).T
+        text = cursor.get_attribute("aria-valuetext") or ""
+        match = re.search(r"depth (−?[\d.]+)(?: to (−?[\d.]+))? m", text)
+        assert match is not None
+        depths = [float(group.replace("−", "-")) for group in match.groups() if group is not None]
+        results.append((float(np.mean(depths)), heights[column]))
+    depths, seen = np.array(results).T
     assert np.ptp(depths) > 0.1
     scale, zero = np.polyfit(depths, seen, 1)
     assert scale > 0, "depth grows downwards"

@@ -17,7 +17,7 @@ DRAWN = 500
 
 
 def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
-    """Record a short session through the interface. Returns its number."""
+    """Record a short session through the interface. Return its number."""
     session = stack.api.post("/sessions", json={"name": name}).raise_for_status().json()
     page.goto(f"{stack.url}/#/operate")
     if armed:
@@ -32,13 +32,13 @@ def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
 def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, tmp_path: Path) -> None:
     complaints: list[str] = []
     page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
-    one = record(page, stack, "with fins", armed=True)
+    first = record(page, stack, "with fins", armed=True)
     other = record(page, stack, "without", armed=False)
     order: list[str] = []
     page.on("request", lambda request: order.append(f"ask {request.url}"))
     page.on("response", lambda response: order.append(f"got {response.url}"))
     held = hold_figures(page)
-    page.goto(f"{stack.url}/#/sessions/compare/{one},{other}")
+    page.goto(f"{stack.url}/#/sessions/compare/{first},{other}")
     expect(page.get_by_role("link", name="with fins", exact=True)).to_be_visible(timeout=STEP_MS)
     expect(page.locator(LINES)).to_have_count(4, timeout=STEP_MS)
     expect(page.get_by_text("Figures are being computed…")).to_be_visible()
@@ -84,12 +84,12 @@ def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, t
 
 
 def hold_figures(page: Page) -> list[Route]:
-    """Keep questions for figures from the server, since no line waits for them. Returns the questions."""
+    """Keep questions for figures from the server, since no line waits for them. Return the questions."""
     held: list[Route] = []
 
     def look(route: Route) -> None:
-        wanted = route.request.post_data_json or {}
-        if wanted["figures"]:
+        expected = route.request.post_data_json or {}
+        if expected["figures"]:
             held.append(route)
         else:
             route.continue_()
@@ -101,10 +101,14 @@ def hold_figures(page: Page) -> list[Route]:
 def check_order(order: list[str]) -> None:
     """Plotly is fetched while the server compares; the list of signals waits until that is done."""
 
-    def place(start: str, part: str) -> int:
+    def position_of(start: str, part: str) -> int:
         return next(at for at, line in enumerate(order) if line.startswith(start) and part in line)
 
-    assert place("ask", "/assets/plotly-basic") < place("got", "/api/compare") < place("ask", "/signals")
+    assert (
+        position_of("ask", "/assets/plotly-basic")
+        < position_of("got", "/api/compare")
+        < position_of("ask", "/signals")
+    )
 
 
 def check_files(page: Page, folder: Path) -> None:

@@ -19,7 +19,7 @@ from tests.browser.conftest import put_to_rest
 from tests.browser.driving import arm_by_hand, expect_surge
 from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE, SMALL_PHONE, opened_page
 from tests.exports import export_session
-from tests.proofs.watching import Fins
+from tests.proofs.watching import FinWatch
 from tests.stack import Stack
 
 NEUTRAL_SECONDS = 0.5
@@ -32,7 +32,7 @@ GAMEPAD = """
   const buttons = Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 }));
   globalThis.pad = {
     id: 'Test pad (Vendor: 0000)', index: 0, connected: true, mapping: 'standard',
-    axes: [0, 0, 0, 0], buttons,
+    axes: [0, 0, 0, 0], buttons, get timestamp() { return performance.now(); },
   };
   navigator.getGamepads = () => [globalThis.pad];
   dispatchEvent(Object.assign(new Event('gamepadconnected'), { gamepad: globalThis.pad }));
@@ -93,7 +93,7 @@ def test_keys_drive_only_on_a_visible_page(in_a_window: Page, stack: Stack) -> N
 
 
 def look_away(page: Page) -> float:
-    """Bring another tab to the front. Returns the time of it, s since 1970."""
+    """Bring another tab to the front. Return the time of it, s since 1970."""
     # By default Playwright gives every page the focus.
     session = page.context.new_cdp_session(page)
     session.send("Emulation.setFocusEmulationEnabled", {"enabled": False})
@@ -103,7 +103,7 @@ def look_away(page: Page) -> float:
 
 
 def exported(stack: Stack, session: int) -> dict[str, list[dict[str, str]]]:
-    """The tables of the session's archive."""
+    """Return the tables of the session's archive."""
     archive = zipfile.ZipFile(io.BytesIO(export_session(stack.api, session).content))
     return {
         name: list(csv.DictReader(io.StringIO(archive.read(name).decode())))
@@ -143,7 +143,7 @@ def resting_afterwards(stack: Stack, begin: Callable[[], object], *, power: bool
 
     How soon is measured in simulated time: tests/proofs/test_faults.py.
     """
-    fins = Fins(DataFolder(stack.data).board_socket)
+    fins = FinWatch(DataFolder(stack.data).board_socket)
     try:
         begin()
         until_seen(lambda: fins.seen[-1:] and fins.seen[-1].moving)
@@ -153,8 +153,8 @@ def resting_afterwards(stack: Stack, begin: Callable[[], object], *, power: bool
         fins.close()
 
 
-def at_rest(fins: Fins) -> bool:
-    moved = next(one.board for one in reversed(fins.seen) if one.moving)
+def at_rest(fins: FinWatch) -> bool:
+    moved = next(sample.board for sample in reversed(fins.seen) if sample.moving)
     return fins.seen[-1].board - moved > STILL
 
 
@@ -211,8 +211,8 @@ def test_a_phone_shows_the_picture_with_the_sticks(
         page.get_by_role("img", name="right stick"),
         page.get_by_role("button", name="STOP"),
     ]
-    for one in seen:
-        expect(one).to_be_in_viewport(ratio=1)
+    for element in seen:
+        expect(element).to_be_in_viewport(ratio=1)
     context.close()
     put_to_rest(stack)
 
@@ -238,7 +238,7 @@ def test_two_thumbs_drive_on_a_phone_and_nothing_scrolls(
         page.get_by_role("img", name=f"{side} stick").bounding_box() for side in ("left", "right")
     ]
     middles = [{"x": box["x"] + box["width"] / 2, "y": box["y"] + box["height"] / 2} for box in boxes]
-    ends = [{"x": one["x"], "y": one["y"] - 60} for one in middles]
+    ends = [{"x": middle["x"], "y": middle["y"] - 60} for middle in middles]
 
     def touch(kind: str, *points: dict[str, float]) -> None:
         thumbs.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": list(points)})
@@ -246,14 +246,14 @@ def test_two_thumbs_drive_on_a_phone_and_nothing_scrolls(
     touch("touchStart", *middles)
     touch("touchMove", *ends)
     page.get_by_role("tab", name="Motion").evaluate("(tab) => tab.click()")
-    words = page.get_by_role("region", name="Navigation command").locator(".word")
-    expect(words.nth(2)).to_have_text("up")
-    expect(words.nth(4)).to_have_text("nose up")
+    text = page.get_by_role("region", name="Navigation command").locator(".word")
+    expect(text.nth(2)).to_have_text("up")
+    expect(text.nth(4)).to_have_text("nose up")
     elsewhere = {"x": 195, "y": boxes[0]["y"] - 40}
     touch("touchStart", *ends, elsewhere)
     touch("touchMove", *ends, elsewhere | {"y": elsewhere["y"] - 120})
     assert page.evaluate("() => document.querySelector('main').scrollTop") == scrolled
     touch("touchEnd")
-    expect(words.nth(2)).to_have_text("")
+    expect(text.nth(2)).to_have_text("")
     context.close()
     put_to_rest(stack)

@@ -15,6 +15,7 @@ DEPTH = "Number([...document.querySelectorAll('.reading')].find((one) => one.tex
 DEPTH += "?.querySelector('.value')?.textContent.replace('−', '-'))"
 CONNECTED = "/\\d:\\d/.test(document.querySelector('.top time')?.textContent)"
 """The page tells the robot's time once it hears from it."""
+SHEET = "document.querySelector('.sheet:popover-open') !== null"
 VIEWS = [view for view in PAGES if "{" not in view.address]
 
 
@@ -42,9 +43,14 @@ def test_firefox_dives_and_stops_by_a_key(firefox: Firefox, stack: Stack) -> Non
     firefox.release_mouse()
     assert stack.api.get("/robot").json()["armed"]
     firefox.wait_for(f"{DEPTH} > 0.2")
+    firefox.move_to_button("you have control")
+    firefox.press_mouse()
+    firefox.release_mouse()
+    firefox.wait_for(SHEET)
     firefox.press_key(ESCAPE)
     firefox.wait_for("!document.body.textContent.includes('The fins may move')")
     assert not stack.api.get("/robot").json()["armed"]
+    firefox.wait_for(SHEET)
 
 
 def test_firefox_opens_every_page(firefox: Firefox, stack: Stack) -> None:
@@ -63,7 +69,7 @@ def test_firefox_reads_a_decimal_comma_and_drops_no_character(firefox: Firefox, 
     firefox.open(f"{stack.url}/#/tune/parameters")
     fields = "[...document.querySelectorAll('[role=spinbutton]')]"
     find = f"{fields}.find((one) => one.labels[0]?.textContent === 'control.set_point')"
-    firefox.wait_for(find)
+    firefox.wait_for(f"{find}?.matches(':enabled')")
     for typed, invalid in (("0,6", "false"), ("1,234", "true"), ("0.6 m", "false")):
         firefox.evaluate(f"{find}.focus(), {find}.select()")
         for key in typed:

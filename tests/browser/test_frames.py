@@ -12,7 +12,7 @@ def open_system(page: Page, stack: Stack) -> None:
     """Open System, and wait for what comes late: it moves the frames, which stand below all that."""
     page.goto(f"{stack.url}/#/system")
     control = page.get_by_role("button", name=re.compile("^Control:"))
-    expect(control).to_have_accessible_name("Control: this page")
+    expect(control).to_have_accessible_name("Control: you have control")
     expect(page.get_by_role("region", name="Other programs").get_by_text("Closed.")).to_be_visible()
     expect(page.locator("summary", has_text="good check")).to_be_visible()
 
@@ -36,7 +36,7 @@ def test_the_last_frames_are_shown_decoded(any_page: Page, stack: Stack) -> None
     panel.get_by_label("Kind of message").select_option("heartbeat")
     texts = rows.all_inner_texts()
     assert texts
-    assert all("heartbeat" in text and "→" in text for text in texts)
+    assert all("heartbeat" in text and "to board" in text for text in texts)
     panel.get_by_role("button", name="Bytes").click()
     expect(panel.locator("code").first).to_have_text(re.compile(r"^([0-9a-f]{2} )+00$"))
 

@@ -33,21 +33,21 @@ steps = [
 
 
 def step(mission: Locator, path: str) -> Locator:
-    """The row of a step."""
+    """Return the row of a step."""
     return mission.locator(f'[data-path="{path}"]')
 
 
 def begin(page: Page, stack: Stack) -> int:
-    """Records, and begins the mission. Returns the session."""
+    """Record, and begin the mission. Return the session."""
     control = page.get_by_role("button", name=re.compile("^Control:"))
     # A page that has just come takes control that is free, and would do so again.
-    expect(control).to_have_accessible_name("Control: this page")
+    expect(control).to_have_accessible_name("Control: you have control")
     stack.calm()
     session: int = stack.api.post("/sessions", json={"name": "a mission"}).json()["id"]
     stack.api.post("/missions/start", json={"text": TEXT}, timeout=30.0).raise_for_status()
     control.click()
     page.get_by_role("button", name="Take control").click()
-    expect(control).to_have_accessible_name("Control: this page")
+    expect(control).to_have_accessible_name("Control: you have control")
     return session
 
 
@@ -85,7 +85,7 @@ def test_it_is_watched_taken_over_handed_back_and_replayed(page: Page, stack: St
     assert recorded["document"] == TEXT
     check_session(page, stack, session)
     check_comparison(page, stack, session)
-    check_replay(page, stack, session, {one["path"]: one["time"] for one in recorded["started"]})
+    check_replay(page, stack, session, {step["path"]: step["time"] for step in recorded["started"]})
 
 
 def check_session(page: Page, stack: Stack, session: int) -> None:

@@ -63,6 +63,6 @@ def test_a_mission_is_started_by_a_hold_and_ends_disarmed(page: Page, stack: Sta
     wait(ended, "the mission to end", STEP_MS / 1000)
     state = stack.api.get("/missions/state").json()
     assert (state["phase"], state["name"]) == ("succeeded", "from_the_page")
-    assert [one["status"] for one in state["steps"]] == ["done", "done", "done"]
+    assert [step["status"] for step in state["steps"]] == ["done", "done", "done"]
     expect(bar.get_by_text("Disarmed")).to_be_visible(timeout=STEP_MS)
     expect(page.get_by_role("button", name="Hold to start the mission")).to_be_enabled(timeout=STEP_MS)

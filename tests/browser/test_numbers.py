@@ -21,7 +21,7 @@ def page(request: pytest.FixtureRequest, browser: Browser, cookies: object, stac
 
 def set_point(stack: Stack) -> object:
     listed = stack.api.get("/parameters").raise_for_status().json()["parameters"]
-    return next(one["value"] for one in listed if one["name"] == SET_POINT)
+    return next(parameter["value"] for parameter in listed if parameter["name"] == SET_POINT)
 
 
 def test_a_set_point_is_what_was_typed_or_stays_what_it_was(page: Page, stack: Stack) -> None:

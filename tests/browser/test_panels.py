@@ -72,12 +72,12 @@ def fresh(page: Page, stack: Stack) -> Iterator[Page]:
 
 
 def listen_on_both() -> tuple[socket.socket, socket.socket]:
-    """A TCP and a UDP socket of the loopback with the same port."""
+    """Return a TCP and a UDP socket of the loopback with the same port."""
     tcp = socket.create_server(("127.0.0.1", 0))
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     udp.bind(tcp.getsockname())
-    for one in (tcp, udp):
-        one.setblocking(False)
+    for connection in (tcp, udp):
+        connection.setblocking(False)
     return tcp, udp
 
 
@@ -90,7 +90,9 @@ def test_an_own_panel_gets_samples_and_has_no_other_access(fresh: Page, stack: S
     (folder / "nosy.js").write_text(NOSY.replace("PORT", str(listeners[0].getsockname()[1])))
     (folder / "broken.js").write_text("export default 1;")
     answered: list[str] = []
-    page.on("response", lambda one: answered.append(one.url) if one.frame.parent_frame else None)
+    page.on(
+        "response", lambda response: answered.append(response.url) if response.frame.parent_frame else None
+    )
     bar = arrange(page)
     for title in ("Climb rate", "Nosy", "Broken"):
         add(page, bar, title)
@@ -108,7 +110,9 @@ def test_an_own_panel_gets_samples_and_has_no_other_access(fresh: Page, stack: S
         stream.accept()
     with datagrams, pytest.raises(BlockingIOError):
         datagrams.recv(1)
-    assert {one for one in answered if not one.startswith("blob:")} == {f"{stack.url}/api/panels/frame"}
+    assert {address for address in answered if not address.startswith("blob:")} == {
+        f"{stack.url}/api/panels/frame"
+    }
 
     # Keys go to the page, also after a click into a panel.
     hold_to_arm(page)

@@ -14,7 +14,7 @@ AMPLITUDE = "fins.amplitude"
 
 def value(stack: Stack, name: str) -> object:
     listed = stack.api.get("/parameters").raise_for_status().json()["parameters"]
-    return next(one["value"] for one in listed if one["name"] == name)
+    return next(parameter["value"] for parameter in listed if parameter["name"] == name)
 
 
 @pytest.fixture

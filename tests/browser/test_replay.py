@@ -11,7 +11,7 @@ from tests.stack import Stack
 
 
 def record_a_dive(page: Page, stack: Stack) -> tuple[int, float, float]:
-    """Record a dive to 0.5 m. Returns the session, the time of a bookmark (s), and the depth there (m)."""
+    """Record a dive to 0.5 m. Return the session, the time of a bookmark (s), and the depth there (m)."""
     session = stack.api.post("/sessions", json={"name": "to be replayed"}).json()["id"]
     hold_to_arm(page)
     wait_for_depth(page, 0.2, 0.6)
@@ -29,7 +29,7 @@ def at(time: float) -> dict[str, float]:
 
 
 def newest_depth(data: bytes) -> float:
-    (block,) = (one for one in read_blocks(data) if one.topic.name == "depth")
+    (block,) = (block for block in read_blocks(data) if block.topic.name == "depth")
     _, newest = read_rows(block)[-1]
     assert isinstance(newest, Depth)
     return newest.depth
@@ -73,7 +73,7 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     page.keyboard.press("Enter")
     expect(page.get_by_role("button", name="Bookmark the beginning")).to_be_attached()
     marks = stack.api.get(f"/sessions/{session}/timeline").json()["markers"]
-    assert [one["text"] for one in marks] == ["the beginning", "on the way down"]
+    assert [mark["text"] for mark in marks] == ["the beginning", "on the way down"]
     assert commands == []
 
     # The robot itself can be stopped from here, and is.
@@ -81,7 +81,7 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     expect(page.get_by_text("ARMED", exact=True)).to_be_visible()
     page.keyboard.press("Escape")
     expect(page.locator(".now")).to_contain_text("disarmed")
-    assert all(one.endswith("/robot/stop") for one in commands)
+    assert all(command.endswith("/robot/stop") for command in commands)
     # The page still shows the recording, and not what the robot did meanwhile.
     page.get_by_role("button", name="Next bookmark").click()
     wait_for_depth(page, there - 0.0051, there + 0.0051)

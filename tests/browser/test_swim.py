@@ -4,25 +4,20 @@ import csv
 import io
 import json
 import re
-import time
 import zipfile
-from collections.abc import Callable
 from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
 from statistics import median
-from typing import Any
 
-import pytest
 from playwright.sync_api import Page, expect
 
-from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 from tests.browser.driving import hold_to_arm, wait_for_depth
 from tests.stack import Stack
 
 
 def shown_depth(page: Page) -> tuple[datetime, float]:
-    """The shown depth, m, and the time at which it was shown, read in one moment of the page."""
+    """Return the shown depth, m, and the time at which it was shown, read in one moment of the page."""
     value = page.locator(".reading", has_text="Depth").locator(".value")
     milliseconds, text = value.evaluate("element => [Date.now(), element.innerText]")
     return datetime.fromtimestamp(milliseconds / 1000, UTC), float(text)
@@ -102,15 +97,15 @@ def check_export(path: Path, shown: list[tuple[datetime, float]]) -> None:
 
     depths = [(datetime.fromisoformat(row["utc"]), float(row["depth [m]"])) for row in tables["depth.csv"]]
     # Each shown value was recorded before, in this order; a busy computer shows some of them late.
-    ages, place = [], 0
+    ages, position = [], 0
     for when, value in shown:
         same = [
             index
             for index, (at, depth) in enumerate(depths)
-            if index >= place and at <= when and abs(depth - value) <= 0.0051
+            if index >= position and at <= when and abs(depth - value) <= 0.0051
         ]
         assert same, (when, value)
-        place = same[0]
+        position = same[0]
         ages.append((when - depths[same[-1]][0]).total_seconds())
     assert median(ages) < 0.6
 
@@ -142,24 +137,6 @@ def test_both_sizes_show_the_essential_elements(any_page: Page) -> None:
     assert any_page.evaluate(wider) == 0
 
 
-@pytest.mark.parametrize(
-    ("body", "why"),
-    [
-        ('{"name": "depth", "controller": "pid", "gains": {"kp": 51}}', "between 0 and 50"),
-        ('{"name": "depth", "controller": "fuzzy"}', "no controller 'fuzzy'"),
-        ('{"name": "depth", "controller": "pid", "gains": {"kp": NaN}}', ""),
-        ('{"name": "depth", "controller": "pid", "gains": {"kq": 1}}', "no gain 'kq'"),
-    ],
-)
-def test_a_refused_controller_is_reported_with_the_reason(stack: Stack, body: str, why: str) -> None:
-    before = stack.api.get("/robot").json()["loops"]
-    json = {"Content-Type": "application/json"}
-    answer = stack.api.post("/robot/commands/loop", content=body, headers=json)
-    assert answer.status_code in (409, 422)
-    assert why in answer.json()["detail"]
-    assert stack.api.get("/robot").json()["loops"] == before
-
-
 def test_a_lost_board_is_reported_and_recovers(page: Page, stack: Stack) -> None:
     expect(page.get_by_role("button", name="Hold to arm")).to_be_visible()
     board = stack.child("build/board")
@@ -182,30 +159,7 @@ def test_a_reload_keeps_the_events(page: Page) -> None:
     expect(events.filter(has_text="Armed.").first).to_be_visible()
     # The automatic recording ends 5 s after disarming, with a notice.
     expect(events.nth(0)).to_contain_text("has ended.", timeout=10_000)
-    told = events.count()
+    count = events.count()
     page.reload()
-    expect(events).to_have_count(told)
+    expect(events).to_have_count(count)
     expect(page.get_by_role("log").get_by_text("armed", exact=True).first).to_be_visible()
-
-
-@pytest.mark.usefixtures("_at_rest")
-def test_a_board_that_was_reset_is_disarmed_and_can_be_armed_again(stack: Stack) -> None:
-    stack.arm()
-    epoch = stack.api.get("/robot").json()["epoch"]
-    with EmulatorClient(stack.data / "run/board.sock") as board:
-        board.reset()
-    wait_for_state(stack, lambda state: state["mode"] == "failsafe" and state["epoch"] == epoch + 1)
-    stack.api.post("/robot/commands/acknowledge").raise_for_status()
-    wait_for_state(stack, lambda state: state["refusals"] == [])
-    # The chip requires half a second of steady traffic first, and names that in a refusal.
-    wait_for_state(stack, lambda _: stack.api.post("/robot/commands/arm").status_code == 204)
-    wait_for_state(stack, lambda state: bool(state["armed"]))
-    stack.api.post("/robot/stop").raise_for_status()
-
-
-def wait_for_state(stack: Stack, holds: Callable[[dict[str, Any]], bool]) -> None:
-    """Wait until the robot's state meets the condition."""
-    end = time.monotonic() + 10
-    while not holds(state := stack.api.get("/robot").json()):
-        assert time.monotonic() < end, state
-        time.sleep(0.05)

@@ -14,7 +14,7 @@ TUTORIAL = (DOCS / "use/tutorial.md").read_text(encoding="utf-8")
 
 
 def names_of(*steps: int) -> list[str]:
-    """The names in bold of these steps, in their order."""
+    """Return the names in bold of these steps, in their order."""
     chapters = re.split(r"^## (\d+)\. ", TUTORIAL, flags=re.MULTILINE)
     texts = dict(zip(map(int, chapters[1::2]), chapters[2::2], strict=True))
     return [name for step in steps for name in re.findall(r"\*\*(.+?)\*\*", texts[step])]
@@ -36,23 +36,26 @@ class Walker:
             hold_to_arm(self._page)
         elif panels.count():
             self._panel = panels
-        elif (button := self._place("button", name)) is not None:
+        elif (button := self._locate("button", name)) is not None:
             button.click()
         else:
-            choice = self._place("option", name)
+            choice = self._locate("option", name)
             assert choice is not None, f"the page has no {name}"
             choice.locator("xpath=..").select_option(choice.get_attribute("value"))
 
-    def _place(self, role: Literal["button", "option"], name: str) -> Locator | None:
-        for place in (self._panel, self._page):
-            if place is not None and (found := place.get_by_role(role, name=name, exact=True)).count():
-                return found
+    def _locate(self, role: Literal["button", "option"], name: str) -> Locator | None:
+        for position in (self._panel, self._page):
+            if (
+                position is not None
+                and (element := position.get_by_role(role, name=name, exact=True)).count()
+            ):
+                return element
         return None
 
 
 def test_the_tutorial_is_walked_word_by_word(page: Page, stack: Stack) -> None:
     def controller() -> str:
-        (depth,) = (one for one in stack.api.get("/robot").json()["loops"] if one["name"] == "depth")
+        (depth,) = (loop for loop in stack.api.get("/robot").json()["loops"] if loop["name"] == "depth")
         return str(depth["controller"])
 
     def in_force(title: str) -> None:

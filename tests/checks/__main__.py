@@ -4,19 +4,21 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from tests.checks.fan_out import find_crowded_modules
 from tests.checks.links import find_dead_links
 from tests.checks.names import find_bad_names
 from tests.checks.pictures import find_needless_pictures
-from tests.checks.rooms import find_room_problems
+from tests.checks.topics import find_compared_names
 from tests.checks.version import find_other_versions
 
 ROOT = Path(__file__).parents[2]
 CHECKS: tuple[Callable[[Path], list[str]], ...] = (
     find_bad_names,
+    find_crowded_modules,
     find_dead_links,
     find_needless_pictures,
     find_other_versions,
-    find_room_problems,
+    find_compared_names,
 )
 
 

@@ -15,7 +15,7 @@ _ELSEWHERE = re.compile(r"[a-z]+:")
 
 
 def find_dead_links(root: Path) -> list[str]:
-    """One line for each link that leads nowhere: page, target and reason."""
+    """Return one line for each link that leads nowhere: page, target and reason."""
     pages = sorted(page for pattern in PAGES for page in root.glob(pattern))
     return [problem for page in pages for problem in _problems(root, page)]
 
@@ -41,6 +41,6 @@ def _problems(root: Path, page: Path) -> Iterator[str]:
 
 
 def anchors(text: str) -> set[str]:
-    """The anchors of a page's headings, as GitHub and the help pages make them."""
+    """Return the anchors of a page's headings, as GitHub and the help pages make them."""
     headings = _HEADING.findall(_FENCE.sub("", text))
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}

@@ -6,21 +6,28 @@ from collections.abc import Iterator
 from pathlib import Path
 
 PACKAGES = ("robot_runtime", "server", "migrations")
-DOCUMENTED = (*PACKAGES, "bench", "tests")
-"""Packages whose docstrings are checked; class and variable names only in the product's."""
+NAMED = (*PACKAGES, "mucat", "packages", "bench")
+"""Packages without private dialect, whose functions are described in the imperative."""
+DOCUMENTED = (*NAMED, "tests")
+"""Packages of unique classes, names that are nouns of the field, and docstrings with subject and verb."""
 RIDDLES = frozenset(
     {"What", "Whatever", "When", "Where", "Whether", "Which", "Who", "Whoever", "Whom", "Whose", "Why"}
-    | {"How", "Let", "That"}
+    | {"By", "How", "Let", "Nothing", "That", "Those"}
 )
 """Words that begin a clause without a subject."""
+NOUN_DECORATORS = frozenset({"property", "cached_property", "fixture"})
+"""Decorators of functions that are described by a noun."""
+VAGUE = frozenset({"found", "one", "ones", "place", "said", "words"})
+"""Names that fit every variable: say session, match, path, message. A class's fields may be stored names."""
 DIALECT = frozenset({"befall", "felt", "kept", "lent", "told", "wanted"})
 """Participles of the project's old private English: say set point, requested, reported, override, backlog."""
 STORED_NAMES = frozenset(
     {
         ("robot_runtime/contract/packets/definitions.py", "wanted"),
         ("server/features/exports/schemas.py", "wanted"),
-        ("server/features/sessions/catalogue.py", "kept"),
-        ("server/features/sessions/schemas.py", "kept"),
+        ("server/library/catalogue.py", "kept"),
+        ("server/library/schemas.py", "kept"),
+        ("server/recording/schemas.py", "kept"),
         ("server/platform/models.py", "kept"),
     }
 )
@@ -31,10 +38,16 @@ Modules = dict[str, list[ast.AST]]
 
 
 def find_bad_names(root: Path) -> list[str]:
-    """One line for each name or docstring against the rules: place, name and what to do."""
+    """Return one line for each name or docstring against the rules: position, name and what to do."""
     documented = _parse(root, DOCUMENTED)
-    modules = {place: nodes for place, nodes in documented.items() if place.partition("/")[0] in PACKAGES}
-    return [*_repeated_classes(modules), *_riddles(documented), *_dialect(modules)]
+    named = {path: nodes for path, nodes in documented.items() if path.partition("/")[0] in NAMED}
+    return [
+        *_repeated_classes(documented),
+        *_riddles(documented),
+        *_moods(named),
+        *_dialect(named),
+        *_vague_names(documented),
+    ]
 
 
 def _parse(root: Path, packages: tuple[str, ...]) -> Modules:
@@ -46,36 +59,65 @@ def _parse(root: Path, packages: tuple[str, ...]) -> Modules:
 
 
 def _repeated_classes(modules: Modules) -> Iterator[str]:
-    places: defaultdict[str, list[str]] = defaultdict(list)
-    for place, nodes in modules.items():
+    paths: defaultdict[str, list[str]] = defaultdict(list)
+    for path, nodes in modules.items():
         for node in nodes:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                places[node.name].append(place)
-    for name, found in sorted(places.items()):
-        if len(found) > 1:
-            yield f"class {name} is defined {len(found)} times, in {', '.join(found)}; rename all but one"
+                paths[node.name].append(path)
+    for name, files in sorted(paths.items()):
+        if len(files) > 1:
+            yield f"class {name} is defined {len(files)} times, in {', '.join(files)}; rename all but one"
 
 
 def _riddles(modules: Modules) -> Iterator[str]:
-    for place, nodes in modules.items():
+    for path, nodes in modules.items():
         for node in nodes:
             if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-                words = (ast.get_docstring(node) or "").split()
-                if words and words[0].strip(",.:;") in RIDDLES:
+                first = _first_word(node)
+                if first in RIDDLES:
                     line = 1 if isinstance(node, ast.Module) else node.lineno
-                    yield f"{place}:{line}: the docstring begins with {words[0]}; say what it is or does"
+                    yield f"{path}:{line}: the docstring begins with {first}; say what it is or does"
+
+
+def _moods(modules: Modules) -> Iterator[str]:
+    """Yield the docstrings of functions that begin with no verb or the third person; ruff finds articles."""
+    for path, nodes in modules.items():
+        for node in nodes:
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not _is_noun(node):
+                first = _first_word(node)
+                if first and (not first.istitle() or (first.endswith("s") and not first.endswith("ss"))):
+                    yield f"{path}:{node.lineno}: the docstring begins with {first}; use an imperative"
+
+
+def _is_noun(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    names = (ast.unparse(decorator).partition("(")[0] for decorator in function.decorator_list)
+    return any(name.rpartition(".")[2] in NOUN_DECORATORS for name in names)
+
+
+def _first_word(node: ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    return (ast.get_docstring(node) or "").partition(" ")[0].strip().strip(",.:;")
 
 
 def _dialect(modules: Modules) -> Iterator[str]:
-    for place, nodes in modules.items():
+    for path, nodes in modules.items():
         for node in nodes:
             name = _bound_name(node)
-            if not DIALECT.isdisjoint(name.lower().split("_")) and (place, name) not in STORED_NAMES:
-                yield f"{place}:{getattr(node, 'lineno', 1)}: {name} is private dialect; see the glossary"
+            if not DIALECT.isdisjoint(name.lower().split("_")) and (path, name) not in STORED_NAMES:
+                yield f"{path}:{getattr(node, 'lineno', 1)}: {name} is private dialect; see the glossary"
+
+
+def _vague_names(modules: Modules) -> Iterator[str]:
+    for path, nodes in modules.items():
+        bodies = (node.body for node in nodes if isinstance(node, ast.ClassDef))
+        fields = {id(entry.target) for body in bodies for entry in body if isinstance(entry, ast.AnnAssign)}
+        for node in nodes:
+            name = _bound_name(node)
+            if name.strip("_") in VAGUE and id(node) not in fields:
+                yield f"{path}:{getattr(node, 'lineno', 1)}: {name} fits everything; use a noun of the field"
 
 
 def _bound_name(node: ast.AST) -> str:
-    """The name that a node binds; empty where it binds none."""
+    """Return the name that a node binds; empty where it binds none."""
     if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
         return node.name
     if isinstance(node, ast.arg):

@@ -13,10 +13,10 @@ REPEATED = {
 
 
 def find_other_versions(root: Path) -> list[str]:
-    """One line for each file whose version is not the program's."""
+    """Return one line for each file whose version is not the program's."""
     return [
-        f"{name} says version {found[1] if found else 'nothing'}, server/__init__.py {VERSION}"
+        f"{name} says version {match[1] if match else 'nothing'}, server/__init__.py {VERSION}"
         for name, pattern in REPEATED.items()
-        if (found := re.search(pattern, (root / name).read_text(encoding="utf-8"), re.MULTILINE)) is None
-        or found[1] != VERSION
+        if (match := re.search(pattern, (root / name).read_text(encoding="utf-8"), re.MULTILINE)) is None
+        or match[1] != VERSION
     ]

@@ -21,25 +21,25 @@ def test_a_program_reads_drives_and_loads_what_it_recorded(shared_stack: Stack) 
     token = make_token(shared_stack, "operate")
     robot = Robot(shared_stack.url, token)
     other = Robot(shared_stack.url, make_token(shared_stack, "operate"))
-    before = {one["id"] for one in Sessions(shared_stack.url, token).list()}
+    before = {session["id"] for session in Sessions(shared_stack.url, token).list()}
     samples = robot.live("depth", "imu")
-    found = {}
+    results = {}
     for sample in samples:
-        found[sample.topic] = sample
-        if len(found) == 2:
+        results[sample.topic] = sample
+        if len(results) == 2:
             break
     samples.close()
-    assert -0.2 < found["depth"]["depth"] < 5
-    assert found["imu"]["force"][2] == pytest.approx(-9.8, abs=1.5)
+    assert -0.2 < results["depth"]["depth"] < 5
+    assert results["imu"]["force"][2] == pytest.approx(-9.8, abs=1.5)
     with robot.control() as control:
         control.arm("manual")
         control.drive(1.0, x=0.5, yaw=0.25)
         assert robot.state()["armed"]
         with pytest.raises(RobotError, match="Control is with"):
             other.control().__enter__()
-    assert next(one for one in robot.live("state") if not one["armed"])["mode"] == "disarmed"
+    assert next(state for state in robot.live("state") if not state["armed"])["mode"] == "disarmed"
     sessions = Sessions(shared_stack.url, token)
-    (session,) = (one["id"] for one in sessions.list() if one["id"] not in before)
+    (session,) = (session["id"] for session in sessions.list() if session["id"] not in before)
     # What came last is stored with its end. Refused where it has just ended by itself.
     shared_stack.api.post(f"/sessions/{session}/stop")
     tables = sessions.load(session)
@@ -102,13 +102,13 @@ def test_scenarios_run_and_their_sessions_are_compared_and_read_from_files(
     robot, sessions = Robot(shared_stack.url, token), Sessions(shared_stack.url, token)
     first, second = robot.run_scenario(SWIM), robot.run_scenario(SWIM)
     assert second > first
-    one, other = sessions.compare([first, second], ["depth.depth"])["sessions"]
-    assert one["series"]["depth.depth"] == other["series"]["depth.depth"]
+    entry, other = sessions.compare([first, second], ["depth.depth"])["sessions"]
+    assert entry["series"]["depth.depth"] == other["series"]["depth.depth"]
     job = shared_stack.api.post("/exports", json={"session": first, "format": "csv"}).json()
-    place = f"/exports/{job['id']}"
-    asyncio.run(until(lambda: shared_stack.api.get(place).json()["state"] == "done", "the export"))
+    position = f"/exports/{job['id']}"
+    asyncio.run(until(lambda: shared_stack.api.get(position).json()["state"] == "done", "the export"))
     file = tmp_path / "dive.zip"
-    file.write_bytes(shared_stack.api.get(f"{place}/file").content)
+    file.write_bytes(shared_stack.api.get(f"{position}/file").content)
     tables = Sessions.read(file)
     assert tables.pandas("depth").equals(sessions.load(first).pandas("depth"))
     assert tables.polars("depth")["time"].to_list() == tables.pandas("depth")["time"].to_list()
@@ -144,7 +144,7 @@ def test_a_mission_runs_to_its_end_and_is_tried_in_simulated_water(shared_stack:
     assert (ended["title"], ended["phase"]) == ("Down and up", "succeeded")
     assert 0.2 < ended["deepest"] < 0.6
     tried = robot.try_mission(MISSION, seeds=2)
-    assert [(one["seed"], one["phase"]) for one in tried] == [(1, "succeeded"), (2, "succeeded")]
+    assert [(trial["seed"], trial["phase"]) for trial in tried] == [(1, "succeeded"), (2, "succeeded")]
 
 
 def test_what_is_no_export_is_refused(tmp_path: Path) -> None:
@@ -159,9 +159,9 @@ def test_what_is_no_export_is_refused(tmp_path: Path) -> None:
         Robot("http://127.0.0.1:9", "mucat_token").state()
 
 
-@pytest.mark.parametrize("one", [Robot, Control, Sessions, FolderSessions, SessionTables])
-def test_the_reference_has_every_method(one: type) -> None:
+@pytest.mark.parametrize("kind", [Robot, Control, Sessions, FolderSessions, SessionTables])
+def test_the_reference_has_every_method(kind: type) -> None:
     page = (Path(__file__).parents[2] / "docs/reference/python.md").read_text()
-    methods = [name for name in vars(one) if not name.startswith("_") and callable(getattr(one, name))]
+    methods = [name for name in vars(kind) if not name.startswith("_") and callable(getattr(kind, name))]
     assert methods
     assert [name for name in methods if f"`{name}(" not in page] == []

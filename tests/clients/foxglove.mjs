@@ -5,7 +5,7 @@ const { FoxgloveClient } = wsProtocol
 const [address, viewer] = process.argv.slice(2)
 const connect = (url) => {
   const client = new FoxgloveClient({ ws: new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) })
-  const seen = { channels: [], services: [], latest: {}, values: {}, statuses: [], graph: [] }
+  const seen = { channels: [], services: [], latest: {}, values: {}, statuses: [] }
   const waiting = new Set()
   const once = (what) =>
     new Promise((done) => {
@@ -31,7 +31,6 @@ const connect = (url) => {
     seen.answered = said.id
     check()
   })
-  client.on('connectionGraphUpdate', (graph) => (seen.graph.push(graph), check()))
   client.on('message', ({ subscriptionId, data }) => {
     seen.latest[names.get(subscriptionId)] = JSON.parse(new TextDecoder().decode(data))
     check()
@@ -51,12 +50,7 @@ const connect = (url) => {
       const data = new TextEncoder().encode(JSON.stringify(fields))
       client.sendServiceCallRequest({ serviceId: service.id, callId, encoding: 'json', data })
     })
-  const asset = (uri) =>
-    new Promise((done) => {
-      client.on('fetchAssetResponse', (answer) => done(answer.error ?? new TextDecoder().decode(answer.data)))
-      client.fetchAsset(uri, 7)
-    })
-  return { client, seen, once, subscribe, call, asset }
+  return { client, seen, once, subscribe, call }
 }
 const one = connect(address)
 await one.once(() => one.seen.services.length > 0)
@@ -71,8 +65,6 @@ one.client.getParameters([], 'all')
 await one.once(() => one.seen.answered === 'all')
 said.parameters = one.seen.values
 one.client.subscribeParameterUpdates(Object.keys(one.seen.values))
-one.client.subscribeConnectionGraph()
-said.graph = await one.once(() => one.seen.graph[0])
 const looking = connect(viewer)
 await looking.once(() => looking.seen.services.length > 0)
 said.refused = await looking.call('/mucat/take_control')
@@ -99,7 +91,5 @@ said.driven = await one.once(() => one.seen.latest['/navigation']?.x > 0 && one.
 clearInterval(driving)
 said.stopped = await looking.call('/mucat/stop')
 await one.once(() => one.seen.latest['/state'].armed === false)
-said.asset = JSON.parse(await one.asset('package://mucat/foxglove.json'))
-said.none = await one.asset('package://mucat/passwords')
 // A pipe takes 64 kB at once: the rest is lost at an exit that does not wait for it.
 process.stdout.write(JSON.stringify(said), () => process.exit(0))

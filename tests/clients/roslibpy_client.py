@@ -11,24 +11,24 @@ import roslibpy
 def main(url: str) -> None:
     ros = roslibpy.Ros(url)
     ros.run(timeout=30)
-    said: dict[str, Any] = {"topics": ros.get_topics(), "type": ros.get_topic_type("/imu/data")}
+    answer: dict[str, Any] = {"topics": ros.get_topics(), "type": ros.get_topic_type("/imu/data")}
     imu = roslibpy.Topic(ros, "/imu/data", "sensor_msgs/Imu", throttle_rate=50, queue_length=1)
     came = threading.Event()
 
     def see(message: dict[str, Any]) -> None:
-        said["imu"] = dict(message)
+        answer["imu"] = dict(message)
         came.set()
 
     imu.subscribe(see)
     assert came.wait(30), "no sample came"
-    said["taken"] = _call(ros, "/mucat/take_control", {"over": True})
-    said["armed"] = _call(ros, "/mucat/arm", {"mode": "manual"})
-    said["stopped"] = _call(ros, "/mucat/stop", {})
+    answer["taken"] = _call(ros, "/mucat/take_control", {"over": True})
+    answer["armed"] = _call(ros, "/mucat/arm", {"mode": "manual"})
+    answer["stopped"] = _call(ros, "/mucat/stop", {})
     try:
         _call(ros, "/mucat/loop", {"name": "depth", "set_point": -5})
     except roslibpy.core.ServiceException as problem:
-        said["refused"] = str(problem)
-    print(json.dumps(said))
+        answer["refused"] = str(problem)
+    print(json.dumps(answer))
     ros.terminate()
 
 

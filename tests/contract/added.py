@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
+from robot_runtime.contract.chunks import describe_topics
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.topics import BY_NAME, SENT_BY
 from robot_runtime.experiments.scenario.events import CommandEvent, read_event
 from robot_runtime.generate.reference import commands_page, topics_page
-from robot_runtime.generate.typescript import commands_module, module
+from robot_runtime.generate.typescript import module
 from server.app import create_app
-from server.features.sessions.chunks import describe_topics
 from server.http.sign_in.policy import Need, list_needs
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.server.serving import Served, serve
@@ -37,18 +37,16 @@ def look_for_scenario_event() -> None:
     where = DocumentEntry("event 1", ("events", 0))
     event = read_event({"do": "blink", "at": 2, "times": 3}, where)
     assert isinstance(event, CommandEvent)
-    assert (event.do, event.words, event.command.payload()) == ("blink", "Blinks the lamp", {"times": 3})
+    assert (event.do, event.label, event.command.payload()) == ("blink", "Blinks the lamp", {"times": 3})
     with pytest.raises(ConfigError, match=r"^event 1: times is 10; it must lie between 1 and 9$"):
         read_event({"do": "blink", "at": 2, "times": 10}, where)
 
 
 def look_for_page_and_reference() -> None:
-    assert "  blink: BlinkCommand;\n" in commands_module()
-    assert "/** flashes */\n  times: number;" in commands_module()
     assert "## blink\n\nBlinks the lamp." in commands_page()
     assert "| `times` | whole number, 1 to 9 |  | flashes |" in commands_page()
-    assert "  lamp: {\n    id: 11,\n    name: 'lamp',\n" in module()
-    assert "| [lamp](#lamp) | 11 | rows | simulator | yes |  | light of the lamp |" in topics_page()
+    assert "  lamp: {\n    id: 211,\n    name: 'lamp',\n" in module()
+    assert "| [lamp](#lamp) | 211 | rows | simulator | yes |  | light of the lamp |" in topics_page()
 
 
 def look_for_topic() -> None:

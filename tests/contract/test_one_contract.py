@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 from robot_runtime.clock import SimulatedClock
@@ -13,6 +14,7 @@ from robot_runtime.contract.commands import COMMANDS
 from robot_runtime.core import Core
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox
+from robot_runtime.vision.node import VisionNode
 from tests.stack import ROOT
 
 COMMAND = '''
@@ -24,7 +26,7 @@ class BlinkCommand(RobotCommand):
 
 
 '''
-TOPIC = 'LAMP = topic(11, "lamp", _ROWS, documents.Truth, "light of the lamp", sender="simulator")\n'
+TOPIC = 'LAMP = Topic(211, "lamp", documents.Truth, "light of the lamp", sender="simulator")\n'
 
 
 def insert(path: Path, before: str, text: str) -> None:
@@ -46,7 +48,7 @@ def test_an_added_command_and_topic_are_found_everywhere(tmp_path: Path) -> None
     source = source.replace("import (\n    SET_POINTS,", "import (\n    SET_POINTS,\n    Range,", 1)
     source = source.replace("from typing import Any,", "from typing import Annotated, Any,", 1)
     (contract / "commands.py").write_text(source, encoding="utf-8")
-    insert(contract / "topics.py", 'STATE = topic(16, "state"', TOPIC)
+    insert(contract / "topics.py", 'STATE = Topic(16, "state"', TOPIC)
     done = subprocess.run(
         [sys.executable, "-m", "tests.contract.added"],
         cwd=tmp_path,
@@ -62,5 +64,16 @@ def test_the_runtime_performs_every_command() -> None:
     clock, config = SimulatedClock(), Config()
     line = LinkDriver("", config.link.baud, clock, 1, lambda _: None, lambda: None)
     outbox = Outbox(lambda *_: None, lambda _: False)
-    commands = Commands(Core(config, clock, "", line, outbox, watched=lambda _: False))
+    open_vision = partial(VisionNode, config.vision, clock)
+    commands = Commands(
+        Core(
+            config,
+            clock,
+            "",
+            line,
+            outbox,
+            watched=lambda _: False,
+            open_vision=open_vision,
+        )
+    )
     assert set(commands._handlers) == set(COMMANDS.values())

@@ -2,6 +2,8 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -12,6 +14,7 @@ from robot_runtime.contract.wiring import (
     IMU_ADDRESS,
     IMU_STRAP,
     PARTS,
+    PRESSURE_ADDRESS,
     RESET_LINE,
     SPARE_OUTPUTS,
     SPARE_PINS,
@@ -22,9 +25,14 @@ from robot_runtime.contract.wiring import (
     find_wiring_faults,
     imu_address,
 )
-from robot_runtime.generate import hardware, wiring_drawing
-from robot_runtime.generate.wiring_picture import wiring_picture
+from robot_runtime.generate import hardware
 
+DRAWING = Path(__file__).parents[2] / "docs/pictures/wiring.svg"
+SVG = "{http://www.w3.org/2000/svg}"
+BOX = "#f5f8f9"
+FIN_SELECTS = {fin.select for fin in FINS}
+UNNAMED = {"VOUT", "VIN", "anode", "leads", *FIN_SELECTS}
+"""Pins that the drawing shows without their names: a part of one wire, a supply, and D7 to D10 as one."""
 BOARD_PINS = {f"D{number}" for number in range(14)} | {f"A{number}" for number in range(6)}
 HEADER = {"1": "3.3 V", "2": "5 V", "6": "ground", "7": "GPIO 4", "8": "GPIO 14", "10": "GPIO 15"}
 """The pins of the Pi's header that are used; a Pi's own manual says what they are."""
@@ -48,19 +56,19 @@ def test_no_wire_damages_a_part_and_each_level_is_read() -> None:
     ],
 )
 def test_a_wire_that_must_not_be_is_found(sink: str, pin: str, level: float, fault: str) -> None:
-    (wire,) = [one for one in WIRES if (one.sink, one.sink_pin) == (sink, pin)]
+    (wire,) = [wire for wire in WIRES if (wire.sink, wire.sink_pin) == (sink, pin)]
     assert fault in list(find_wiring_faults([replace(wire, level=level)]))
 
 
 def test_a_bus_is_checked_at_both_ends() -> None:
-    (wire,) = [one for one in WIRES if (one.source_pin, one.sink_pin) == ("A4", "HV1")]
+    (wire,) = [wire for wire in WIRES if (wire.source_pin, wire.sink_pin) == ("A4", "HV1")]
     faults = list(find_wiring_faults([replace(wire, level=3.3)]))
     assert "3.3 V at board A4: it reads high from 3.5 V on" in faults
 
 
 @pytest.mark.parametrize(("sink", "pin", "source_volts"), [("pi", "10", 5.0), ("board", "A2", BATTERY_MAX)])
 def test_the_resistors_of_a_divider_give_its_level(sink: str, pin: str, source_volts: float) -> None:
-    (wire,) = [one for one in WIRES if (one.sink, one.sink_pin) == (sink, pin)]
+    (wire,) = [wire for wire in WIRES if (wire.sink, wire.sink_pin) == (sink, pin)]
     series, shunt = (float(ohms) for ohms in re.findall(r"([\d.]+) kΩ", wire.through))
     assert wire.level == pytest.approx(source_volts * shunt / (series + shunt), abs=0.01)
 
@@ -72,7 +80,7 @@ def test_the_page_refuses_a_wiring_that_damages_a_part(monkeypatch: pytest.Monke
 
 
 def test_the_straps_give_the_addresses_of_the_data_sheets() -> None:
-    assert [bridge_address(one.a1, one.a0) for one in FINS] == [one.address for one in FINS]
+    assert [bridge_address(fin.a1, fin.a0) for fin in FINS] == [fin.address for fin in FINS]
     assert bridge_address(Strap.HIGH, Strap.HIGH) == 0x68
     assert imu_address(IMU_STRAP) == IMU_ADDRESS
 
@@ -100,7 +108,7 @@ def test_every_part_with_a_supply_gets_it_and_a_ground() -> None:
 
 def test_the_reset_line_is_that_of_the_configuration() -> None:
     assert LinkConfig().reset.endswith(f":{RESET_LINE}")
-    (wire,) = [one for one in WIRES if one.source == "pi" and one.sink_pin == "LV3"]
+    (wire,) = [wire for wire in WIRES if wire.source == "pi" and wire.sink_pin == "LV3"]
     assert HEADER[wire.source_pin] == f"GPIO {RESET_LINE}"
 
 
@@ -109,14 +117,51 @@ def test_the_pi_s_pins_are_those_of_its_header() -> None:
     assert sources | {wire.sink_pin for wire in WIRES if wire.sink == "pi"} == set(HEADER)
 
 
-def test_the_drawing_shows_every_wire(monkeypatch: pytest.MonkeyPatch) -> None:
-    another = replace(WIRES[-1], sink="led", sink_pin="anode")
-    monkeypatch.setattr(wiring_drawing, "WIRES", (*WIRES, another))
-    with pytest.raises(ValueError, match="bridge OUT1, OUT2 - led"):
-        wiring_picture()
+def test_the_drawing_shows_each_part_with_all_its_pins_and_no_others() -> None:
+    drawn = read_drawing()
+    assert set(drawn) == {part.title for part in PARTS}
+    for part in PARTS:
+        pins = {wire.sink_pin for wire in WIRES if wire.sink == part.name}
+        pins |= {wire.source_pin for wire in WIRES if wire.source == part.name}
+        assert {pin for pin in pins if not is_drawn(pin, drawn[part.title])} <= UNNAMED, part.title
+        known = {wire.sink_pin for wire in WIRES} | {wire.source_pin for wire in WIRES}
+        others = known - pins - FIN_SELECTS - {"1", "2", "6", "+", "-"}
+        assert not [pin for pin in others if is_drawn(pin, drawn[part.title])], part.title
 
 
-def test_the_drawing_has_no_wire_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(wiring_drawing, "WIRES", [one for one in WIRES if one.sink_pin != "A2"])
-    with pytest.raises(KeyError, match="battery, \\+, board, A2"):
-        wiring_picture()
+def test_the_drawing_has_the_addresses_and_straps_of_the_table() -> None:
+    rows = [text.text or "" for text in ElementTree.parse(DRAWING).iter(f"{SVG}text")]
+    for number, fin in enumerate(FINS):
+        row = [str(number), fin.position, fin.select, f"0x{fin.address:02x}", fin.a1.value, fin.a0.value]
+        start = rows.index(fin.position) - 1
+        assert rows[start : start + len(row)] == row
+    drawn = read_drawing()
+    bus = [wire for wire in WIRES if wire.net is Net.I2C and (wire.source, wire.sink) == ("board", "shifter")]
+    assert {f"{wire.source_pin} {wire.note}" for wire in bus} <= set(drawn["board"])
+    assert f"0x{IMU_ADDRESS:02x}" in drawn["IMU"]
+    assert f"0x{PRESSURE_ADDRESS:02x}" in drawn["pressure sensor"]
+    assert f"{', '.join(['RAW', *SPARE_OUTPUTS])}: open" in drawn["board"]
+
+
+def read_drawing() -> dict[str, list[str]]:
+    """Return the texts in each part's box, by the part's title."""
+    tree = ElementTree.parse(DRAWING)
+    titles = {part.title for part in PARTS}
+    parts = {}
+    for box in tree.iter(f"{SVG}rect"):
+        left, top, width, height = (float(box.get(name, 0)) for name in ("x", "y", "width", "height"))
+        texts = [
+            text.text or ""
+            for text in tree.iter(f"{SVG}text")
+            if left <= float(text.get("x", -1)) <= left + width
+            and top <= float(text.get("y", -1)) <= top + height
+        ]
+        title = next((text for text in texts if text in titles), None)
+        if title and box.get("fill") == BOX:
+            parts[title] = texts
+    return parts
+
+
+def is_drawn(pin: str, texts: list[str]) -> bool:
+    """Return whether one of the texts names this pin, such as "A4 SDA" or "VCC: +5 V" does."""
+    return any(text == pin or re.match(rf"{re.escape(pin)}(:| (?!V))", text) for text in texts)

@@ -13,7 +13,7 @@ _BLOCK = re.compile(r'^( *)```(\w+)(?: title="([^"]+)")?\n(.*?)^\1```$', re.MULT
 
 
 @dataclass(frozen=True)
-class Block:
+class CodeBlock:
     """One block of code; `title` names a file of the repository, or is empty."""
 
     language: str
@@ -21,22 +21,22 @@ class Block:
     text: str
 
 
-def read_blocks(page: str) -> list[Block]:
-    """The blocks of a page of docs/, in their order."""
+def read_blocks(page: str) -> list[CodeBlock]:
+    """Return the blocks of a page of docs/, in their order."""
     text = (DOCS / page).read_text(encoding="utf-8")
     return [
-        Block(language, title or "", re.sub(rf"^{indent}", "", code, flags=re.MULTILINE))
+        CodeBlock(language, title or "", re.sub(rf"^{indent}", "", code, flags=re.MULTILINE))
         for indent, language, title, code in _BLOCK.findall(text)
     ]
 
 
 def read_commands(page: str) -> list[str]:
-    """The lines of a page's `sh` blocks."""
+    """Return the lines of a page's `sh` blocks."""
     return [line for block in read_blocks(page) if block.language == "sh" for line in block.text.splitlines()]
 
 
-def apply(block: Block, tree: Path) -> None:
-    """Carry out a block with a title. Raises ValueError where a diff does not fit exactly one place."""
+def apply(block: CodeBlock, tree: Path) -> None:
+    """Carry out a block with a title. Raise ValueError where a diff does not fit exactly one place."""
     file = tree / block.title
     if block.language != "diff":
         before = file.read_text(encoding="utf-8") if file.exists() else ""

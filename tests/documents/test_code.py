@@ -4,23 +4,24 @@ import asyncio
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
 import pytest
 
 from robot_runtime.contract.craft import read_craft
 from robot_runtime.contract.packets import Depth
+from robot_runtime.contract.topics import DEPTH
 from robot_runtime.missions.document import read_mission
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings, read_settings
 from tests.documents import test_commands, test_recipes
-from tests.documents.blocks import DOCS, Block, read_blocks
+from tests.documents.blocks import DOCS, CodeBlock, read_blocks
 from tests.notebooks.runner import NAMES, read_cells
 from tests.server.blocks import debug_block
 from tests.server.conftest import settings as settings
-from tests.server.features.doors.rig import make_token, play_open, rows_block
-from tests.server.serving import Served
+from tests.server.features.doors.rig import OPEN, make_token, rows_block
+from tests.server.serving import Served, serve
 from tests.server.waiting import until
 
 LANGUAGES = frozenset({"py", "python", "sh", "bash", "toml"})
@@ -49,15 +50,15 @@ Options of `mucat` in them are checked, too (test_commands.py)."""
 
 
 def pages() -> list[str]:
-    found = [str(page.relative_to(DOCS)) for page in sorted(DOCS.rglob("*.md"))]
-    return ["../README.md", "../CONTRIBUTING.md", "../SECURITY.md", *found]
+    results = [str(page.relative_to(DOCS)) for page in sorted(DOCS.rglob("*.md"))]
+    return ["../README.md", "../CONTRIBUTING.md", "../SECURITY.md", *results]
 
 
-def blocks(languages: frozenset[str] = LANGUAGES) -> list[tuple[str, Block]]:
-    return [(page, one) for page in pages() for one in read_blocks(page) if one.language in languages]
+def blocks(languages: frozenset[str] = LANGUAGES) -> list[tuple[str, CodeBlock]]:
+    return [(page, block) for page in pages() for block in read_blocks(page) if block.language in languages]
 
 
-def named(page: str, block: Block) -> tuple[str, str]:
+def named(page: str, block: CodeBlock) -> tuple[str, str]:
     return page, block.text.splitlines()[0]
 
 
@@ -78,8 +79,8 @@ READERS: dict[str, Callable[[str], object]] = {
 }
 
 
-def is_run(page: str, block: Block) -> bool:
-    """True for a block that some test runs as it stands."""
+def is_run(page: str, block: CodeBlock) -> bool:
+    """Return True for a block that some test runs as it stands."""
     if block.language == "toml":
         return page in READERS or bool(block.title)
     if page.startswith("develop/add-a-") and (block.title or block.language == "sh"):
@@ -90,8 +91,8 @@ def is_run(page: str, block: Block) -> bool:
 
 
 def test_every_block_is_run_or_on_the_list() -> None:
-    left = {named(page, block) for page, block in blocks() if not is_run(page, block)}
-    assert left == UNRUN.keys()
+    remaining = {named(page, block) for page, block in blocks() if not is_run(page, block)}
+    assert remaining == UNRUN.keys()
 
 
 def test_every_recipe_is_followed() -> None:
@@ -115,9 +116,9 @@ def test_the_syntax_of_what_is_not_run_is_right() -> None:
 
 @pytest.mark.parametrize("page", READERS)
 def test_the_toml_of_a_page_is_read_by_its_reader(page: str) -> None:
-    found = [one for one in read_blocks(page) if one.language == "toml"]
-    assert found
-    for block in found:
+    results = [block for block in read_blocks(page) if block.language == "toml"]
+    assert results
+    for block in results:
         READERS[page](block.text)
 
 
@@ -133,51 +134,55 @@ ON_A_SERVER = ("develop/add-a-debug-line.md", "use/doors.md", *NOTEBOOKS)
 def test_the_cells_of_a_notebook_are_the_blocks_of_its_page() -> None:
     for page, name in NOTEBOOKS.items():
         cells = [cell.source.strip() for cell in read_cells(name) if cell.kind == "code"]
-        there = [one.text.strip() for one in read_blocks(page) if one.language in PYTHON]
-        assert [one for one in there if one in cells] == cells
+        there = [block.text.strip() for block in read_blocks(page) if block.language in PYTHON]
+        assert [text for text in there if text in cells] == cells
 
 
 def programs() -> list[str]:
-    """The programs of these pages that no notebook runs."""
-    found = []
+    """Return the programs of these pages that no notebook runs."""
+    results = []
     for page in ON_A_SERVER:
         name = NOTEBOOKS.get(page)
         cells = [cell.source.strip() for cell in read_cells(name)] if name else []
         prelude = PRELUDE if name else ""
-        found += [
-            prelude + one.text
-            for one in read_blocks(page)
-            if one.language in PYTHON and one.text.strip() not in cells
+        results += [
+            prelude + block.text
+            for block in read_blocks(page)
+            if block.language in PYTHON and block.text.strip() not in cells
         ]
-    return found
+    return results
 
 
-@pytest.mark.parametrize("program", programs(), ids=lambda one: one.strip().splitlines()[0])
-def test_a_program_runs(settings: Settings, program: str) -> None:
-    async def scenario(served: Served) -> None:
-        session = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
-        await served.api.post("/control/release")
-        diving = asyncio.create_task(dive(served))
-        await until(lambda: "depth" in served.get(HealthMonitor)._newest, "the depth")
-        await served.api.post(f"/sessions/{session}/stop")
-        place = f"127.0.0.1:{served.settings.port}"
-        code = program.replace("turtle.local:8000", place).replace("mucat_...", await make_token(served))
-        process = await asyncio.create_subprocess_exec(
-            sys.executable, "-u", "-c", code, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
-        )
-        assert process.stdout is not None
-        first = await process.stdout.readline() if "print" in code else b""
-        if "roslibpy" in code:
-            # It listens until it is ended.
-            process.terminate()
-        output, problem = await process.communicate()
-        diving.cancel()
-        if "roslibpy" in code:
-            assert float(first) == pytest.approx(1.2)
-        else:
-            assert process.returncode == 0, (output, problem.decode())
+@pytest.fixture
+async def served(settings: Settings) -> AsyncIterator[Served]:
+    """A server with open doors."""
+    async with serve(settings.with_section(OPEN)) as served:
+        yield served
 
-    play_open(settings, scenario)
+
+@pytest.mark.parametrize("program", programs(), ids=lambda text: text.strip().splitlines()[0])
+async def test_a_program_runs(program: str, served: Served) -> None:
+    session = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
+    await served.api.post("/control/release")
+    diving = asyncio.create_task(dive(served))
+    await until(lambda: DEPTH in served.get(HealthMonitor)._newest, "the depth")
+    await served.api.post(f"/sessions/{session}/stop")
+    address = f"127.0.0.1:{served.settings.server.port}"
+    code = program.replace("turtle.local:8000", address).replace("mucat_...", await make_token(served))
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-u", "-c", code, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
+    )
+    assert process.stdout is not None
+    first = await process.stdout.readline() if "print" in code else b""
+    if "roslibpy" in code:
+        # It listens until it is ended.
+        process.terminate()
+    output, problem = await process.communicate()
+    diving.cancel()
+    if "roslibpy" in code:
+        assert float(first) == pytest.approx(1.2)
+    else:
+        assert process.returncode == 0, (output, problem.decode())
 
 
 async def dive(served: Served) -> None:

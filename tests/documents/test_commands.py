@@ -40,19 +40,21 @@ RUN = (TUTORIAL, *AFTER_IT, *WITH_A_SERVER, *OF_DEVELOPERS)
 
 
 def run(commands: list[str], folder: Path) -> list[str]:
-    """The output of each command. `make` is only asked if it knows the target."""
+    """Return the output of each command. `make` is only asked if it knows the target."""
     printed = []
     for command in commands:
         name, *arguments = shlex.split(command)
         if name == "make":
-            line, place = ["make", "--dry-run", *arguments], ROOT
+            line, position = ["make", "--dry-run", *arguments], ROOT
         elif name == PYTHON:
-            line, place = [str(ROOT / PYTHON), *arguments], ROOT
+            line, position = [str(ROOT / PYTHON), *arguments], ROOT
         else:
             assert name == MUCAT, f"{command} cannot be run by this test"
-            line, place = [str(ROOT / MUCAT), *arguments], folder
+            line, position = [str(ROOT / MUCAT), *arguments], folder
         environment = os.environ | {"MUCAT_DATA": str(folder / "data")}
-        done = subprocess.run(line, cwd=place, env=environment, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            line, cwd=position, env=environment, capture_output=True, text=True, check=False
+        )
         assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
         printed.append(done.stdout)
     return printed
@@ -74,7 +76,7 @@ def test_the_tutorial_ends_with_a_report_and_a_zip_file(folder: Path) -> None:
 
 
 def test_the_program_of_the_export_reads_the_file_of_the_tutorial(folder: Path) -> None:
-    (block,) = (one for one in read_blocks("use/export.md") if one.language == "python")
+    (block,) = (block for block in read_blocks("use/export.md") if block.language == "python")
     line = [sys.executable, "-c", block.text]
     done = subprocess.run(line, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -103,27 +105,29 @@ def test_the_commands_of_a_page_can_be_run_beside_a_server(shared_stack: Stack, 
 
 def test_every_command_of_an_installed_robot_exists_with_its_options() -> None:
     pages = [page.read_text(encoding="utf-8") for page in (DOCS / "run").rglob("*.md")]
-    found = re.findall(r"(?:^ *|`)(?:sudo )?mucat ([^`\n]+)", "\n".join(pages), re.MULTILINE)
-    commands = [shlex.split(words.split("\\|")[0]) for words in found]
+    match = re.findall(r"(?:^ *|`)(?:sudo )?mucat ([^`\n]+)", "\n".join(pages), re.MULTILINE)
+    commands = [shlex.split(parts.split("\\|")[0]) for parts in match]
     assert len(commands) > 30
-    for words in commands:
-        if not words[0].startswith(("-", "COMMAND")):
-            check_command(mucat, words)
+    for text in commands:
+        if not text[0].startswith(("-", "COMMAND")):
+            check_command(mucat, text)
 
 
-def check_command(command: click.Command, words: list[str], above: click.Context | None = None) -> None:
+def check_command(command: click.Command, message: list[str], above: click.Context | None = None) -> None:
     """Fail for a command or an option that click does not know; FILE and other words may stand for values."""
     context = click.Context(command, above)
     if isinstance(command, click.Group):
-        name, found, rest = command.resolve_command(context, words)
+        name, result, rest = command.resolve_command(context, message)
         assert name is not None
-        assert found is not None
-        check_command(found, rest, context)
+        assert result is not None
+        check_command(result, rest, context)
     else:
         with suppress(click.BadParameter, Exit):
-            command.make_context(command.name, words, above)
+            command.make_context(command.name, message, above)
 
 
 def test_every_page_of_tasks_with_commands_is_run() -> None:
-    pages = [str(page.relative_to(DOCS)) for place in ("use", "run") for page in (DOCS / place).glob("*.md")]
+    pages = [
+        str(page.relative_to(DOCS)) for position in ("use", "run") for page in (DOCS / position).glob("*.md")
+    ]
     assert {page for page in pages if read_commands(page)} == {TUTORIAL, *AFTER_IT, *WITH_A_SERVER}

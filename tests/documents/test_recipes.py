@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.contract.packets import Debug, DebugLevel
-from tests.board.host import BAUD, Robot, all_of
-from tests.board.rig import OPTIBOOT, Rig
+from tests.board.host import BAUD, EmulatedRobot, all_of
+from tests.board.rig import OPTIBOOT, BoardRig
 from tests.documents.blocks import apply, read_blocks
 from tests.sources import copy_sources
 
@@ -41,7 +41,7 @@ def follow(page: str, tree: Path, environment: Mapping[str, str] | None = None) 
 
 
 def run(line: str, tree: Path, environment: Mapping[str, str] | None = None) -> str:
-    """Run a line of the shell, which succeeds; returns its output."""
+    """Run a line of the shell, which succeeds; return its output."""
     done = subprocess.run(
         line, shell=True, cwd=tree, env=environment, capture_output=True, text=True, check=False
     )
@@ -50,7 +50,7 @@ def run(line: str, tree: Path, environment: Mapping[str, str] | None = None) -> 
 
 
 def changed_modules(page: str) -> list[str]:
-    """The modules of the product that the page creates or changes."""
+    """Return the modules of the product that the page creates or changes."""
     titles = dict.fromkeys(block.title for block in read_blocks(page) if block.title)
     return [title for title in titles if title.startswith(("robot_runtime/", "server/", "frontend/"))]
 
@@ -74,7 +74,6 @@ def test_a_command_is_added(tree: Path) -> None:
     follow("develop/add-a-command.md", tree)
     assert "## say\n" in (tree / "docs/reference/commands.md").read_text()
     assert "| `POST /api/robot/commands/say` | control |" in (tree / "docs/reference/http.md").read_text()
-    assert "  say: SayCommand;" in (tree / "frontend/src/generated/commands.ts").read_text()
     assert len(changed_modules("develop/add-a-command.md")) == 2
 
 
@@ -83,12 +82,21 @@ def test_a_debug_line_is_added(tree: Path, tmp_path: Path) -> None:
     (tree / "build").unlink()
     follow("develop/add-a-debug-line.md", tree)
     firmware = tree / "build/firmware/robot.elf"
-    with Rig(firmware, tmp_path, "--bootloader", str(OPTIBOOT), baud=BAUD) as rig:
-        board = Robot(rig)
+    with BoardRig(firmware, tmp_path, "--bootloader", str(OPTIBOOT), baud=BAUD) as rig:
+        board = EmulatedRobot(rig)
         board.listen(0.3)
         board.greet()
-        lines = [one for one in all_of(board.converse(3.0), Debug) if one.level == DebugLevel.INFO]
-    assert sum("thousand" in one.text for one in lines) >= 2, lines
+        lines = [packet for packet in all_of(board.converse(3.0), Debug) if packet.level == DebugLevel.INFO]
+    assert sum("thousand" in line.text for line in lines) >= 2, lines
+
+
+def test_a_driver_is_added(tree: Path) -> None:
+    # Firmware and boards are built into the copy: those of the tree belong to other tests.
+    (tree / "build").unlink()
+    follow("develop/add-a-driver.md", tree)
+    pins = (tree / "docs/run/hardware/wiring.md").read_text()
+    assert "| A0 | PC0 | input | light sensor OUT |" in pins
+    assert "  light: LightRow;" in (tree / "frontend/src/generated/topics.ts").read_text()
 
 
 def test_a_controller_is_added(tree: Path) -> None:

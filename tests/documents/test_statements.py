@@ -5,7 +5,11 @@ import re
 
 import pytest
 
+from robot_runtime.contract.missions import WET_DEPTH
+from robot_runtime.control.faults import ROBOT_FAULTS
 from robot_runtime.link.link_driver import PERIOD
+from robot_runtime.missions.leaves.waiting import WET_FOR
+from robot_runtime.missions.library import SHIPPED
 from tests.documents.blocks import DOCS
 
 ROOT = DOCS.parent
@@ -30,3 +34,14 @@ def test_every_recipe_is_listed(page: str) -> None:
 @pytest.mark.parametrize("page", ["docs/develop/overview.md", "docs/reference/zenoh.md"])
 def test_the_rate_of_blocks_is_that_of_the_link(page: str) -> None:
     assert f"{round(1 / PERIOD)} times a second" in text_of(page)
+
+
+def test_the_dive_without_wifi_names_every_fault_and_the_immersion() -> None:
+    text = text_of("docs/use/dive-without-wifi.md")
+    assert [name for name in ROBOT_FAULTS if f"`{name}`" not in text] == []
+    assert f"{WET_DEPTH * 100:g} cm under water for {WET_FOR:g} s" in text
+
+
+def test_the_manual_lists_the_shipped_missions() -> None:
+    listed = re.findall(r"^\| `(\w+)` \| ", text_of("docs/use/missions.md"), re.MULTILINE)
+    assert [name for name in listed if name in SHIPPED] == list(SHIPPED)

@@ -15,4 +15,4 @@ def test_what_runs_the_firmware_on_this_computer_builds_it(target: str) -> None:
     line = ["make", "--dry-run", "--always-make", target]
     done = subprocess.run(line, cwd=ROOT, env=plain, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    assert "firmware host hang proofs" in done.stdout
+    assert "firmware host hang full proofs" in done.stdout

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.firmware import library
-from tests.firmware.robot import Robot
+from tests.firmware.robot import CompiledRobot
 
 
 @pytest.fixture(scope="session")
@@ -17,7 +17,7 @@ def firmware() -> ctypes.CDLL:
 
 
 @pytest.fixture
-def robot(firmware: ctypes.CDLL) -> Iterator[Robot]:
+def robot(firmware: ctypes.CDLL) -> Iterator[CompiledRobot]:
     """A robot that has just been switched on, on a new board whose devices all work."""
-    with Robot(firmware) as robot:
+    with CompiledRobot(firmware) as robot:
         yield robot

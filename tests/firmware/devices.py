@@ -2,14 +2,16 @@
 
 import math
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
+CONVERSION_US = 4540
 FORWARD, REVERSE = 1, 2
 OVERCURRENT = 0b11
 
 
 @dataclass
-class Imu:
+class ImuDevice:
     """An MPU-6050: registers, and a reading in raw counts."""
 
     force: tuple[int, int, int] = (0, 0, -8192)
@@ -23,18 +25,26 @@ class Imu:
             return b""
         if out == b"\x75":
             return bytes([self.identity])
+        if out == b"\x1b":
+            return bytes(self.registers.get(0x1B + index, 0) for index in range(size))
         assert out == b"\x3b"
         return struct.pack(">3hh3h", *self.force, 0, *self.rate)[:size]
 
 
 @dataclass
 class PressureSensor:
-    """An MS5837-30BA with the data sheet's example of a PROM; conversions are given as raw counts."""
+    """An MS5837-30BA with the data sheet's example of a PROM; conversions are given as raw counts.
+
+    A conversion takes 4.54 ms, is spoiled if it is asked for before, and can be read once.
+    """
 
     prom: list[int] = field(default_factory=lambda: [0, 34982, 36352, 20328, 22354, 26646, 26146])
     d1: int = 4958179
     d2: int = 6815414
     answer: bytes = b""
+    now_us: Callable[[], int] = lambda: 0
+    conversion: int = 0
+    started_us: int = -CONVERSION_US
 
     def __post_init__(self) -> None:
         self.prom[0] = prom_checksum(self.prom) << 12
@@ -45,12 +55,13 @@ class PressureSensor:
         command = out[0]
         if command >= 0xA0:
             self.answer = struct.pack(">H", self.prom[(command - 0xA0) // 2])
-        elif command == 0x46:
-            self.conversion = self.d1
-        elif command == 0x56:
-            self.conversion = self.d2
+        elif command in {0x46, 0x56}:
+            self.conversion = self.d1 if command == 0x46 else self.d2
+            self.started_us = self.now_us()
         elif command == 0x00:
-            self.answer = struct.pack(">I", self.conversion)[1:]
+            early = self.now_us() - self.started_us < CONVERSION_US
+            self.answer = struct.pack(">I", 0 if early else self.conversion)[1:]
+            self.conversion = self.conversion // 2 if early else 0
         return b""
 
     def show(self, pressure: float) -> None:
@@ -65,7 +76,7 @@ class PressureSensor:
 
 
 def prom_checksum(prom: list[int]) -> int:
-    """The CRC-4 (x^4 + x + 1), by division, of the words without the first one's checksum and a zero byte."""
+    """Return the CRC-4 (x^4 + x + 1), by division, of the words without their checksum and a zero byte."""
     bits = "".join(f"{word:016b}" for word in [prom[0] & 0x0FFF, *prom[1:]]) + "0" * 8
     remainder = [int(bit) for bit in bits] + [0] * 4
     for i in range(len(bits)):
@@ -93,7 +104,7 @@ def compensate(prom: list[int], d1: int, d2: int) -> tuple[int, int]:
 
 
 @dataclass
-class Bridge:
+class BridgeDevice:
     """A DRV8830: the last drive written to it, and its fault register; with a fault it coasts.
 
     A `shorted` one trips whenever it drives.
@@ -133,13 +144,13 @@ def encoder_word(
     increase: int = 0,
     decrease: int = 0,
 ) -> int:
-    """The AS5040's sixteen bits with even parity."""
+    """Return the AS5040's sixteen bits with even parity."""
     word = (counts % 1024) << 6 | ready << 5 | overflow << 4 | nonlinear << 3 | increase << 2 | decrease << 1
     return word | word.bit_count() % 2
 
 
 @dataclass
-class Motor:
+class MotorDevice:
     """A gear motor that turns its shaft by its H-bridge's drive, at once, and friction-free.
 
     `leads` is -1 where they are swapped, 0 where the motor is jammed; `counting` is -1 where its encoder

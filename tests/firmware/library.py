@@ -79,9 +79,11 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "board_set_encoder": (None, c_uint8, c_uint16),
     "board_set_battery": (None, c_uint16),
     "board_set_beacons": (None, c_bool, c_bool),
+    "board_set_leak": (None, c_bool),
     "board_epoch": (c_uint16,),
     "board_led": (c_bool,),
     "board_motor_power": (c_bool,),
+    "board_advance": (None, c_uint32),
     "board_now_us": (c_uint64,),
     "board_fed_us": (c_uint64,),
     "board_overwritten": (c_uint32,),
@@ -100,7 +102,7 @@ def build() -> None:
 
 
 def load() -> ctypes.CDLL:
-    """The library with typed names."""
+    """Return the library with typed names."""
     library = ctypes.CDLL(str(PATH))
     for name, (result, *arguments) in _SIGNATURES.items():
         function = getattr(library, name)

@@ -3,8 +3,10 @@
 import ctypes
 from typing import TYPE_CHECKING, Self, TypeVar
 
+from robot_runtime.contract.board_events import describe_event
 from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
+    BoardEvent,
     Debug,
     Heartbeat,
     Hello,
@@ -15,7 +17,7 @@ from robot_runtime.contract.packets import (
     Status,
     decode,
 )
-from tests.firmware.devices import Bridge, Imu, Motor, PressureSensor, encoder_word
+from tests.firmware.devices import BridgeDevice, ImuDevice, MotorDevice, PressureSensor, encoder_word
 from tests.firmware.library import I2C_BUS
 from tests.line_end import LineEnd
 
@@ -42,16 +44,24 @@ def navigation(
     return Navigation(x=x, y=y, z=z, roll=roll, pitch=pitch, yaw=yaw)
 
 
-class Robot:
+def read_line(packet: Packet) -> Debug | None:
+    """Return an event of the board, or a sketch's line, as the console shows it; None for other packets."""
+    if isinstance(packet, BoardEvent):
+        level, text = describe_event(packet)
+        return Debug(time=packet.time, level=level, text=text)
+    return packet if isinstance(packet, Debug) else None
+
+
+class CompiledRobot:
     """A robot that is switched on at its creation; leaving the context ends it."""
 
     def __init__(self, firmware: ctypes.CDLL) -> None:
         self.firmware = firmware
-        self.imu = Imu()
-        self.pressure = PressureSensor()
-        self.bridges = [Bridge() for _ in BRIDGES]
+        self.imu = ImuDevice()
+        self.pressure = PressureSensor(now_us=firmware.board_now_us)
+        self.bridges = [BridgeDevice() for _ in BRIDGES]
         zeros, signs = (188, 161, 726, 356), (1, 1, -1, -1)
-        self.motors = [Motor(zero, sign) for zero, sign in zip(zeros, signs, strict=True)]
+        self.motors = [MotorDevice(zero, sign) for zero, sign in zip(zeros, signs, strict=True)]
         self.absent: set[int] = set()
         self.blind: set[int] = set()
         self.yellow: set[int] = set()
@@ -84,7 +94,7 @@ class Robot:
     def _transfer(self, address: int, out: "Bytes", out_size: int, into: "Bytes", in_size: int) -> int:
         if address in self.absent:
             return 0
-        device: Imu | PressureSensor | Bridge
+        device: ImuDevice | PressureSensor | BridgeDevice
         if address == IMU:
             device = self.imu
         elif address == PRESSURE:
@@ -121,7 +131,7 @@ class Robot:
         self.firmware.board_receive(data, len(data))
 
     def run(self, milliseconds: int) -> list[Packet]:
-        """Run for this time; returns the packets that the board sent."""
+        """Run for this time; return the packets that the board sent."""
         heard: list[Packet] = []
         while milliseconds > 0:
             part = min(milliseconds, TICK - self.now % TICK)
@@ -138,15 +148,15 @@ class Robot:
             self.frames += self._end.frames - before
         assert self._end.invalid == 0
         self.received += heard
-        self.lines += [packet for packet in heard if isinstance(packet, Debug)]
+        self.lines += [line for packet in heard if (line := read_line(packet))]
         return heard
 
     def last(self, kind: type[P]) -> P:
-        """The newest packet of this type."""
+        """Return the newest packet of this type."""
         return next(packet for packet in reversed(self.received) if isinstance(packet, kind))
 
     def status(self) -> Status:
-        """The board's state, from its next status."""
+        """Return the board's state, from its next status."""
         while not any(isinstance(packet, Status) for packet in self.run(TICK)):
             pass
         return self.last(Status)
@@ -158,7 +168,7 @@ class Robot:
 
     @property
     def texts(self) -> list[str]:
-        """The board's debug lines."""
+        """The board's events and lines, in words."""
         return [line.text for line in self.lines]
 
     def beat(self, milliseconds: int, every: int = 100) -> None:

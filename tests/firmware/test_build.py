@@ -35,6 +35,12 @@ def test_neither_heap_nor_the_cores_serial_is_linked(elf: Path) -> None:
     assert not re.search(r"\b(malloc|free|HardwareSerial|operator new|vfprintf)\b", names)
 
 
+def test_the_robot_begins_as_zeros_that_flash_does_not_have(elf: Path) -> None:
+    names = subprocess.run(["avr-nm", elf], check=True, capture_output=True, text=True).stdout
+    assert re.search(r" B robot$", names, re.MULTILINE)
+    assert "_GLOBAL__sub_I" not in names
+
+
 def test_hex_is_written(elf: Path) -> None:
     assert elf.with_suffix(".hex").read_text().startswith(":")
 
@@ -65,14 +71,14 @@ def test_library_is_one_for_the_arduino_ide() -> None:
 
 
 def test_the_arduino_ide_s_own_builder_builds_the_sketch(tmp_path: Path) -> None:
-    """By Debian's arduino-builder, the compiler driver of Arduino IDE 1.8."""
+    """Debian's arduino-builder is the compiler driver of Arduino IDE 1.8."""
     library, output = tmp_path / "libraries/mucat", tmp_path / "output"
     for name in ("src", "library.properties", "keywords.txt", "examples"):
-        place, found = library / name, FIRMWARE / name
-        if found.is_dir():
-            shutil.copytree(found, place)
+        position, result = library / name, FIRMWARE / name
+        if result.is_dir():
+            shutil.copytree(result, position)
         else:
-            shutil.copy(found, place)
+            shutil.copy(result, position)
     output.mkdir()
     preferences = {
         # What the IDE knows of its own, and Debian's core lacks.
@@ -92,9 +98,9 @@ def test_the_arduino_ide_s_own_builder_builds_the_sketch(tmp_path: Path) -> None
         [
             "arduino-builder",
             "-compile",
-            *(str(one) for option in options.items() for one in option),
+            *(str(argument) for option in options.items() for argument in option),
             *("-hardware", "/usr/share/arduino-builder"),
-            *(one for name, value in preferences.items() for one in ("-prefs", f"{name}={value}")),
+            *(argument for name, value in preferences.items() for argument in ("-prefs", f"{name}={value}")),
             str(library / "examples/robot/robot.ino"),
         ],
         capture_output=True,

@@ -24,19 +24,19 @@ from robot_runtime.contract.packets import (
     StatusFlag,
     ZeroDepth,
 )
-from tests.firmware.robot import SURFACE, Robot, hello, navigation
+from tests.firmware.robot import SURFACE, CompiledRobot, hello, navigation
 
 KEPT = EMULATED.packet()
 WRITTEN = 350
 """ms in which the whole record is written and read: 30 bytes, one a tick."""
 
 
-def answers(robot: Robot) -> list[Calibration]:
+def answers(robot: CompiledRobot) -> list[Calibration]:
     return [packet for packet in robot.received if isinstance(packet, Calibration)]
 
 
-def kept(robot: Robot) -> Calibration:
-    """The calibration of the board's answer."""
+def stored_calibration(robot: CompiledRobot) -> Calibration:
+    """Return the calibration of the board's answer."""
     before = len(answers(robot))
     robot.say(RequestCalibration())
     robot.run(50)
@@ -44,22 +44,22 @@ def kept(robot: Robot) -> Calibration:
     return answers(robot)[-1]
 
 
-def store(robot: Robot, calibration: Calibration) -> Calibration:
-    """Store this; returns the board's answer."""
+def store(robot: CompiledRobot, calibration: Calibration) -> Calibration:
+    """Store this; return the board's answer."""
     robot.say(calibration)
     robot.beat(WRITTEN, every=50)
     return answers(robot)[-1]
 
 
-def start(robot: Robot) -> bool:
-    """True if the board arms; else it says a line."""
+def start(robot: CompiledRobot) -> bool:
+    """Return True if the board arms; else it says a line."""
     robot.say(Start(epoch=robot.epoch))
     robot.run(30)
     return bool(robot.status().flags & StatusFlag.ARMED)
 
 
-def fresh(robot: Robot) -> Robot:
-    """The same robot with an erased EEPROM."""
+def fresh(robot: CompiledRobot) -> CompiledRobot:
+    """Return the same robot with an erased EEPROM."""
     robot.firmware.board_erase_eeprom()
     robot.reset(ResetCause.POWER_ON)
     robot.run(50)
@@ -67,20 +67,21 @@ def fresh(robot: Robot) -> Robot:
     return robot
 
 
-def test_the_board_tells_what_it_keeps(robot: Robot) -> None:
+def test_the_board_tells_what_it_keeps(robot: CompiledRobot) -> None:
     robot.greet()
-    assert kept(robot) == KEPT
+    assert stored_calibration(robot) == KEPT
 
 
-def test_a_fresh_board_refuses_to_arm_and_names_the_first_missing_step(robot: Robot) -> None:
+def test_a_fresh_board_refuses_to_arm_and_names_the_missing_steps(robot: CompiledRobot) -> None:
     fresh(robot)
-    assert kept(robot).done == 0
+    assert stored_calibration(robot).done == 0
     assert not start(robot)
-    assert robot.texts[-1] == "START refused: not calibrated: fins"
+    steps = "fins, motors, IMU axes, gyroscope, pressure, battery, beacons"
+    assert robot.texts[-1] == f"START refused: not calibrated: {steps}"
 
 
 @pytest.mark.parametrize(
-    ("step", "words"),
+    ("step", "message"),
     list(
         zip(
             STEPS,
@@ -89,16 +90,16 @@ def test_a_fresh_board_refuses_to_arm_and_names_the_first_missing_step(robot: Ro
         )
     ),
 )
-def test_each_step_alone_is_missed(robot: Robot, step: StepName, words: str) -> None:
+def test_each_step_alone_is_missed(robot: CompiledRobot, step: StepName, message: str) -> None:
     robot.greet()
     store(robot, replace(KEPT, done=KEPT.done & ~CalibrationStep[step.upper()]))
     assert not start(robot)
-    assert robot.texts[-1] == f"START refused: not calibrated: {words}"
+    assert robot.texts[-1] == f"START refused: not calibrated: {message}"
     store(robot, KEPT)
     assert start(robot)
 
 
-def test_a_stored_calibration_survives_a_reset(robot: Robot) -> None:
+def test_a_stored_calibration_survives_a_reset(robot: CompiledRobot) -> None:
     robot.greet()
     other = replace(KEPT, fin_zeros=(1, 2, 3, 1023), axes=(-2, 1, 3), gyro_bias=(0.1, -0.2, 0.3))
     answer = store(robot, other)
@@ -106,35 +107,35 @@ def test_a_stored_calibration_survives_a_reset(robot: Robot) -> None:
     robot.reset(ResetCause.POWER_ON)
     robot.run(50)
     robot.greet()
-    assert kept(robot) == answer
+    assert stored_calibration(robot) == answer
     assert start(robot)
 
 
-def test_while_it_is_written_the_board_does_not_arm(robot: Robot) -> None:
+def test_while_it_is_written_the_board_does_not_arm(robot: CompiledRobot) -> None:
     robot.greet()
     robot.say(replace(KEPT, fin_zeros=(1, 2, 3, 4)))
     robot.run(100)
     assert not start(robot)
 
 
-def test_a_power_cut_while_it_is_written_leaves_none(robot: Robot) -> None:
+def test_a_power_cut_while_it_is_written_leaves_none(robot: CompiledRobot) -> None:
     robot.greet()
     robot.say(replace(KEPT, fin_zeros=(1, 2, 3, 4)))
     robot.run(100)
     robot.reset(ResetCause.POWER_ON)
     robot.run(50)
     robot.greet()
-    assert kept(robot).done == 0
+    assert stored_calibration(robot).done == 0
     assert not start(robot)
 
 
 @pytest.mark.parametrize("index", range(30))
-def test_a_record_with_a_wrong_byte_is_none(robot: Robot, index: int) -> None:
+def test_a_record_with_a_wrong_byte_is_none(robot: CompiledRobot, index: int) -> None:
     robot.firmware.board_flip_eeprom(index)
     robot.reset(ResetCause.POWER_ON)
     robot.run(50)
     robot.greet()
-    assert kept(robot).done == 0
+    assert stored_calibration(robot).done == 0
 
 
 @pytest.mark.parametrize(
@@ -150,19 +151,19 @@ def test_a_record_with_a_wrong_byte_is_none(robot: Robot, index: int) -> None:
         {"battery_factor": 1.26},
     ],
 )
-def test_what_cannot_be_is_not_kept(robot: Robot, impossible: dict[str, object]) -> None:
+def test_what_cannot_be_is_not_kept(robot: CompiledRobot, impossible: dict[str, object]) -> None:
     robot.greet()
     assert store(robot, replace(KEPT, **impossible)) == KEPT  # type: ignore[arg-type]
     assert start(robot)
 
 
-def test_before_a_greeting_nothing_is_stored(robot: Robot) -> None:
+def test_before_a_greeting_nothing_is_stored(robot: CompiledRobot) -> None:
     """The host's definitions are not known yet."""
     robot.run(50)
     robot.say(replace(KEPT, fin_zeros=(1, 2, 3, 4)), Parameter(number=0, value=CHIP_PARAMETERS[0].minimum))
     robot.run(WRITTEN)
     robot.greet()
-    assert kept(robot) == KEPT
+    assert stored_calibration(robot) == KEPT
     assert not any(isinstance(packet, Parameter) for packet in robot.received)
 
 
@@ -174,7 +175,7 @@ def is_turn(axes: tuple[int, int, int]) -> bool:
     return True
 
 
-def test_the_board_accepts_the_axes_that_this_computer_accepts(robot: Robot) -> None:
+def test_the_board_accepts_the_axes_that_this_computer_accepts(robot: CompiledRobot) -> None:
     robot.greet()
     triples = [
         (a * forward, b * right, c * down)
@@ -186,7 +187,7 @@ def test_the_board_accepts_the_axes_that_this_computer_accepts(robot: Robot) -> 
     assert len(accepted) == 24
 
 
-def test_an_armed_board_keeps_what_it_has(robot: Robot) -> None:
+def test_an_armed_board_keeps_what_it_has(robot: CompiledRobot) -> None:
     robot.arm()
     assert store(robot, replace(KEPT, fin_zeros=(1, 2, 3, 4))) == KEPT
     robot.say(ZeroDepth())
@@ -195,7 +196,7 @@ def test_an_armed_board_keeps_what_it_has(robot: Robot) -> None:
     assert robot.last(Depth).depth == pytest.approx(1.0, abs=0.002)
 
 
-def test_axes_and_bias_of_the_imu_are_applied(robot: Robot) -> None:
+def test_axes_and_bias_of_the_imu_are_applied(robot: CompiledRobot) -> None:
     scale = Imu.wires["rate"].scale
     robot.greet()
     store(robot, replace(KEPT, axes=(2, -1, 3), gyro_bias=(10 * scale, -20 * scale, 30 * scale)))
@@ -206,7 +207,7 @@ def test_axes_and_bias_of_the_imu_are_applied(robot: Robot) -> None:
     assert imu.force == pytest.approx(tuple(x * Imu.wires["force"].scale for x in (2000, -1000, -8000)))
 
 
-def test_a_reversed_axis_of_the_most_negative_reading_does_not_wrap(robot: Robot) -> None:
+def test_a_reversed_axis_of_the_most_negative_reading_does_not_wrap(robot: CompiledRobot) -> None:
     robot.greet()
     store(robot, replace(KEPT, axes=(1, -2, -3)))
     robot.imu.rate = (0, 0, -32768)
@@ -214,7 +215,7 @@ def test_a_reversed_axis_of_the_most_negative_reading_does_not_wrap(robot: Robot
     assert robot.last(Imu).rate[2] == pytest.approx(32767 * Imu.wires["rate"].scale)
 
 
-def test_a_bias_that_is_taken_away_leaves_the_heading_still(robot: Robot) -> None:
+def test_a_bias_that_is_taken_away_leaves_the_heading_still(robot: CompiledRobot) -> None:
     """5 °/s of offset turned the heading by 300° a minute."""
     offset = 5 * pi / 180
     counts = round(offset / Imu.wires["rate"].scale)
@@ -227,7 +228,7 @@ def test_a_bias_that_is_taken_away_leaves_the_heading_still(robot: Robot) -> Non
     assert abs(2 * z / w) < 0.01
 
 
-def test_the_pressures_offset_is_taken_away_and_moves_no_depth(robot: Robot) -> None:
+def test_the_pressures_offset_is_taken_away_and_moves_no_depth(robot: CompiledRobot) -> None:
     robot.greet()
     robot.run(500)
     store(robot, replace(KEPT, pressure_offset=-450))
@@ -236,7 +237,7 @@ def test_the_pressures_offset_is_taken_away_and_moves_no_depth(robot: Robot) -> 
     assert robot.last(Depth).depth == pytest.approx(0, abs=0.002)
 
 
-def test_the_battery_is_trimmed(robot: Robot) -> None:
+def test_the_battery_is_trimmed(robot: CompiledRobot) -> None:
     before = robot.status().battery
     robot.greet()
     store(robot, replace(KEPT, battery_factor=0.95))
@@ -245,7 +246,7 @@ def test_the_battery_is_trimmed(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("inverted", [0, 1])
-def test_the_beacons_polarity(robot: Robot, inverted: int) -> None:
+def test_the_beacons_polarity(robot: CompiledRobot, inverted: int) -> None:
     robot.greet()
     store(robot, replace(KEPT, beacons_inverted=inverted))
     robot.firmware.board_set_beacons(True, False)
@@ -253,12 +254,12 @@ def test_the_beacons_polarity(robot: Robot, inverted: int) -> None:
     assert (robot.last(Beacon).right, robot.last(Beacon).left) == (1 - inverted, inverted)
 
 
-def test_directions_and_zeros_of_the_fins_are_applied(robot: Robot) -> None:
+def test_directions_and_zeros_of_the_fins_are_applied(robot: CompiledRobot) -> None:
     robot.greet()
     robot.run(50)
     before = robot.last(Motor).angle
-    one, two, three, four = ((zero + 256) % 1024 for zero in EMULATED.fin_zeros)
-    store(robot, replace(KEPT, fin_zeros=(one, two, three, four)))
+    first, two, three, four = ((zero + 256) % 1024 for zero in EMULATED.fin_zeros)
+    store(robot, replace(KEPT, fin_zeros=(first, two, three, four)))
     robot.run(50)
     turn = [now - then for now, then in zip(robot.last(Motor).angle, before, strict=True)]
     # A quarter of a turn; the counts of the right fins fall as their tips go down.
@@ -268,7 +269,7 @@ def test_directions_and_zeros_of_the_fins_are_applied(robot: Robot) -> None:
     assert robot.last(Motor).angle == pytest.approx([-angle for angle in before], abs=0.002)
 
 
-def test_a_wrong_direction_of_a_motor_is_stopped(robot: Robot) -> None:
+def test_a_wrong_direction_of_a_motor_is_stopped(robot: CompiledRobot) -> None:
     robot.greet()
     store(robot, replace(KEPT, motors_reversed=KEPT.motors_reversed ^ 0b0001))
     robot.arm()
@@ -277,8 +278,8 @@ def test_a_wrong_direction_of_a_motor_is_stopped(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize(("density", "depth"), [(1.0, 1.0), (1.025, 1 / 1.025)])
-def test_the_waters_density_scales_the_depth(robot: Robot, density: float, depth: float) -> None:
-    number = [one.name for one in CHIP_PARAMETERS].index("water.density")
+def test_the_waters_density_scales_the_depth(robot: CompiledRobot, density: float, depth: float) -> None:
+    number = [parameter.name for parameter in CHIP_PARAMETERS].index("water.density")
     robot.greet()
     robot.run(500)
     robot.say(Parameter(number=number, value=density))
@@ -287,7 +288,7 @@ def test_the_waters_density_scales_the_depth(robot: Robot, density: float, depth
     assert robot.last(Depth).depth == pytest.approx(depth, abs=0.0015)
 
 
-def test_zero_depth_measures_the_surface_anew(robot: Robot) -> None:
+def test_zero_depth_measures_the_surface_anew(robot: CompiledRobot) -> None:
     robot.greet()
     robot.run(500)
     robot.pressure.show(SURFACE + 4905)
@@ -301,14 +302,14 @@ def test_zero_depth_measures_the_surface_anew(robot: Robot) -> None:
     assert robot.last(Depth).depth == pytest.approx(0, abs=0.002)
 
 
-def test_a_board_with_other_definitions_keeps_what_it_has(robot: Robot) -> None:
+def test_a_board_with_other_definitions_keeps_what_it_has(robot: CompiledRobot) -> None:
     robot.say(hello(definitions=1))
     robot.run(50)
     robot.say(replace(KEPT, fin_zeros=(1, 2, 3, 4)))
     robot.run(WRITTEN)
     robot.say(hello())
     robot.run(50)
-    assert kept(robot) == KEPT
+    assert stored_calibration(robot) == KEPT
 
 
 def test_every_values_survives_the_line() -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.firmware.devices import Motor
+from tests.firmware.devices import MotorDevice
 
 TICK = 0.01
 ZEROS, SIGNS = (188, 161, 726, 356), (1, 1, -1, -1)
@@ -19,7 +19,7 @@ fins = st.integers(0, 3)
 
 
 def between(angle: float, other: float) -> float:
-    """The shortest angle from one to the other."""
+    """Return the shortest angle from one to the other."""
     return abs(math.remainder(angle - other, math.tau))
 
 
@@ -49,10 +49,10 @@ def law(firmware: ctypes.CDLL) -> Iterator[Law]:
 def test_fin_flaps_about_its_direction_at_the_published_frequency(law: Law) -> None:
     for _ in range(50):
         law.step(-0.5, 1.6)
-    wanted = [law.step(-0.5, 1.6) for _ in range(1000)]
-    assert max(wanted) == pytest.approx(-0.5 + 0.8, abs=2e-3)
-    assert min(wanted) == pytest.approx(-0.5 - 0.8, abs=2e-3)
-    rising = sum(a < -0.5 <= b for a, b in pairwise(wanted))
+    expected = [law.step(-0.5, 1.6) for _ in range(1000)]
+    assert max(expected) == pytest.approx(-0.5 + 0.8, abs=2e-3)
+    assert min(expected) == pytest.approx(-0.5 - 0.8, abs=2e-3)
+    rising = sum(a < -0.5 <= b for a, b in pairwise(expected))
     assert rising == 13
     # The law itself, a second and a half later: direction + amplitude / 2 · sin(2π f t).
     start = 1050 * TICK
@@ -106,34 +106,34 @@ def test_counts_wrap(firmware: ctypes.CDLL, value: int) -> None:
 def test_counts_and_angles_agree_with_the_convention(firmware: ctypes.CDLL, fin: int, angle: float) -> None:
     """Counts are zero - φ · 1024 / 2π, and the fin's angle is rotation_sign · φ."""
     shaft = SIGNS[fin] * angle
-    found = firmware.firmware_counts_from_angle(fin, angle)
-    assert found == pytest.approx(ZEROS[fin] - shaft * 1024 / math.tau, abs=0.51)
-    assert between(firmware.firmware_angle_from_counts(fin, found % 1024), angle) <= math.tau / 1024
+    match = firmware.firmware_counts_from_angle(fin, angle)
+    assert match == pytest.approx(ZEROS[fin] - shaft * 1024 / math.tau, abs=0.51)
+    assert between(firmware.firmware_angle_from_counts(fin, match % 1024), angle) <= math.tau / 1024
 
 
-class Loop:
+class FinLoop:
     def __init__(self, firmware: ctypes.CDLL) -> None:
         self.firmware = firmware
         self.loop = firmware.loop_create()
 
-    def step(self, fin: int, wanted: int, measured: int) -> int:
-        return int(self.firmware.loop_step(self.loop, fin, wanted, measured))
+    def step(self, fin: int, goal: int, measured: int) -> int:
+        return int(self.firmware.loop_step(self.loop, fin, goal, measured))
 
 
 @pytest.fixture
-def loop(firmware: ctypes.CDLL) -> Iterator[Loop]:
-    made = Loop(firmware)
+def loop(firmware: ctypes.CDLL) -> Iterator[FinLoop]:
+    made = FinLoop(firmware)
     yield made
     firmware.loop_destroy(made.loop)
 
 
-@given(fin=fins, wanted=st.integers(-1024, 2047), measured=counts)
+@given(fin=fins, goal=st.integers(-1024, 2047), measured=counts)
 def test_loop_drives_the_shortest_way_round(
-    firmware: ctypes.CDLL, fin: int, wanted: int, measured: int
+    firmware: ctypes.CDLL, fin: int, goal: int, measured: int
 ) -> None:
-    error = (wanted - measured + 512) % 1024 - 512
-    loop = Loop(firmware)
-    drive = loop.step(fin, wanted, measured)
+    error = (goal - measured + 512) % 1024 - 512
+    loop = FinLoop(firmware)
+    drive = loop.step(fin, goal, measured)
     firmware.loop_destroy(loop.loop)
     # A positive drive lowers the counts: the encoder sign is -1.
     if abs(error) <= 3:
@@ -145,13 +145,13 @@ def test_loop_drives_the_shortest_way_round(
         assert abs(drive) == 40
 
 
-def test_loop_crosses_the_encoders_end(loop: Loop) -> None:
+def test_loop_crosses_the_encoders_end(loop: FinLoop) -> None:
     assert loop.step(0, 1020, 4) > 0
     assert loop.step(0, 1020 - 1024, 4) > 0
 
 
 def test_loop_damps_a_fin_that_approaches_fast(firmware: ctypes.CDLL) -> None:
-    slow, fast = Loop(firmware), Loop(firmware)
+    slow, fast = FinLoop(firmware), FinLoop(firmware)
     for loop, before in ((slow, 160), (fast, 120)):
         loop.step(0, 200, before)
     drives = [loop.step(0, 200, 162) for loop in (slow, fast)]
@@ -166,12 +166,12 @@ def test_loop_damps_a_fin_that_approaches_fast(firmware: ctypes.CDLL) -> None:
 def test_loop_brings_every_fin_to_its_angle_and_rests(
     firmware: ctypes.CDLL, fin: int, goal: float, start: float
 ) -> None:
-    motor = Motor(ZEROS[fin], SIGNS[fin], shaft=SIGNS[fin] * start)
-    loop = Loop(firmware)
-    wanted = firmware.firmware_counts_from_angle(fin, goal)
+    motor = MotorDevice(ZEROS[fin], SIGNS[fin], shaft=SIGNS[fin] * start)
+    loop = FinLoop(firmware)
+    expected = firmware.firmware_counts_from_angle(fin, goal)
     drives = []
     for _ in range(150):
-        drives.append(loop.step(fin, wanted, motor.counts % 1024))
+        drives.append(loop.step(fin, expected, motor.counts % 1024))
         motor.turn(drives[-1], TICK)
     firmware.loop_destroy(loop.loop)
     assert between(motor.fin, goal) < math.radians(2)

@@ -53,7 +53,7 @@ reliable: st.SearchStrategy[Packet] = st.one_of(
 
 
 def fitting(some: list[Packet]) -> bool:
-    return 0 < sum(len(encode(one)) for one in some) <= MESSAGES_MAX
+    return 0 < sum(len(encode(packet)) for packet in some) <= MESSAGES_MAX
 
 
 frames = st.one_of(
@@ -63,7 +63,7 @@ keys = st.integers(0, 0xFFFFFFFF)
 
 
 def raw_frame(content: bytes) -> bytes:
-    """A frame of any control and messages with a valid checksum; 0 as number, where it has one."""
+    """Return a frame of any control and messages with a valid checksum; 0 as number, where it has one."""
     first = packets.PACKETS.get(content[1]) if len(content) > 1 else None
     if first is None or not first.reliable:
         content += b"\0"
@@ -77,22 +77,22 @@ def decode(firmware: ctypes.CDLL) -> Decode:
     def run(data: bytes) -> tuple[list[list[tuple[int, bytes]]], int]:
         decoder = firmware.decoder_create()
         type_, payload = ctypes.c_uint8(), ctypes.create_string_buffer(64)
-        found: list[list[tuple[int, bytes]]] = []
+        results: list[list[tuple[int, bytes]]] = []
         for byte in data:
             if firmware.decoder_feed(decoder, byte):
                 messages: list[tuple[int, bytes]] = []
                 while (size := firmware.decoder_next(decoder, ctypes.byref(type_), payload)) >= 0:
                     messages.append((type_.value, payload.raw[:size]))
-                found.append(messages)
+                results.append(messages)
         invalid = firmware.decoder_invalid(decoder)
         firmware.decoder_destroy(decoder)
-        return found, invalid
+        return results, invalid
 
     return run
 
 
 def expected(some: list[Packet]) -> list[tuple[int, bytes]]:
-    return [(encode(one)[0], encode(one)[1:]) for one in some]
+    return [(encode(packet)[0], encode(packet)[1:]) for packet in some]
 
 
 @given(data=st.binary(max_size=255))
@@ -183,8 +183,8 @@ def test_frames_survive_zeros_between_them(decode: Decode, some: list[list[Packe
 
 @given(noise=st.binary(max_size=200), some=frames)
 def test_a_frame_after_noise_is_decoded(decode: Decode, noise: bytes, some: list[Packet]) -> None:
-    found, _ = decode(noise + b"\0" + framing.build(some, 0, 0))
-    assert found[-1:] == [expected(some)]
+    result, _ = decode(noise + b"\0" + framing.build(some, 0, 0))
+    assert result[-1:] == [expected(some)]
 
 
 @given(some=frames, cut=st.data())
@@ -193,8 +193,8 @@ def test_truncated_frame_is_dropped_and_counted(
 ) -> None:
     whole = framing.build(some, 0, 0)
     length = cut.draw(st.integers(1, len(whole) - 2))
-    found, invalid = decode(whole[:length] + b"\0" + whole)
-    assert found == [expected(some)]
+    result, invalid = decode(whole[:length] + b"\0" + whole)
+    assert result == [expected(some)]
     assert invalid == 1
 
 
@@ -206,9 +206,9 @@ def test_frames_with_flipped_bits_are_never_accepted(
     damaged = whole.copy()
     for flip in flips:
         damaged[flip // 8 % (len(whole) - 1)] ^= 1 << flip % 8
-    found, invalid = decode(bytes(damaged))
+    result, invalid = decode(bytes(damaged))
     if damaged != whole:
-        assert found == []
+        assert result == []
         assert invalid >= 1
 
 
@@ -222,8 +222,8 @@ def test_oversized_frame_is_dropped_whole(decode: Decode, excess: int) -> None:
     hello = encode(Hello(definitions=DEFINITIONS_HASH, epoch=1, credit=255))
     content = (b"\x00" + hello * 200)[: CONTENT_MAX - 4 + excess]
     stuffed = cobs.encode(content + zlib.crc32(content).to_bytes(4, "little"))
-    found, invalid = decode(bytes(stuffed) + b"\0" + framing.build([Stop()], 0, 0))
-    assert (found, invalid) == ([[(Stop.type, b"")]], 1)
+    result, invalid = decode(bytes(stuffed) + b"\0" + framing.build([Stop()], 0, 0))
+    assert (result, invalid) == ([[(Stop.type, b"")]], 1)
 
 
 @pytest.mark.parametrize("tail", [1, 2, 50])
@@ -283,6 +283,9 @@ def pushed(firmware: ctypes.CDLL, queue: int, packet: Packet) -> bool:
 
 queueable: st.SearchStrategy[Packet] = st.one_of(
     st.builds(Debug, time=st.integers(0, 0xFFFFFFFF), level=st.integers(0, 3), text=st.text(max_size=20)),
+    st.builds(
+        packets.BoardEvent, time=st.integers(0, 9), kind=st.just(1), detail=st.just(2), value=st.just(3)
+    ),
     st.builds(packets.TestMsg, number=st.integers(0, 0xFFFF)),
 )
 
@@ -302,11 +305,19 @@ def test_queued_lines_come_in_order(firmware: ctypes.CDLL, some: list[Packet], t
     assert came == accepted
 
 
-def test_the_queue_holds_the_lines_of_a_start_and_then_refuses(firmware: ctypes.CDLL, queue: int) -> None:
-    line = Debug(time=1, level=0, text="a" * 40)
-    kept = sum(pushed(firmware, queue, line) for _ in range(100))
-    assert 4 <= kept < 100
-    assert popped(firmware, queue, 100) == [encode(line)] * kept
+@pytest.mark.parametrize(
+    ("message", "least"),
+    [
+        (packets.BoardEvent(time=1, kind=0, detail=0, value=1), 10),
+        (Debug(time=1, level=0, text="a" * 40), 2),
+    ],
+)
+def test_the_queue_holds_the_events_of_a_start_and_then_refuses(
+    firmware: ctypes.CDLL, queue: int, message: Packet, least: int
+) -> None:
+    stored = sum(pushed(firmware, queue, message) for _ in range(100))
+    assert least <= stored < 100
+    assert popped(firmware, queue, 100) == [encode(message)] * stored
 
 
 @given(number=st.integers(0, 0xFFFF))

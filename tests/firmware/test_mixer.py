@@ -93,14 +93,14 @@ def test_no_fin_exceeds_full_command(firmware: ctypes.CDLL, command: tuple[int, 
 def test_excessive_commands_are_scaled_in_proportion(firmware: ctypes.CDLL, command: tuple[int, ...]) -> None:
     """Each fin adds what the axes demand; all are scaled alike where one would exceed its maximum."""
     x, y, z, roll, pitch, yaw = (count / 127 for count in command)
-    wanted: list[tuple[float, float]] = []
+    expected: list[tuple[float, float]] = []
     for (px, py), (ax, ay) in zip(POSITIONS, ALONG, strict=True):
         forward, right = math.copysign(1, px), math.copysign(1, py)
         turn = math.copysign(1, px * ay - py * ax)
         along = max(x * math.copysign(1, ax), 0) + max(y * math.copysign(1, ay), 0) + yaw * turn
-        wanted.append((along, z + roll * right - pitch * forward))
-    scale = max(1.0, *(math.hypot(*push) for push in wanted))
-    for (direction, amplitude), (along, down) in zip(mix(firmware, command), wanted, strict=True):
+        expected.append((along, z + roll * right - pitch * forward))
+    scale = max(1.0, *(math.hypot(*push) for push in expected))
+    for (direction, amplitude), (along, down) in zip(mix(firmware, command), expected, strict=True):
         share = amplitude / AMPLITUDE_MAX
         assert share * math.cos(direction) == pytest.approx(along / scale, abs=1e-5)
         assert -share * math.sin(direction) == pytest.approx(down / scale, abs=1e-5)

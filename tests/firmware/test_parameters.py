@@ -18,17 +18,17 @@ from robot_runtime.contract.packets import (
 )
 from robot_runtime.contract.packets.layout import LayoutError
 from tests.firmware.library import load
-from tests.firmware.robot import BATTERY_FULL, Robot, hello, navigation
+from tests.firmware.robot import BATTERY_FULL, CompiledRobot, hello, navigation
 
-NUMBERS = {one.name: number for number, one in enumerate(CHIP_PARAMETERS)}
+NUMBERS = {parameter.name: number for number, parameter in enumerate(CHIP_PARAMETERS)}
 WORD = 65.535
 """The largest value that fits the line."""
 RESTING = 0.02
 """rad that a fin at rest may move."""
 
 
-def tune(robot: Robot, name: str, value: float) -> float:
-    """The value in force, from the board's answer."""
+def tune(robot: CompiledRobot, name: str, value: float) -> float:
+    """Return the value in force, from the board's answer."""
     robot.say(Parameter(number=NUMBERS[name], value=value))
     answers = [packet for packet in robot.run(50) if isinstance(packet, Parameter)]
     assert [answer.number for answer in answers] == [NUMBERS[name]]
@@ -37,12 +37,12 @@ def tune(robot: Robot, name: str, value: float) -> float:
 
 def wanted_swing(packets: list[Packet]) -> float:
     """Commanded swing of the first fin, rad, peak to peak."""
-    wanted = [packet.wanted[0] for packet in packets if isinstance(packet, Motor)]
-    return max(wanted) - min(wanted)
+    set_points = [packet.wanted[0] for packet in packets if isinstance(packet, Motor)]
+    return max(set_points) - min(set_points)
 
 
 @pytest.mark.parametrize("name", NUMBERS)
-def test_values_are_accepted_within_their_range_only(robot: Robot, name: str) -> None:
+def test_values_are_accepted_within_their_range_only(robot: CompiledRobot, name: str) -> None:
     limits = CHIP_PARAMETERS[NUMBERS[name]]
     robot.greet()
     assert tune(robot, name, limits.minimum) == pytest.approx(limits.minimum)
@@ -54,7 +54,7 @@ def test_values_are_accepted_within_their_range_only(robot: Robot, name: str) ->
 
 @given(number=st.integers(0, 255), value=st.floats(0, WORD))
 def test_no_value_out_of_range_is_ever_in_force(number: int, value: float) -> None:
-    with Robot(load()) as robot:
+    with CompiledRobot(load()) as robot:
         robot.greet()
         robot.say(Parameter(number=number, value=value))
         answers = [packet for packet in robot.run(50) if isinstance(packet, Parameter)]
@@ -62,9 +62,9 @@ def test_no_value_out_of_range_is_ever_in_force(number: int, value: float) -> No
             assert answers == []
             return
         limits = CHIP_PARAMETERS[number]
-        said = round(value, 3)
-        taken = limits.minimum <= said <= limits.maximum
-        assert [answer.value for answer in answers] == [pytest.approx(said if taken else limits.default)]
+        output = round(value, 3)
+        taken = limits.minimum <= output <= limits.maximum
+        assert [answer.value for answer in answers] == [pytest.approx(output if taken else limits.default)]
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
@@ -73,7 +73,7 @@ def test_nan_cannot_be_encoded(value: float) -> None:
         Parameter(number=0, value=value).to_bytes()
 
 
-def test_a_reset_brings_the_defaults_back(robot: Robot) -> None:
+def test_a_reset_brings_the_defaults_back(robot: CompiledRobot) -> None:
     robot.greet()
     tune(robot, "fins.amplitude", 0.8)
     robot.reset(ResetCause.EXTERNAL)
@@ -82,7 +82,7 @@ def test_a_reset_brings_the_defaults_back(robot: Robot) -> None:
     assert tune(robot, "fins.amplitude", 0.0) == pytest.approx(1.6)
 
 
-def test_host_of_other_definitions_changes_nothing(robot: Robot) -> None:
+def test_host_of_other_definitions_changes_nothing(robot: CompiledRobot) -> None:
     robot.greet()
     robot.say(hello(DEFINITIONS_HASH ^ 1))
     robot.run(50)
@@ -93,18 +93,23 @@ def test_host_of_other_definitions_changes_nothing(robot: Robot) -> None:
     assert tune(robot, "fins.amplitude", 0.0) == pytest.approx(1.6)
 
 
-def test_every_answer_is_sent_despite_a_full_queue(robot: Robot) -> None:
+def test_every_answer_is_sent_despite_a_full_queue(robot: CompiledRobot) -> None:
     """After a start debug lines fill the board's queue; each answer waits for room."""
     robot.say(hello())
     robot.run(20)
-    robot.say(*(Parameter(number=number, value=one.maximum) for number, one in enumerate(CHIP_PARAMETERS)))
+    robot.say(
+        *(
+            Parameter(number=number, value=parameter.maximum)
+            for number, parameter in enumerate(CHIP_PARAMETERS)
+        )
+    )
     answers = [packet for packet in robot.run(1000) if isinstance(packet, Parameter)]
     assert {answer.number: answer.value for answer in answers} == {
-        number: pytest.approx(one.maximum) for number, one in enumerate(CHIP_PARAMETERS)
+        number: pytest.approx(parameter.maximum) for number, parameter in enumerate(CHIP_PARAMETERS)
     }
 
 
-def test_amplitude_is_that_of_full_command(robot: Robot) -> None:
+def test_amplitude_is_that_of_full_command(robot: CompiledRobot) -> None:
     robot.arm()
     robot.swim(500, navigation(x=1))
     tune(robot, "fins.amplitude", 0.4)
@@ -114,15 +119,15 @@ def test_amplitude_is_that_of_full_command(robot: Robot) -> None:
     assert wanted_swing(robot.received) == pytest.approx(0.4, abs=0.02)
 
 
-def strokes(robot: Robot, milliseconds: int) -> int:
+def strokes(robot: CompiledRobot, milliseconds: int) -> int:
     """Count of the first fin's strokes, from its set point."""
     robot.received.clear()
     robot.swim(milliseconds, navigation(x=1))
-    wanted = [packet.wanted[0] for packet in robot.received if isinstance(packet, Motor)]
-    return sum(before < 0 <= after for before, after in pairwise(wanted))
+    set_points = [packet.wanted[0] for packet in robot.received if isinstance(packet, Motor)]
+    return sum(before < 0 <= after for before, after in pairwise(set_points))
 
 
-def test_frequency_is_that_of_the_strokes(robot: Robot) -> None:
+def test_frequency_is_that_of_the_strokes(robot: CompiledRobot) -> None:
     robot.arm()
     robot.swim(500, navigation(x=1))
     assert strokes(robot, 5000) in (6, 7)
@@ -130,7 +135,7 @@ def test_frequency_is_that_of_the_strokes(robot: Robot) -> None:
     assert strokes(robot, 5000) in (9, 10, 11)
 
 
-def test_a_slow_turn_takes_longer(robot: Robot) -> None:
+def test_a_slow_turn_takes_longer(robot: CompiledRobot) -> None:
     robot.arm()
     robot.swim(500, navigation(z=1))
     assert tune(robot, "fins.turn_rate", 2.5) == 2.5
@@ -143,7 +148,7 @@ def test_a_slow_turn_takes_longer(robot: Robot) -> None:
     assert robot.last(Motor).wanted[0] == pytest.approx(math.pi / 2, abs=0.02)
 
 
-def test_gain_drives_harder(robot: Robot) -> None:
+def test_gain_drives_harder(robot: CompiledRobot) -> None:
     def drive() -> float:
         robot.received.clear()
         robot.swim(800, navigation(x=0.3))
@@ -157,13 +162,13 @@ def test_gain_drives_harder(robot: Robot) -> None:
     assert drive() > soft
 
 
-def test_the_battery_s_alarm_waits_until_it_is_disarmed(robot: Robot) -> None:
+def test_the_battery_s_alarm_waits_until_it_is_disarmed(robot: CompiledRobot) -> None:
     robot.arm()
     assert tune(robot, "battery.alarm", 7.4) == pytest.approx(6.2)
     assert robot.power
 
 
-def test_the_battery_s_alarm_comes_at_its_voltage(robot: Robot) -> None:
+def test_the_battery_s_alarm_comes_at_its_voltage(robot: CompiledRobot) -> None:
     robot.firmware.board_set_battery(BATTERY_FULL)
     robot.greet()
     full = robot.status().battery
@@ -178,7 +183,7 @@ def test_the_battery_s_alarm_comes_at_its_voltage(robot: Robot) -> None:
 
 @pytest.mark.parametrize(("frequency", "gain"), [(0.3, 0.3), (0.3, 1.2), (2.0, 0.3), (2.0, 1.2)])
 def test_fins_rest_half_a_second_after_the_last_command_whatever_is_tuned(
-    robot: Robot, frequency: float, gain: float
+    robot: CompiledRobot, frequency: float, gain: float
 ) -> None:
     robot.arm()
     tune(robot, "fins.frequency", frequency)

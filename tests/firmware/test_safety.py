@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     DebugLevel,
+    DeviceFault,
     Heartbeat,
     Hello,
     Motor,
@@ -17,14 +18,14 @@ from robot_runtime.contract.packets import (
     Stop,
 )
 from tests.firmware.library import load
-from tests.firmware.robot import Robot, hello, navigation
+from tests.firmware.robot import CompiledRobot, hello, navigation
 
 FORWARD = navigation(x=1)
 RESTING = 0.02
 """rad that a fin at rest may move."""
 
 
-def armed(robot: Robot) -> bool:
+def armed(robot: CompiledRobot) -> bool:
     return bool(robot.status().flags & StatusFlag.ARMED)
 
 
@@ -38,7 +39,7 @@ def span(packets: list[Packet]) -> float:
     return max(spans)
 
 
-def test_boots_disarmed_without_motor_power_and_sends_hello(robot: Robot) -> None:
+def test_boots_disarmed_without_motor_power_and_sends_hello(robot: CompiledRobot) -> None:
     robot.run(300)
     assert not armed(robot)
     assert not robot.power
@@ -49,14 +50,14 @@ def test_boots_disarmed_without_motor_power_and_sends_hello(robot: Robot) -> Non
     assert "boot 1, power on" in robot.texts
 
 
-def test_start_after_steady_traffic_arms_and_powers(robot: Robot) -> None:
+def test_start_after_steady_traffic_arms_and_powers(robot: CompiledRobot) -> None:
     robot.arm()
     assert robot.power
     assert armed(robot)
     assert robot.status().flags & StatusFlag.MOTOR_POWER
 
 
-def test_every_boot_has_another_epoch(robot: Robot) -> None:
+def test_every_boot_has_another_epoch(robot: CompiledRobot) -> None:
     robot.run(50)
     first = robot.epoch
     robot.reset(ResetCause.EXTERNAL)
@@ -64,14 +65,14 @@ def test_every_boot_has_another_epoch(robot: Robot) -> None:
     assert robot.epoch != first
 
 
-def test_board_answers_each_hello(robot: Robot) -> None:
+def test_board_answers_each_hello(robot: CompiledRobot) -> None:
     robot.run(300)
     for _ in range(3):
         robot.say(hello())
         assert sum(isinstance(packet, Hello) for packet in robot.run(20)) == 1
 
 
-def refused(robot: Robot, reason: str, *packets: Packet) -> None:
+def refused(robot: CompiledRobot, reason: str, *packets: Packet) -> None:
     """Check that these packets are refused for this reason, and that nothing arms."""
     robot.say(*packets)
     robot.run(30)
@@ -81,7 +82,7 @@ def refused(robot: Robot, reason: str, *packets: Packet) -> None:
     assert not armed(robot)
 
 
-def test_start_without_a_greeting_is_refused(robot: Robot) -> None:
+def test_start_without_a_greeting_is_refused(robot: CompiledRobot) -> None:
     robot.beat(700)
     robot.say(Start(epoch=robot.epoch))
     robot.run(100)
@@ -91,13 +92,13 @@ def test_start_without_a_greeting_is_refused(robot: Robot) -> None:
     assert "START refused: say HELLO first" in robot.texts
 
 
-def test_start_from_other_definitions_is_refused(robot: Robot) -> None:
+def test_start_from_other_definitions_is_refused(robot: CompiledRobot) -> None:
     robot.greet()
     refused(robot, "other definitions", hello(DEFINITIONS_HASH ^ 1), Start(epoch=robot.epoch))
     assert robot.status().flags & StatusFlag.DEFINITIONS_DIFFER
 
 
-def test_start_for_another_boot_is_refused(robot: Robot) -> None:
+def test_start_for_another_boot_is_refused(robot: CompiledRobot) -> None:
     robot.greet()
     before = robot.epoch
     robot.reset(ResetCause.EXTERNAL)
@@ -105,7 +106,7 @@ def test_start_for_another_boot_is_refused(robot: Robot) -> None:
     refused(robot, "epoch of another boot", Start(epoch=before))
 
 
-def test_start_after_less_than_half_a_second_of_traffic_is_refused(robot: Robot) -> None:
+def test_start_after_less_than_half_a_second_of_traffic_is_refused(robot: CompiledRobot) -> None:
     robot.run(300)
     robot.say(hello())
     robot.beat(480, every=80)
@@ -113,7 +114,9 @@ def test_start_after_less_than_half_a_second_of_traffic_is_refused(robot: Robot)
 
 
 @pytest.mark.parametrize(("gap", "accepted"), [(250, True), (260, False)])
-def test_start_soon_after_a_gap_in_the_traffic_is_refused(robot: Robot, gap: int, accepted: bool) -> None:
+def test_start_soon_after_a_gap_in_the_traffic_is_refused(
+    robot: CompiledRobot, gap: int, accepted: bool
+) -> None:
     robot.greet()
     robot.say(Heartbeat(time=0))
     robot.run(gap)
@@ -125,14 +128,14 @@ def test_start_soon_after_a_gap_in_the_traffic_is_refused(robot: Robot, gap: int
     assert armed(robot) is accepted
 
 
-def test_fins_flap_only_when_armed(robot: Robot) -> None:
+def test_fins_flap_only_when_armed(robot: CompiledRobot) -> None:
     robot.greet()
     robot.swim(500, FORWARD)
     assert span(robot.received) < RESTING
     assert all(packet.drive == (0, 0, 0, 0) for packet in robot.received if isinstance(packet, Motor))
 
 
-def test_a_command_from_before_the_arming_is_not_followed(robot: Robot) -> None:
+def test_a_command_from_before_the_arming_is_not_followed(robot: CompiledRobot) -> None:
     robot.greet()
     robot.say(FORWARD)
     robot.run(10)
@@ -145,7 +148,7 @@ def test_a_command_from_before_the_arming_is_not_followed(robot: Robot) -> None:
     assert span(robot.received) < RESTING
 
 
-def test_arming_alone_moves_no_fin(robot: Robot) -> None:
+def test_arming_alone_moves_no_fin(robot: CompiledRobot) -> None:
     for motor, angle in zip(robot.motors, (0.9, -2.0, 3.0, 0.1), strict=True):
         motor.shaft = angle
     robot.run(50)
@@ -155,7 +158,7 @@ def test_arming_alone_moves_no_fin(robot: Robot) -> None:
     assert span(robot.received) < RESTING
 
 
-def test_forward_flaps_the_front_fins(robot: Robot) -> None:
+def test_forward_flaps_the_front_fins(robot: CompiledRobot) -> None:
     robot.arm()
     robot.swim(1000, FORWARD)
     robot.received.clear()
@@ -167,8 +170,8 @@ def test_forward_flaps_the_front_fins(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("late", [0, 7, 190, 385, 620])
-def test_fins_rest_half_a_second_after_the_last_command(robot: Robot, late: int) -> None:
-    """Holds for any phase of the stroke at the end of the commands; the host is still alive."""
+def test_fins_rest_half_a_second_after_the_last_command(robot: CompiledRobot, late: int) -> None:
+    """Hold for any phase of the stroke at the end of the commands; the host is still alive."""
     robot.arm()
     robot.swim(1000 + late, FORWARD)
     robot.say(FORWARD)
@@ -187,7 +190,7 @@ def test_fins_rest_half_a_second_after_the_last_command(robot: Robot, late: int)
 
 
 @pytest.mark.parametrize("turned", [20, 150, 400])
-def test_fins_that_are_turning_round_rest_too(robot: Robot, turned: int) -> None:
+def test_fins_that_are_turning_round_rest_too(robot: CompiledRobot, turned: int) -> None:
     """Half a turn takes 0.64 s; the end of commands during it delays the rest no further."""
     robot.arm()
     robot.swim(1000, navigation(z=1))
@@ -198,7 +201,7 @@ def test_fins_that_are_turning_round_rest_too(robot: Robot, turned: int) -> None
     assert span(robot.received) < RESTING
 
 
-def test_commands_that_come_again_are_followed_again(robot: Robot) -> None:
+def test_commands_that_come_again_are_followed_again(robot: CompiledRobot) -> None:
     robot.arm()
     robot.swim(500, FORWARD)
     robot.beat(600)
@@ -208,7 +211,7 @@ def test_commands_that_come_again_are_followed_again(robot: Robot) -> None:
     assert span(robot.received) > 1.4
 
 
-def test_silence_of_a_second_disarms(robot: Robot) -> None:
+def test_silence_of_a_second_disarms(robot: CompiledRobot) -> None:
     robot.arm()
     robot.swim(500, FORWARD)
     robot.say(FORWARD)
@@ -222,7 +225,7 @@ def test_silence_of_a_second_disarms(robot: Robot) -> None:
     assert not robot.status().flags & StatusFlag.HOST_ALIVE
 
 
-def test_invalid_frames_do_not_keep_it_armed(robot: Robot) -> None:
+def test_invalid_frames_do_not_keep_it_armed(robot: CompiledRobot) -> None:
     robot.arm()
     for _ in range(11):
         robot.send(b"\x05\x01\x02\x03\x04\0")
@@ -231,7 +234,7 @@ def test_invalid_frames_do_not_keep_it_armed(robot: Robot) -> None:
     assert robot.status().frames_invalid == 11
 
 
-def test_stop_disarms_at_once(robot: Robot) -> None:
+def test_stop_disarms_at_once(robot: CompiledRobot) -> None:
     robot.arm()
     robot.swim(1000, FORWARD)
     robot.say(Stop())
@@ -243,7 +246,7 @@ def test_stop_disarms_at_once(robot: Robot) -> None:
     assert "disarmed: STOP" in robot.texts
 
 
-def test_stop_is_never_refused(robot: Robot) -> None:
+def test_stop_is_never_refused(robot: CompiledRobot) -> None:
     robot.arm()
     robot.say(hello(DEFINITIONS_HASH ^ 1), Stop())
     robot.run(10)
@@ -254,7 +257,7 @@ def test_stop_is_never_refused(robot: Robot) -> None:
     assert not armed(robot)
 
 
-def test_after_a_stop_it_arms_again(robot: Robot) -> None:
+def test_after_a_stop_it_arms_again(robot: CompiledRobot) -> None:
     robot.arm()
     robot.say(Stop())
     robot.beat(200)
@@ -263,7 +266,7 @@ def test_after_a_stop_it_arms_again(robot: Robot) -> None:
     assert armed(robot)
 
 
-def test_host_of_other_definitions_disarms(robot: Robot) -> None:
+def test_host_of_other_definitions_disarms(robot: CompiledRobot) -> None:
     robot.arm()
     robot.say(hello(DEFINITIONS_HASH ^ 1))
     robot.run(30)
@@ -271,7 +274,7 @@ def test_host_of_other_definitions_disarms(robot: Robot) -> None:
     assert robot.texts[-1] == "disarmed: other definitions"
 
 
-def test_another_run_of_the_host_disarms(robot: Robot) -> None:
+def test_another_run_of_the_host_disarms(robot: CompiledRobot) -> None:
     robot.arm()
     robot.say(hello())
     robot.run(30)
@@ -282,7 +285,7 @@ def test_another_run_of_the_host_disarms(robot: Robot) -> None:
     assert robot.texts[-1] == "disarmed: another host"
 
 
-def test_after_a_watchdog_reset_it_is_disarmed_and_reports_the_cause(robot: Robot) -> None:
+def test_after_a_watchdog_reset_it_is_disarmed_and_reports_the_cause(robot: CompiledRobot) -> None:
     robot.arm()
     robot.swim(500, FORWARD)
     robot.reset(ResetCause.WATCHDOG)
@@ -297,7 +300,7 @@ def test_after_a_watchdog_reset_it_is_disarmed_and_reports_the_cause(robot: Robo
     assert robot.status().reset_cause == ResetCause.WATCHDOG
 
 
-def test_main_loop_feeds_the_watchdog_in_time(robot: Robot) -> None:
+def test_main_loop_feeds_the_watchdog_in_time(robot: CompiledRobot) -> None:
     for _ in range(100):
         robot.run(10)
         assert robot.firmware.board_now_us() - robot.firmware.board_fed_us() <= 10_000
@@ -316,7 +319,7 @@ steps = st.one_of(
 @given(story=st.lists(steps, max_size=25))
 def test_under_any_input_motor_power_implies_armed_and_a_live_host(story: list[tuple[str, int]]) -> None:
     """Motor power is never on unless the host was heard within the last second and since the last STOP."""
-    with Robot(load()) as robot:
+    with CompiledRobot(load()) as robot:
         robot.greet()
         heard, stopped = robot.now, True
         for what, number in story:
@@ -343,3 +346,34 @@ def test_under_any_input_motor_power_implies_armed_and_a_live_host(story: list[t
             if robot.power:
                 assert not stopped
                 assert robot.now - heard <= 1010
+
+
+def test_water_in_the_hull_disarms_and_forbids_arming_until_the_next_start(robot: CompiledRobot) -> None:
+    robot.arm()
+    robot.swim(500, navigation(x=1))
+    robot.firmware.board_set_leak(True)
+    robot.swim(150, navigation(x=1))
+    assert robot.power
+    robot.swim(100, navigation(x=1))
+    assert not robot.power
+    assert robot.texts[-1] == "disarmed: water in the hull"
+    robot.firmware.board_set_leak(False)
+    robot.beat(1000)
+    assert robot.status().faults == DeviceFault.LEAK
+    assert robot.texts[-1] == "water in the hull"
+    robot.say(Start(epoch=robot.epoch))
+    robot.run(30)
+    assert robot.texts[-1] == "START refused: water in the hull"
+    robot.reset(ResetCause.EXTERNAL)
+    robot.arm()
+
+
+def test_a_moment_of_contact_is_no_leak(robot: CompiledRobot) -> None:
+    robot.arm()
+    for _ in range(5):
+        robot.firmware.board_set_leak(True)
+        robot.swim(150, navigation(x=1))
+        robot.firmware.board_set_leak(False)
+        robot.swim(50, navigation(x=1))
+    assert robot.power
+    assert robot.status().faults == 0

@@ -44,13 +44,13 @@ def test_an_encoder_may_report_a_moving_or_weak_magnet(firmware: ctypes.CDLL) ->
     assert firmware.firmware_encoder_counts(encoder_word(500, decrease=1)) == 500
 
 
-def words(prom: list[int]) -> ctypes.Array[ctypes.c_uint16]:
+def as_array(prom: list[int]) -> ctypes.Array[ctypes.c_uint16]:
     return (ctypes.c_uint16 * 7)(*prom)
 
 
 def pressure_of(firmware: ctypes.CDLL, d1: int, d2: int, prom: list[int] = PROM) -> tuple[int, int]:
     pressure, temperature = ctypes.c_int32(), ctypes.c_int16()
-    firmware.firmware_compensate(words(prom), d1, d2, ctypes.byref(pressure), ctypes.byref(temperature))
+    firmware.firmware_compensate(as_array(prom), d1, d2, ctypes.byref(pressure), ctypes.byref(temperature))
     return pressure.value, temperature.value
 
 
@@ -76,14 +76,14 @@ def test_pressure_follows_the_data_sheets_formulas(firmware: ctypes.CDLL, d1: in
 
 
 def test_proms_checksum_holds(firmware: ctypes.CDLL) -> None:
-    assert firmware.firmware_prom_valid(words(PROM))
+    assert firmware.firmware_prom_valid(as_array(PROM))
 
 
 @given(word=st.integers(0, 6), bit=st.integers(0, 15))
 def test_prom_with_a_flipped_bit_is_refused(firmware: ctypes.CDLL, word: int, bit: int) -> None:
     flipped = list(PROM)
     flipped[word] ^= 1 << bit
-    assert not firmware.firmware_prom_valid(words(flipped))
+    assert not firmware.firmware_prom_valid(as_array(flipped))
 
 
 class Filter:

@@ -6,10 +6,24 @@ from itertools import pairwise
 
 import pytest
 
-from robot_runtime.contract.packets import Debug, Heartbeat, Imu, ResetCause, Start, Status, StatusFlag
+from robot_runtime.contract.packets import (
+    BoardEventKind,
+    Debug,
+    Heartbeat,
+    Imu,
+    Refusal,
+    ResetCause,
+    Start,
+    Status,
+    StatusFlag,
+    decode,
+)
 from robot_runtime.link.session import LinkSession, SessionStage
-from tests.firmware.robot import Robot
-from tests.runtime.link.line import Noise, Wire
+from tests.firmware.robot import CompiledRobot, read_line
+from tests.runtime.link.line import Noise, NoisyWire
+
+REFUSED = bytes([BoardEventKind.REFUSED, Refusal.EPOCH])
+"""In each frame that has the event."""
 
 BAUD = 250_000
 STEP = 0.005
@@ -20,7 +34,7 @@ RESTARTS = 300
 class Pair:
     """A session of the host and the firmware on a board in memory, with the packets that arrived."""
 
-    def __init__(self, robot: Robot, seed: int) -> None:
+    def __init__(self, robot: CompiledRobot, seed: int) -> None:
         self.robot = robot
         self.chance = random.Random(seed)
         self.lines: list[Debug] = []
@@ -46,8 +60,8 @@ class Pair:
         return established and board is not None and board.epoch == self.epoch
 
     def set_line(self, noise: Noise) -> None:
-        self._to_board = Wire(BAUD, noise, self.chance)
-        self._to_host = Wire(BAUD, noise, self.chance)
+        self._to_board = NoisyWire(BAUD, noise, self.chance)
+        self._to_host = NoisyWire(BAUD, noise, self.chance)
 
     def restart_host(self) -> None:
         self._host_epoch += 1
@@ -65,7 +79,7 @@ class Pair:
         self._to_board.send(self.session.send([Heartbeat(time=0)], self.now), self.now)
 
     def run_unheard(self, seconds: float) -> bytes:
-        """Run the board without the host; returns the bytes that it sends."""
+        """Run the board without the host; return the bytes that it sends."""
         self.robot.firmware.robot_run(self.robot._robot, round(seconds * 1000))
         size = self.robot.firmware.board_take(self._room, len(self._room))
         return self._room.raw[:size]
@@ -78,8 +92,8 @@ class Pair:
             size = self.robot.firmware.board_take(self._room, len(self._room))
             self._to_host.send(self._room.raw[:size], self.now)
             for message in self.session.receive(self._to_host.receive(self.now), self.now):
-                if message.type == Debug.type:
-                    self.lines.append(Debug.from_bytes(message.payload))
+                if line := read_line(decode(message.type, message.payload)):
+                    self.lines.append(line)
                 elif message.type == Status.type:
                     self.statuses.append(Status.from_bytes(message.payload))
                 self.imus += message.type == Imu.type
@@ -91,7 +105,7 @@ class Pair:
 
 
 @pytest.fixture
-def pair(robot: Robot) -> Pair:
+def pair(robot: CompiledRobot) -> Pair:
     return Pair(robot, 3)
 
 
@@ -124,7 +138,7 @@ def test_after_an_outage_lines_are_sent_once_again(pair: Pair) -> None:
     pair.robot.send(pair.session.send([Start(epoch=1001)], pair.now))
     copies = 0
     while copies < 160:
-        copies += b"START refused" in pair.run_unheard(0.01)
+        copies += REFUSED in pair.run_unheard(0.01)
     pair.run(1.0)
     before = pair.session.statistics().frames_duplicate
     for number in range(30):

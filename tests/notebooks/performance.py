@@ -13,7 +13,7 @@ from tests.server.serving import serve
 
 
 def perform(names: Sequence[str]) -> dict[str, list[RunCell]]:
-    """The cells of these notebooks after their run, by name."""
+    """Return the cells of these notebooks after their run, by name."""
     with tempfile.TemporaryDirectory(prefix="mucat-") as name:
         folder = DataFolder(Path(name) / "data")
         make_folders(folder)
@@ -24,7 +24,7 @@ def perform(names: Sequence[str]) -> dict[str, list[RunCell]]:
 
 async def _perform(settings: Settings, names: Sequence[str]) -> dict[str, list[RunCell]]:
     async with serve(settings) as served:
-        os.environ["MUCAT_URL"] = f"http://127.0.0.1:{served.settings.port}"
+        os.environ["MUCAT_URL"] = f"http://127.0.0.1:{served.settings.server.port}"
         os.environ["MUCAT_TOKEN"] = await make_token(served, name="notebook")
         try:
             return {name: await asyncio.to_thread(run, name) for name in names}

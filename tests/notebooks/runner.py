@@ -37,7 +37,7 @@ class RunCell:
 
 
 def read_cells(name: str) -> list[RunCell]:
-    """The cells of a notebook."""
+    """Return the cells of a notebook."""
     document = json.loads((FOLDER / f"{name}.ipynb").read_text(encoding="utf-8"))
     return [RunCell(cell["cell_type"], "".join(cell["source"])) for cell in document["cells"]]
 
@@ -55,7 +55,7 @@ def run(name: str) -> list[RunCell]:
 
 
 def page_of(name: str, cells: list[RunCell]) -> tuple[str, dict[str, str]]:
-    """The Markdown page of a notebook that was run, and its figures by the names of their files."""
+    """Return the Markdown page of a notebook that was run, and its figures by the names of their files."""
     figures: dict[str, str] = {}
     parts = [*_parts(name, cells, figures)]
     note = f"[This page as a notebook]({name}.ipynb). Outputs are of a run in simulated water.\n"

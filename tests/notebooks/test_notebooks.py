@@ -35,7 +35,7 @@ def _without_outputs(page: str) -> str:
 
 
 def _number(text: str, row: str) -> float:
-    """The first number after the beginning of a row."""
-    found = re.search(rf"{re.escape(row)}\s+([0-9.]+)", text)
-    assert found is not None, text
-    return float(found[1])
+    """Return the first number after the beginning of a row."""
+    match = re.search(rf"{re.escape(row)}\s+([0-9.]+)", text)
+    assert match is not None, text
+    return float(match[1])

@@ -25,11 +25,11 @@ class Installation:
         self.environment = {"PYTHONPATH": ""}
 
     def mucat(
-        self, *words: str, cwd: Path, environment: Mapping[str, str] | None = None
+        self, *arguments: str, cwd: Path, environment: Mapping[str, str] | None = None
     ) -> subprocess.CompletedProcess[str]:
-        """Runs a command of mucat in the folder `cwd`."""
+        """Run a command of mucat in the folder `cwd`."""
         return subprocess.run(
-            [str(self.program), *words],
+            [str(self.program), *arguments],
             cwd=cwd,
             env={**os.environ, **self.environment, **(environment or {})},
             capture_output=True,

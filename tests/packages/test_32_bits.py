@@ -16,7 +16,7 @@ RECORDED = 5.0
 
 
 def may_enter() -> bool:
-    """True where this process may make a root file system, and enter it."""
+    """Return True where this process may make a root file system, and enter it."""
     return os.geteuid() == 0 and subprocess.run(["unshare", "--mount", "true"], check=False).returncode == 0
 
 

@@ -32,7 +32,7 @@ def test_every_extra_that_is_named_to_a_person_is_one() -> None:
     named = {
         extra
         for file in (*pages, *modules)
-        for words in re.findall(r"mucat(?:-\S*\.whl)?\)?\"?\[([a-z0-9,]+)\]", file.read_text("utf-8"))
-        for extra in words.split(",")
+        for text in re.findall(r"mucat(?:-\S*\.whl)?\)?\"?\[([a-z0-9,]+)\]", file.read_text("utf-8"))
+        for extra in text.split(",")
     }
     assert {"pi", "scene"} <= named <= DECLARED.keys()

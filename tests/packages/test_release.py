@@ -10,7 +10,7 @@ from packages.release import build_release
 
 
 def test_with_32_bits_nothing_is_needed_that_lacks_wheels_there() -> None:
-    needed = dict(one.split("==") for one in small_requirements())
+    needed = dict(requirement.split("==") for requirement in small_requirements())
     assert not needed.keys() & {*FROM_APT, "mcap", "lz4", "zstandard", "greenlet"}
     assert {"eclipse-zenoh", "fastapi", "uvicorn", "websockets"} <= needed.keys()
     # The last ones that take Debian 13's pydantic.

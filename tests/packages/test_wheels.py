@@ -22,8 +22,8 @@ OTHER_MACHINE = b"\xf3\x00"
 """RISC-V, which no emulator of ours is for."""
 
 
-def in_one_line(words: str) -> str:
-    (line,) = words.splitlines()
+def in_one_line(message: str) -> str:
+    (line,) = message.splitlines()
     return line
 
 
@@ -76,8 +76,8 @@ def test_it_swims_by_one_command_and_its_recording_names_the_firmware(
         )
     shown = (elsewhere / "data/robot.toml").read_text()
     assert shown == (installation.packages / "mucat_build/robot.toml").read_text()
-    said = stack.log.read_text()
-    assert f"Its configuration is {elsewhere}/data/robot.toml." in said
+    output = stack.log.read_text()
+    assert f"Its configuration is {elsewhere}/data/robot.toml." in output
 
 
 def test_a_configuration_in_the_data_folder_applies_and_stays(
@@ -125,7 +125,7 @@ def test_an_emulator_of_another_architecture_is_refused(installation: Installati
 
 
 def test_the_commands_of_the_manual_install_the_wheels(installation: Installation, elsewhere: Path) -> None:
-    (block,) = [one for one in read_blocks("run/packages.md") if one.title == "Any Linux"]
+    (block,) = [block for block in read_blocks("run/packages.md") if block.title == "Any Linux"]
     *install, run = block.text.splitlines()
     assert run == "mucat/bin/mucat run"
     for file in installation.wheels:

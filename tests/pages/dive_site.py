@@ -2,21 +2,24 @@
 
 import asyncio
 import threading
+from collections.abc import Callable, Iterable
 from math import inf
 from pathlib import Path
 from typing import Any, Self
 
 from bench.dive import Dive
 from robot_runtime.clock import Clock, SteadyClock
+from robot_runtime.transport.blocks import Block
 from server.features.doors.config import DoorsConfig
 from server.http.sign_in.access import Access
 from server.http.sign_in.confirmation import Confirmations
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.control import Commander
+from tests.server.blocks import snapshot_block
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.serving import serve
 from tests.server.waiting import SECONDS
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 from tests.stack import ROOT
 
 FLOAT_SECONDS = 1800.0
@@ -25,10 +28,21 @@ PERIOD = 0.1
 
 
 class DiveSite:
-    """A server with its page, on a port of the system's choice; leaving the context ends it."""
+    """A server with its page, on a port of the system's choice; leaving the context ends it.
 
-    def __init__(self, data: Path, doors: DoorsConfig | None = None) -> None:
+    Blocks are `period` s apart; `more` gives further ones that are due now (s, steady clock).
+    """
+
+    def __init__(
+        self,
+        data: Path,
+        doors: DoorsConfig | None = None,
+        *,
+        period: float = PERIOD,
+        more: Callable[[float], Iterable[Block]] = lambda _: (),
+    ) -> None:
         self.data = data
+        self._period, self._more = period, more
         self._doors = doors or DoorsConfig()
         self.port = 0
         self._started = threading.Event()
@@ -37,7 +51,7 @@ class DiveSite:
         self._runtime: RuntimeEnd | None = None
         self._access: Access | None = None
         self._thread = threading.Thread(target=self._run, daemon=True)
-        self.api = Commander(timeout=5.0, auth=ShellToken(DataFolder(data)))
+        self.api = Commander(timeout=5.0, auth=ShellAuth(DataFolder(data)))
 
     @property
     def url(self) -> str:
@@ -61,9 +75,16 @@ class DiveSite:
         return list(self._runtime.asked)
 
     def refuse(self, reason: str | None) -> None:
-        """Has every command to the robot but STOP refused with this reason; None: accepted again."""
+        """Have every command to the robot but STOP refused with this reason; None: accepted again."""
         assert self._runtime is not None
         self._runtime.refusal = reason
+
+    def show(self, jpeg: bytes) -> None:
+        """Make this picture the next snapshot, taken now."""
+        assert self._runtime is not None
+        before = self._runtime.snapshot
+        number = 0 if before is None else before.following
+        self._runtime.snapshot = snapshot_block(number, SteadyClock().now(), jpeg)
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -96,9 +117,10 @@ class DiveSite:
             self._runtime = served.runtime
             self._access = served.get(Access)
             (await served.api.post("/control/release")).raise_for_status()
-            self.port = served.settings.port
+            self.port = served.settings.server.port
             dive = Dive(clock.now(), FLOAT_SECONDS, 1, armed_at=inf)
             self._started.set()
             while not self._end.is_set():
-                served.runtime.publish(*dive.until(clock.now()))
-                await asyncio.sleep(PERIOD)
+                now = clock.now()
+                served.runtime.publish(*dive.until(now), *self._more(now))
+                await asyncio.sleep(self._period)

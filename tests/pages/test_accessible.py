@@ -20,7 +20,7 @@ def seen(
         yield page
 
 
-@pytest.mark.parametrize("view", [one for one in PAGES if one not in LIVE], ids=lambda view: view.name)
+@pytest.mark.parametrize("view", [page for page in PAGES if page not in LIVE], ids=lambda view: view.name)
 def test_no_page_has_a_serious_accessibility_violation(seen: Page, site: Site, view: View) -> None:
     assert faults_of_view(seen, site, view) == []
 

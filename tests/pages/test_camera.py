@@ -24,14 +24,14 @@ def picture() -> bytes:
 
 
 def with_markers(message: bytes) -> bytes:
-    """The blocks of a message; every detection in them is of the picture, and found two markers in it."""
+    """Return the blocks of a message; every detection is of the picture, and found two markers."""
     changed = b""
     while message:
         topic, _, count, first, size = HEADER.unpack_from(message)
         payload, message = message[HEADER.size : HEADER.size + size], message[HEADER.size + size :]
         if topic == BY_NAME["detection"].id:
-            found = {"taken": TAKEN, "markers": [MARKER, MARKER]}
-            payload = json.dumps([one | found for one in json.loads(payload)]).encode()
+            results = {"taken": TAKEN, "markers": [MARKER, MARKER]}
+            payload = json.dumps([document | results for document in json.loads(payload)]).encode()
         changed += Block.of(BY_ID[topic], count, first, payload).data
     return changed
 
@@ -77,12 +77,12 @@ def test_a_refused_choice_does_not_stay_in_its_field(page: Page, refusing: str) 
 
 
 def with_a_scene(message: str) -> str:
-    """A text message; in that of the parts there is a scene, which a bystander sees."""
-    said = json.loads(message)
-    if said["op"] == "health":
+    """Return a text message; in that of the parts there is a scene, which a bystander sees."""
+    answer = json.loads(message)
+    if answer["op"] == "health":
         scene = {"name": "scene", "state": "works", "text": ""}
-        said["parts"] = [one for one in said["parts"] if one["name"] != "scene"] + [scene]
-    return json.dumps(said)
+        answer["parts"] = [part for part in answer["parts"] if part["name"] != "scene"] + [scene]
+    return json.dumps(answer)
 
 
 def test_a_viewer_only_looks_at_the_scene(browser: Browser, site: DiveSite) -> None:
@@ -94,7 +94,10 @@ def test_a_viewer_only_looks_at_the_scene(browser: Browser, site: DiveSite) -> N
 
     with somebody(browser, site, "viewer") as page:
         views: list[str] = []
-        page.on("request", lambda one: views.append(one.url) if one.url.endswith("/scene/view") else None)
+        page.on(
+            "request",
+            lambda request: views.append(request.url) if request.url.endswith("/scene/view") else None,
+        )
         page.route_web_socket("**/api/live", hand_on)
         page.reload()
         page.get_by_role("link", name="Operate").click()

@@ -12,7 +12,7 @@ DRAWN = """(chart) => [...chart.querySelectorAll('canvas')].some((canvas) => {
 
 
 def depth_chart(page: Page) -> tuple[Locator, Locator]:
-    """The panel, and the element in it that takes pointers and keys."""
+    """Return the panel, and the element in it that takes pointers and keys."""
     page.get_by_role("link", name="Operate").click()
     panel = page.get_by_role("region", name="Depth over time")
     panel.scroll_into_view_if_needed()

@@ -44,7 +44,7 @@ def open_comm_tests(page: Page) -> None:
 
 
 def rows_of(page: Page, region: str) -> list[list[str]]:
-    """The texts of the table in the panel `region`, without units."""
+    """Return the texts of the table in the panel `region`, without units."""
     rows: list[list[str]] = page.get_by_role("region", name=region, exact=True).evaluate(
         """(panel) => {
             const bare = (text) => text.trim().replace(/\\s*s$/, '').replace('\u2212', '-');
@@ -94,7 +94,7 @@ def check_run(page: Page, tmp_path: Path, grid: Grid, timeout: float) -> None:
     check_explanation(page, grid.places.index(EXPLAINED), shown[EXPLAINED][1])
     check_csv(page, tmp_path, shown)
     check_json(page, tmp_path, grid)
-    check_comparison(page, {place: rate for place, (rate, _) in shown.items()})
+    check_comparison(page, {position: rate for position, (rate, _) in shown.items()})
 
 
 def make_smaller(page: Page, grid: Grid) -> None:
@@ -110,10 +110,10 @@ def check_explanation(page: Page, index: int, causes: str) -> None:
     box = cell.bounding_box()
     assert box is not None
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    words = page.get_by_role("status").filter(has_text="1200 baud, Arduino 0.5 s, Pi 0 s")
-    expect(words).to_be_visible()
+    text = page.get_by_role("status").filter(has_text="1200 baud, Arduino 0.5 s, Pi 0 s")
+    expect(text).to_be_visible()
     for cause in causes.split(", "):
-        expect(words).to_contain_text(cause, ignore_case=True)
+        expect(text).to_contain_text(cause, ignore_case=True)
 
 
 def check_csv(page: Page, tmp_path: Path, shown: dict[Place, tuple[str, str]]) -> None:
@@ -125,10 +125,10 @@ def check_csv(page: Page, tmp_path: Path, shown: dict[Place, tuple[str, str]]) -
     rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
     assert len(rows) == len(shown)
     for row in rows:
-        place = int(row["baud"]), float(row["arduino_delay"]), float(row["pi_delay"])
-        rate, causes = shown[place]
-        assert f"{float(row['rate']):.2f}" == rate, place
-        assert (row["causes"] or "none") == causes, place
+        position = int(row["baud"]), float(row["arduino_delay"]), float(row["pi_delay"])
+        rate, causes = shown[position]
+        assert f"{float(row['rate']):.2f}" == rate, position
+        assert (row["causes"] or "none") == causes, position
 
 
 def check_json(page: Page, tmp_path: Path, grid: Grid) -> None:
@@ -153,14 +153,14 @@ def check_comparison(page: Page, shown: dict[Place, str]) -> None:
     rows = rows_of(page, "All cells")
     assert len(rows) == 75
     for row in rows:
-        place = place_of(row)
-        assert row[3] == f"{thesis[place]:.2f}", place
-        if place not in shown:
-            assert row[4] == "–", place
+        position = place_of(row)
+        assert row[3] == f"{thesis[position]:.2f}", position
+        if position not in shown:
+            assert row[4] == "–", position
             continue
-        assert row[4] == shown[place], place
-        difference = float(shown[place]) - thesis[place]
-        assert float(row[5].replace("±", "")) == pytest.approx(difference, abs=1e-9), place
+        assert row[4] == shown[position], position
+        difference = float(shown[position]) - thesis[position]
+        assert float(row[5].replace("±", "")) == pytest.approx(difference, abs=1e-9), position
 
 
 def test_errors_of_a_document_are_shown_field_by_field(page: Page) -> None:

@@ -7,7 +7,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from tests.browser.people import somebody
 from tests.pages.dive_site import DiveSite
 
-MINE = re.compile("^Control: this page$")
+MINE = re.compile("^Control: you have control$")
 
 
 def control(page: Page) -> Locator:
@@ -39,7 +39,7 @@ def test_control_passes_from_one_page_to_another(page: Page, browser: Browser, s
         expect(page.get_by_text("took over control from").last).to_be_attached()
 
         other.get_by_role("button", name="Release control").click()
-        expect(control(page)).to_have_accessible_name("Control: nobody")
+        expect(control(page)).to_have_accessible_name("Control: nobody has control")
         control(page).click()
         page.get_by_role("button", name="Take control").click()
         expect(control(page)).to_have_accessible_name(MINE)

@@ -35,7 +35,7 @@ def test_sessions_that_show_nothing_are_refused_in_words(page: Page, site: Site)
 
 
 def fitted(run: int) -> dict[str, Any]:
-    """The state after the fit of this number, whose craft predicts worse than the one before."""
+    """Return the state after the fit of this number, whose craft predicts worse than the one before."""
     check = {"id": 2, "name": "Dive", "before_error": 0.1, "after_error": 0.125, "improvement": 0.8}
     result = {
         "sessions": [],

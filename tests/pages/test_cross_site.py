@@ -123,16 +123,16 @@ def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
 
 
 def snapshot(site: DiveSite) -> dict[str, Any]:
-    """The state that an attack might change, and the commands that have come to the robot."""
-    found: dict[str, Any] = {"commands": site.commands}
+    """Return the state that an attack might change, and the commands that have come to the robot."""
+    results: dict[str, Any] = {"commands": site.commands}
     for path in ("/sessions", "/exports", "/scenarios", "/comm-tests/runs"):
-        found[path] = [str(one.get("id", one.get("name"))) for one in site.api.get(path).json()]
+        results[path] = [str(entry.get("id", entry.get("name"))) for entry in site.api.get(path).json()]
     devices = site.api.get("/access/devices").json()
-    return found | {"devices": [(one["id"], one["name"], one["role"]) for one in devices]}
+    return results | {"devices": [(device["id"], device["name"], device["role"]) for device in devices]}
 
 
 def attack(page: Page, target: str) -> dict[str, str]:
-    """Try all attacks; returns the results, without the refused ones."""
+    """Try all attacks; return the results, without the refused ones."""
     results: dict[str, str] = page.evaluate(ATTACKS, target)
     framed = page.frame("framed")
     assert framed is not None
@@ -150,12 +150,15 @@ def test_a_foreign_page_gets_no_data(
     before = snapshot(site)
     page = victim.new_page()
     changed: list[str] = []
-    page.on("response", lambda one: changed.append(f"{one.request.method} {one.url} {one.status}"))
+    page.on(
+        "response",
+        lambda response: changed.append(f"{response.request.method} {response.url} {response.status}"),
+    )
     page.goto(f"http://{name}:{evil_port}/")
     assert attack(page, site.url) == {}
-    posts = [one for one in changed if one.startswith(("POST", "PUT"))]
+    posts = [request for request in changed if request.startswith(("POST", "PUT"))]
     assert posts
-    assert all(one.endswith((" 401", " 403")) for one in posts), posts
+    assert all(post.endswith((" 401", " 403")) for post in posts), posts
     assert snapshot(site) == before
     assert own.evaluate(ROBOT) == 200, "it was signed out"
 

@@ -14,7 +14,7 @@ from tests.browser.site import Site
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
 def test_a_person_chooses_the_compression_of_mcap_alone(page: Page, site: Site, size: ViewportSize) -> None:
     fill(site)
-    numbers = {one["name"]: one["id"] for one in site.api.get("/sessions").json()}
+    numbers = {session["name"]: session["id"] for session in site.api.get("/sessions").json()}
     page.set_viewport_size(size)
     page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}")
     form = page.get_by_role("region", name="Export")
@@ -39,7 +39,7 @@ def test_a_person_chooses_the_compression_of_mcap_alone(page: Page, site: Site, 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
 def test_a_person_says_which_spreadsheet_reads_the_table(page: Page, site: Site, size: ViewportSize) -> None:
     fill(site)
-    numbers = {one["name"]: one["id"] for one in site.api.get("/sessions").json()}
+    numbers = {session["name"]: session["id"] for session in site.api.get("/sessions").json()}
     page.set_viewport_size(size)
     page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}")
     form = page.get_by_role("region", name="Export")

@@ -27,10 +27,10 @@ def robot(tmp_path: Path) -> Iterator[DiveSite]:
 
 
 def has_line(page: Page) -> bool:
-    """True where the chart of the depth shows the line of the set point over a tenth of its width."""
+    """Return True where the chart of the depth shows the line of the set point over a tenth of its width."""
     # Of all charts and views that of the depth is the widest.
-    boxes = [one.bounding_box() for one in page.locator("canvas").all()]
-    widest = max((one for one in boxes if one is not None), key=lambda box: box["width"], default=None)
+    boxes = [canvas.bounding_box() for canvas in page.locator("canvas").all()]
+    widest = max((box for box in boxes if box is not None), key=lambda box: box["width"], default=None)
     if widest is None:
         return False
     picture = cv2.imdecode(np.frombuffer(page.screenshot(clip=widest), np.uint8), cv2.IMREAD_COLOR)

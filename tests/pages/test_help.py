@@ -27,11 +27,11 @@ def test_the_help_renders_and_searches_without_a_foreign_request(
     expect(page.locator("body")).to_have_attribute("data-md-color-scheme", scheme)
     if window == PHONE:
         page.locator("label[for=__search]").first.click()
-    found = page.locator(".md-search-result__link").first
+    element = page.locator(".md-search-result__link").first
     # Typed, key by key: the search reads the field when a key is released.
     page.get_by_role("textbox", name="Search").press_sequentially("overshoot")
-    expect(found).to_be_visible()
-    found.click()
+    expect(element).to_be_visible()
+    element.click()
     expect(page.get_by_role("heading", level=1)).to_be_visible()
     context.close()
     assert [url for url in requests if not url.startswith(f"{site.url}/help/")] == []

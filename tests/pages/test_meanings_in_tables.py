@@ -21,13 +21,13 @@ def test_a_finger_asks_what_a_signal_and_an_axis_mean(
     page.goto(site.url)
     # Until then the reasons against arming change, which moves what stands below them.
     expect(page.get_by_role("region", name="Arm").get_by_text("Ready to arm")).to_be_visible()
-    for tab, panel, words in (
+    for tab, panel, text in (
         ("Motion", "Depth over time", "depth.depth: "),
         ("Sensors", "Inertial sensor", "Axis pointing forwards"),
     ):
         page.get_by_role("tab", name=tab).tap()
         shown = page.get_by_role("region", name=panel)
-        meaning = shown.get_by_text(words)
+        meaning = shown.get_by_text(text)
         expect(meaning).to_be_hidden()
         shown.locator("summary").first.tap()
         expect(meaning).to_be_visible()

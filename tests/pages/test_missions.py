@@ -37,15 +37,16 @@ def keep(site: Site, name: str) -> None:
     site.api.post("/missions", json={"text": OWN.format(name=name)}).raise_for_status()
 
 
-def card(page: Page, place: str) -> Locator:
-    """The head of the step at this place."""
-    return page.locator("button.head").filter(has=page.get_by_text(place, exact=True))
+def card(page: Page, element: str) -> Locator:
+    """Return the head of the step at this place."""
+    return page.locator("button.head").filter(has=page.get_by_text(element, exact=True))
 
 
 def places(page: Page) -> list[str]:
-    """All steps as they stand: the place, and the kind."""
+    """Return all steps as they stand: the place, and the kind."""
     return [
-        " ".join(one.locator(".place, strong").all_inner_texts()) for one in page.locator("button.head").all()
+        " ".join(head.locator(".place, strong").all_inner_texts())
+        for head in page.locator("button.head").all()
     ]
 
 
@@ -54,14 +55,14 @@ def show_toml(page: Page) -> Locator:
     return page.get_by_role("textbox", name="Mission as TOML")
 
 
-def tab_to(page: Page, wanted: Locator, most: int = 60) -> None:
+def tab_to(page: Page, expected: Locator, most: int = 60) -> None:
     """Go on by Tab until it has the focus."""
-    expect(wanted).to_be_visible()
+    expect(expected).to_be_visible()
     for _ in range(most):
         page.keyboard.press("Tab")
-        if wanted.count() == 1 and wanted.evaluate("(one) => one === document.activeElement"):
+        if expected.count() == 1 and expected.evaluate("(one) => one === document.activeElement"):
             return
-    raise AssertionError(f"Tab does not reach {wanted}")
+    raise AssertionError(f"Tab does not reach {expected}")
 
 
 def test_the_library_lists_duplicates_saves_and_deletes(page: Page, site: Site) -> None:
@@ -169,7 +170,7 @@ def test_a_mission_is_written_from_nothing_by_keyboard_alone(page: Page, site: S
             break
     keyboard.press("Enter")
     expect(page.get_by_role("button", name="Saved", exact=True)).to_be_visible()
-    listed = {one["name"]: one for one in site.api.get("/missions").json()}
+    listed = {mission["name"]: mission for mission in site.api.get("/missions").json()}
     assert listed["by_keyboard"]["text"] == text
 
 
@@ -237,21 +238,6 @@ def test_toml_changes_the_cards_and_cards_write_toml(page: Page, site: Site) -> 
     expect(page.get_by_text(VALID)).to_be_visible()
 
 
-def test_an_emptied_text_is_checked_and_can_be_undone(page: Page, site: Site) -> None:
-    page.goto(f"{site.url}/#/missions")
-    page.get_by_role("button", name="New mission").click()
-    expect(page.get_by_text("Add the first step.")).to_be_visible()
-    toml = show_toml(page)
-    text = toml.input_value()
-    assert text
-    toml.fill("")
-    expect(page.get_by_text(re.compile("problems?$")).first).to_be_visible()
-    expect(page.get_by_text("Not saved")).to_be_visible()
-    expect(toml).to_have_value("")
-    page.get_by_role("button", name="Undo").click()
-    expect(toml).to_have_value(text)
-
-
 def test_a_new_mission_left_untouched_blocks_no_other(page: Page, site: Site) -> None:
     page.goto(f"{site.url}/#/missions")
     page.get_by_role("button", name="New mission").click()
@@ -271,9 +257,9 @@ def test_an_address_of_no_mission_says_so(page: Page, site: Site) -> None:
     expect(page.get_by_text(re.compile("“%”"))).to_be_visible()
 
 
-def drag(page: Page, place: str, to: Locator, at: tuple[float, float] | None = None) -> None:
+def drag(page: Page, element: str, to: Locator, at: tuple[float, float] | None = None) -> None:
     """Drag the step at this place over something, to a position in it."""
-    card(page, place).locator("xpath=preceding-sibling::*").hover()
+    card(page, element).locator("xpath=preceding-sibling::*").hover()
     page.mouse.down()
     to.hover(position=None if at is None else {"x": at[0], "y": at[1]})
     page.mouse.up()
@@ -353,7 +339,7 @@ def test_what_somebody_else_has_saved_meanwhile_is_not_replaced_unasked(page: Pa
         ).to_be_visible()
 
     def stored() -> list[str]:
-        return [one["text"] for one in site.api.get("/missions/versions/shared").json()]
+        return [version["text"] for version in site.api.get("/missions/versions/shared").json()]
 
     save_both(3)
     assert len(stored()) == 2
@@ -504,3 +490,20 @@ def test_an_open_card_fits_the_screen_and_is_accessible(any_page: Page, site: Si
         "document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth"
     )
     assert (width, inner) == (0, 0)
+
+
+def test_the_checks_before_a_dive_are_ticked_or_say_what_is_not_known(page: Page, site: DiveSite) -> None:
+    page.goto(f"{site.url}/#/missions/edit/first_dive")
+    checks = page.get_by_role("region", name="Before a dive")
+    expect(checks).to_contain_text("swims on to its end, 11:05 at most")
+    expect(checks).to_contain_text("GB free")
+    expect(checks).to_contain_text("as this device’s")
+    expect(checks).to_contain_text("not known now")
+    expect(checks).to_contain_text("V, alarm at 6.2 V")
+    count = checks.get_by_text(re.compile(r"^\d+ of 11$"))
+    before = int(count.inner_text()[0])
+    checks.get_by_label("Level at rest").check()
+    expect(count).to_have_text(f"{before + 1} of 11")
+    expect(checks.get_by_role("link", name="Dive without Wi-Fi")).to_have_attribute(
+        "href", "/help/use/dive-without-wifi/"
+    )

@@ -17,28 +17,9 @@ def page(request: pytest.FixtureRequest, browser: Browser, cookies: object) -> I
     context.close()
 
 
-def test_a_list_takes_no_decimal_comma_for_two_numbers(page: Page, site: DiveSite) -> None:
-    page.goto(f"{site.url}/#/comm-tests/new")
-    page.get_by_role("button", name="Edit", exact=True).click()
-    delays = page.get_by_label(re.compile("^Pi delays"))
-    for typed, why in (
-        ("0,6", "can be one number, 0.6, or several, 0, 6"),
-        ("0.5, 1,5", "can be one number, 1.5, or several, 1, 5"),
-        ("0x10", "is not a number"),
-    ):
-        delays.fill(typed)
-        expect(delays).to_have_value(typed)
-        expect(delays).to_have_attribute("aria-invalid", "true")
-        expect(page.get_by_text(why)).to_be_visible()
-    delays.fill("0,5; 1")
-    expect(delays).to_have_attribute("aria-invalid", "false")
-    delays.blur()
-    expect(delays).to_have_value("0.5, 1")
-
-
 def test_an_export_says_why_it_refuses_a_range(page: Page, site: DiveSite) -> None:
     fill(site)
-    numbers = {one["name"]: one["id"] for one in site.api.get("/sessions").json()}
+    numbers = {session["name"]: session["id"] for session in site.api.get("/sessions").json()}
     page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}")
     form = page.get_by_role("region", name="Export")
     create = form.get_by_role("button", name="Create file")
@@ -63,7 +44,7 @@ def test_an_export_says_why_it_refuses_a_range(page: Page, site: DiveSite) -> No
 
 def test_a_range_that_ends_before_it_starts_is_not_put_back(page: Page, site: DiveSite) -> None:
     fill(site)
-    numbers = {one["name"]: one["id"] for one in site.api.get("/sessions").json()}
+    numbers = {session["name"]: session["id"] for session in site.api.get("/sessions").json()}
     page.goto(f"{site.url}/#/sessions/compare/{numbers[SESSIONS[0]]}")
     group = page.get_by_role("group", name="Time range")
     start, end = group.get_by_label("From", exact=True), group.get_by_label("to", exact=True)

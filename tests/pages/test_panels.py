@@ -37,22 +37,22 @@ def test_panels_are_arranged_stored_and_reset(fresh: Page, site: Site) -> None:
     expect(camera).to_be_visible()
     expect(page.get_by_role("application", name=re.compile("column"))).to_have_count(0)
     bar = arrange(page)
-    told = bar.get_by_role("status")
+    status = bar.get_by_role("status")
 
     handle(page, "Attitude").press("ArrowDown")
-    expect(told).to_have_text("Attitude and Fins swapped places.")
+    expect(status).to_have_text("Attitude and Fins swapped places.")
     expect(handle(page, "Fins")).to_have_accessible_name("Fins: column 18, row 1, 7 wide, 6 high")
     handle(page, "Camera").press("Shift+ArrowLeft")
-    expect(told).to_have_text("Camera: 16 wide, 11 high.")
+    expect(status).to_have_text("Camera: 16 wide, 11 high.")
     handle(page, "Camera").press("Shift+ArrowRight")
     handle(page, "Camera").press("Shift+ArrowRight")
     expect(handle(page, "Attitude")).to_have_accessible_name("Attitude: column 19, row 7, 6 wide, 6 high")
     expect(handle(page, "Fins")).to_have_accessible_name("Fins: column 19, row 1, 6 wide, 6 high")
     handle(page, "Camera").press("Shift+ArrowRight")
-    expect(told).to_have_text("Fins cannot be smaller.")
+    expect(status).to_have_text("Fins cannot be smaller.")
 
     drag(page, handle(page, "Navigation command"), handle(page, "Events"))
-    expect(told).to_have_text("Navigation command and Events swapped places.")
+    expect(status).to_have_text("Navigation command and Events swapped places.")
     handle(page, "Console").press("Delete")
     add(page, bar, "Chart")
     bar.get_by_role("button", name="Undo").click()
@@ -61,7 +61,7 @@ def test_panels_are_arranged_stored_and_reset(fresh: Page, site: Site) -> None:
     bar.get_by_role("button", name="Save", exact=True).click()
     bar.get_by_label("Name of the layout").fill("pool day")
     page.keyboard.press("Enter")
-    expect(told).to_have_text("Saved as “pool day”.")
+    expect(status).to_have_text("Saved as “pool day”.")
     bar.get_by_role("button", name="Done").click()
 
     chart = page.get_by_role("region", name=re.compile("^Chart"))
@@ -82,7 +82,7 @@ def test_panels_are_arranged_stored_and_reset(fresh: Page, site: Site) -> None:
     page.get_by_role("button", name="Done").click()
     expect(page.get_by_role("region", name="Console")).to_be_visible()
     expect(chart).to_have_count(0)
-    assert [one["name"] for one in site.api.get("/layouts").json()] == ["pool day"]
+    assert [layout["name"] for layout in site.api.get("/layouts").json()] == ["pool day"]
 
 
 def test_a_layout_of_another_version_is_refused(fresh: Page, tmp_path: Path) -> None:
@@ -93,7 +93,9 @@ def test_a_layout_of_another_version_is_refused(fresh: Page, tmp_path: Path) -> 
         bar.get_by_role("button", name="Save to a file").click()
     layout = json.loads(download.value.path().read_text())
     file = tmp_path / "theirs.layout.json"
-    before = [one.get_attribute("aria-label") for one in page.get_by_role("application", name="column").all()]
+    before = [
+        column.get_attribute("aria-label") for column in page.get_by_role("application", name="column").all()
+    ]
     assert len(before) == 8
 
     bar.get_by_role("button", name="File").click()
@@ -102,7 +104,9 @@ def test_a_layout_of_another_version_is_refused(fresh: Page, tmp_path: Path) -> 
     expect(bar.get_by_role("alert")).to_have_text(
         "This layout has version 2. This program reads version 1. Nothing was changed."
     )
-    after = [one.get_attribute("aria-label") for one in page.get_by_role("application", name="column").all()]
+    after = [
+        column.get_attribute("aria-label") for column in page.get_by_role("application", name="column").all()
+    ]
     assert after == before
 
     unknown = {"id": "a", "panel": "sonar", "x": 0, "y": 0, "width": 6, "height": 6}

@@ -11,7 +11,7 @@ REFUSED = {"status": 503, "json": {"detail": "The disk is full."}}
 
 
 def record(site: Site, name: str) -> int:
-    """A short session of this name."""
+    """Return a short session of this name."""
     session: int = site.api.post("/sessions", json={"name": name}).raise_for_status().json()["id"]
     site.api.post(f"/sessions/{session}/stop").raise_for_status()
     return session

@@ -42,5 +42,5 @@ def test_the_clock_shows_the_robots_time(page: Page) -> None:
     page.clock.install(time=AHEAD)
     page.reload()
     now = datetime.now()
-    minutes = "|".join(f"{one:%H:%M}" for one in (now, now + timedelta(minutes=1)))
+    minutes = "|".join(f"{moment:%H:%M}" for moment in (now, now + timedelta(minutes=1)))
     expect(page.get_by_title("Robot’s clock")).to_have_text(re.compile(f"^({minutes})"))

@@ -42,16 +42,16 @@ def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
     expect(page.get_by_role("list", name="Tags")).to_contain_text("pool")
 
     page.get_by_role("link", name="All sessions").click()
-    found = page.get_by_role("region", name="Recorded").get_by_role("row")
+    element = page.get_by_role("region", name="Recorded").get_by_role("row")
     page.get_by_label("Search sessions").fill("north hover")
-    expect(found).to_have_count(2)
-    expect(found.nth(1)).to_contain_text("hover in a current")
-    expect(found.first.get_by_role("columnheader", name=re.compile("^Started, [A-Z]"))).to_be_visible()
+    expect(element).to_have_count(2)
+    expect(element.nth(1)).to_contain_text("hover in a current")
+    expect(element.first.get_by_role("columnheader", name=re.compile("^Started, [A-Z]"))).to_be_visible()
     page.get_by_label("Search sessions").fill("nothing is like this")
     expect(page.get_by_text("No matching sessions")).to_be_visible()
     page.get_by_role("button", name=re.compile("^Show all")).click()
     page.get_by_role("button", name="pool", exact=True).click()
-    expect(found).to_have_count(2)
+    expect(element).to_have_count(2)
 
     page.get_by_role("button", name="Delete hover in a current").click()
     expect(page.get_by_text("Deleted “hover in a current”")).to_be_visible()
@@ -85,14 +85,14 @@ def test_a_note_that_somebody_else_has_changed_meanwhile_is_not_replaced_unasked
     site.api.post(f"/sessions/{number}/stop").raise_for_status()
     page.goto(f"{site.url}/#/sessions/{number}")
 
-    def save_both(words: str) -> None:
+    def save_both(message: str) -> None:
         """Another program saves a note, then this page."""
         page.get_by_role("button", name="Edit", exact=True).click()
-        site.api.patch(f"/sessions/{number}", json={"note": f"theirs {words}"}).raise_for_status()
-        page.get_by_label("Note", exact=True).fill(f"mine {words}")
+        site.api.patch(f"/sessions/{number}", json={"note": f"theirs {message}"}).raise_for_status()
+        page.get_by_label("Note", exact=True).fill(f"mine {message}")
         page.get_by_role("button", name="Save", exact=True).click()
         expect(page.get_by_text("The note of “shared” was saved since you opened it.")).to_be_visible()
-        assert site.api.get(f"/sessions/{number}").json()["note"] == f"theirs {words}"
+        assert site.api.get(f"/sessions/{number}").json()["note"] == f"theirs {message}"
 
     save_both("first")
     page.get_by_role("button", name="Save mine over it").click()

@@ -48,7 +48,7 @@ ENDED = Mission(
 
 
 def ended_mission() -> bytes:
-    """The block of a mission that has just ended."""
+    """Return the block of a mission that has just ended."""
     mission = [replace(ENDED, time=SteadyClock().now())]
     return Block.of(BY_NAME["mission"], 1, 0, pack_documents(mission)).data
 
@@ -75,7 +75,7 @@ class Refusals:
             topic, _, count, first, size = HEADER.unpack_from(message)
             payload, message = message[HEADER.size : HEADER.size + size], message[HEADER.size + size :]
             if topic == BY_NAME["state"].id and self.reason is not None:
-                states = [one | {"refusals": [self.reason]} for one in json.loads(payload)]
+                states = [document | {"refusals": [self.reason]} for document in json.loads(payload)]
                 payload = json.dumps(states).encode()
             changed += Block.of(BY_ID[topic], count, first, payload).data
         return changed
@@ -171,7 +171,7 @@ DRAW_NOTHING = """() => {
 
 
 def open_to_arm(page: Page, site: DiveSite) -> Locator:
-    """The button to arm, once it would."""
+    """Return the button to arm, once it would."""
     page.goto(f"{site.url}/#/operate")
     # The address alone opens no new socket.
     page.reload()
@@ -182,7 +182,7 @@ def open_to_arm(page: Page, site: DiveSite) -> Locator:
 
 
 def asks_to_arm(page: Page) -> bool:
-    """True if the page has asked to arm, once a hold would have armed."""
+    """Return True if the page has asked to arm, once a hold would have armed."""
     return any(address.endswith("/commands/arm") for address in page.evaluate(FRAMES_OF_A_HOLD))
 
 

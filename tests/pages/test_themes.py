@@ -39,7 +39,7 @@ def opened(
 
 
 def theme(page: Page) -> Locator:
-    """The document's element with its theme."""
+    """Return the document's element with its theme."""
     return page.locator("html")
 
 
@@ -81,9 +81,9 @@ def test_the_theme_is_chosen_at_every_width(browser: Browser, site: Site, cookie
             page.get_by_role("button", name="Close", exact=True).click()
 
 
-def colour(place: Locator, name: str) -> str:
-    """A computed colour."""
-    return str(place.evaluate(f"(one) => getComputedStyle(one)['{name}']"))
+def colour(element: Locator, name: str) -> str:
+    """Return a computed colour."""
+    return str(element.evaluate(f"(one) => getComputedStyle(one)['{name}']"))
 
 
 def test_more_contrast_on_the_device_s_request(browser: Browser, site: Site, cookies: StorageState) -> None:

@@ -32,7 +32,7 @@ def test_the_runs_are_asked_for_once_when_one_has_ended(page: Page, site: DiveSi
         window.asked = 0;
         const whole = window.fetch;
         window.fetch = (...args) => {
-            if (String(args[0]).includes('/api/tuning/runs')) window.asked += 1;
+            if (new Request(...args).url.includes('/api/tuning/runs')) window.asked += 1;
             return whole(...args);
         };
     """)

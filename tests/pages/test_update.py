@@ -11,8 +11,8 @@ from playwright.sync_api import Browser, Locator, Page, expect
 
 from server import VERSION
 from server.features.installation.places import InstallPlaces
+from server.features.installation.plug import InstallationPlug
 from server.features.installation.report import UpdateReport
-from server.features.updates import plug
 from tests.browser.people import somebody
 from tests.pages.dive_site import DiveSite
 
@@ -25,18 +25,21 @@ LOOKS = """() => performance.getEntriesByType('resource')
 @pytest.fixture(scope="module")
 def places(tmp_path_factory: pytest.TempPathFactory) -> InstallPlaces:
     """Of a computer on which this version is installed, and 0.1.0 was before."""
-    found = InstallPlaces(tmp_path_factory.mktemp("pi"))
-    for folder in (found.version(VERSION), found.version("0.1.0"), found.data, found.report.parent):
+    result = InstallPlaces(tmp_path_factory.mktemp("pi"))
+    for folder in (result.version(VERSION), result.version("0.1.0"), result.data, result.report.parent):
         folder.mkdir(parents=True)
-    found.current.symlink_to(found.version(VERSION))
-    found.previous.symlink_to(found.version("0.1.0"))
-    return found
+    result.current.symlink_to(result.version(VERSION))
+    result.previous.symlink_to(result.version("0.1.0"))
+    return result
 
 
 @pytest.fixture(scope="module")
 def installed(places: InstallPlaces) -> Iterator[DiveSite]:
+    def offered() -> InstallPlaces:
+        return places
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(plug, "InstallPlaces", lambda: places)
+        patch.setattr(InstallationPlug, "makers", (offered,))
         with DiveSite(places.data) as site:
             yield site
 
@@ -48,7 +51,7 @@ def fresh(browser: Browser, installed: DiveSite) -> Iterator[Page]:
         page.goto(f"{installed.url}/#/system")
         # Without control another panel says so, above this one, and moves it.
         control = page.get_by_role("button", name=re.compile("^Control:"))
-        expect(control).to_have_accessible_name("Control: this page")
+        expect(control).to_have_accessible_name("Control: you have control")
         yield page
 
 

@@ -16,7 +16,7 @@ def main() -> int:
     print(f"\n{RESETS} resets of either side ...", flush=True)
     report = resets.measure_all(RESETS)
     print(report.table())
-    undetected = sum(one.undetected for one in counts.values())
+    undetected = sum(number.undetected for number in counts.values())
     return 1 if undetected or report.problems else 0
 
 

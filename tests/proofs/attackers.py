@@ -23,7 +23,7 @@ from threading import Event
 import httpx
 from websockets.exceptions import WebSocketException
 
-from tests.proofs.field import PATIENCE, Field
+from tests.proofs.field import PATIENCE, AttackedRobot
 from tests.proofs.floods import FLOODS
 from tests.released import ARCHIVE, RELEASED, SIGNALS
 from tests.runtime.contract.test_toml_text import BOMBS, CHEAP
@@ -70,7 +70,7 @@ COMMANDS: list[object] = [
 ]
 
 
-def paths(field: Field) -> None:
+def paths(field: AttackedRobot) -> None:
     for trick in TRICKS:
         for file in FILES:
             head = f"GET /{trick}/{trick}/{file} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
@@ -78,7 +78,7 @@ def paths(field: Field) -> None:
             assert not data.startswith(b"HTTP/1.1 5"), (trick, data)
 
 
-def hosts(field: Field) -> None:
+def hosts(field: AttackedRobot) -> None:
     for host in HOSTS:
         data = field.send(f"GET /api/robot HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
         assert data.startswith(b"HTTP/1.1 4"), (host, data)
@@ -86,7 +86,7 @@ def hosts(field: Field) -> None:
         field.refuse(method, "/api/robot", field.viewer)
 
 
-def authorizations(field: Field) -> None:
+def authorizations(field: AttackedRobot) -> None:
     token = field.viewer["authorization"].removeprefix("Bearer ")
     basic = base64.b64encode(f"x:{token}".encode()).decode()
     forms = [
@@ -103,17 +103,17 @@ def authorizations(field: Field) -> None:
     assert field.ask("GET", f"/api/robot?token={token}", {"x-forwarded-for": "127.0.0.1"}) == 401
 
 
-def codes(field: Field) -> None:
+def codes(field: AttackedRobot) -> None:
     for code in ("0000-0000", "", "x" * 1000, "\ud800"):
         field.refuse("POST", "/api/access/pair", {"origin": field.url}, content=json.dumps({"code": code}))
 
 
-def forgeries(field: Field) -> None:
+def forgeries(field: AttackedRobot) -> None:
     for origin in ("http://evil.example", "null", "http://127.0.0.1:1"):
         field.refuse("POST", "/api/robot/commands/arm", {"origin": origin, "cookie": "mucat=x"}, json={})
 
 
-def escalations(field: Field) -> None:
+def escalations(field: AttackedRobot) -> None:
     for method, path in (
         ("POST", "/api/robot/commands/arm"),
         ("POST", "/api/control/take"),
@@ -126,13 +126,13 @@ def escalations(field: Field) -> None:
         assert field.ask(method, path, field.viewer, json={}) in (403, 404, 405, 422), path
 
 
-def takes(field: Field) -> None:
+def takes(field: AttackedRobot) -> None:
     with ThreadPoolExecutor(12) as threads:
         list(threads.map(lambda _: field.ask("POST", "/api/control/take", field.operator), range(12)))
     field.ask("POST", "/api/control/release", field.operator)
 
 
-def nonsense(field: Field) -> None:
+def nonsense(field: AttackedRobot) -> None:
     with suppress(OSError, WebSocketException), field.open(field.viewer) as page:
         for message in ("{", "[]", '{"op": 5}', '{"op": "drive"}', '{"op": "ping", "id": 1e999}', "x" * 5000):
             page.send(message)
@@ -140,7 +140,7 @@ def nonsense(field: Field) -> None:
             page.send(json.dumps({"op": "ping", "id": number}))
 
 
-def many_sockets(field: Field) -> None:
+def many_sockets(field: AttackedRobot) -> None:
     with ExitStack() as opened:
         for _ in range(SOCKETS):
             with suppress(OSError, WebSocketException):
@@ -149,7 +149,7 @@ def many_sockets(field: Field) -> None:
             page.recv(PATIENCE)
 
 
-def slow(field: Field) -> None:
+def slow(field: AttackedRobot) -> None:
     beginnings = [
         b"",
         b"GET /api/robot HT",
@@ -163,7 +163,7 @@ def slow(field: Field) -> None:
         time.sleep(HOLD_SECONDS)
 
 
-def bodies(field: Field) -> None:
+def bodies(field: AttackedRobot) -> None:
     path = "/api/scenarios/check"
     for content in (
         b"[" * 100_000,
@@ -180,7 +180,7 @@ def bodies(field: Field) -> None:
             assert not data.startswith(b"HTTP/1.1 5"), data
 
 
-def toml_bombs(field: Field) -> None:
+def toml_bombs(field: AttackedRobot) -> None:
     for text in [*BOMBS.values(), *CHEAP.values()]:
         status = field.ask("POST", "/api/scenarios/check", field.viewer, json={"text": text})
         assert status in (200, 413, 422, 429, 503), (status, text[:40])
@@ -188,7 +188,7 @@ def toml_bombs(field: Field) -> None:
         field.refuse("POST", "/api/scenarios/runs", field.operator, json={"text": text, "place": "simulated"})
 
 
-def odd_commands(field: Field) -> None:
+def odd_commands(field: AttackedRobot) -> None:
     for body in COMMANDS:
         field.refuse("POST", "/api/robot/commands/set_points", field.operator, content=json.dumps(body))
     for number in ("nan", "inf", "1e999", "-1e308", "x", ""):
@@ -196,7 +196,7 @@ def odd_commands(field: Field) -> None:
         field.ask("GET", f"/api/sessions/1/blocks?start={number}&end=1", field.viewer)
 
 
-def archives(field: Field) -> None:
+def archives(field: AttackedRobot) -> None:
     edits = [row_bomb, *(edit for edit, _ in MALFORMED.values())]
     gaps = [{"topic": "depth", "kind": "missed", "time": 1.5, "missed": 1}] * 100_000
     with tempfile.TemporaryDirectory() as folder:
@@ -206,7 +206,7 @@ def archives(field: Field) -> None:
             field.refuse("POST", "/api/imports", field.operator, content=path.read_bytes())
 
 
-def heavy_reading(field: Field) -> None:
+def heavy_reading(field: AttackedRobot) -> None:
     query = {"sessions": [1], "signals": SIGNALS, "view": {"start": -1e308, "end": 1e308}}
     field.ask("POST", "/api/compare", field.viewer, json=query)
     field.ask("GET", f"/api/compare/report?sessions=1&signals={','.join(SIGNALS)}", field.viewer)
@@ -214,7 +214,7 @@ def heavy_reading(field: Field) -> None:
     field.ask("POST", "/api/exports", field.viewer, json={"session": 1, "format": "csv"})
 
 
-ATTACKS: dict[str, Callable[[Field], None]] = {
+ATTACKS: dict[str, Callable[[AttackedRobot], None]] = {
     "path tricks": paths,
     "hosts and methods": hosts,
     "forms of Authorization": authorizations,
@@ -233,8 +233,8 @@ ATTACKS: dict[str, Callable[[Field], None]] = {
 }
 
 
-def repeat(attack: Callable[[Field], None], field: Field, end: Event) -> tuple[str, int]:
-    """Repeats an attack, once at least, until the end; returns what went wrong, and how often it was made."""
+def repeat(attack: Callable[[AttackedRobot], None], field: AttackedRobot, end: Event) -> tuple[str, int]:
+    """Repeat an attack, once at least, until the end; return what went wrong, and how often it was made."""
     made, ended = 0, False
     while not ended:
         try:
@@ -253,24 +253,28 @@ def repeat(attack: Callable[[Field], None], field: Field, end: Event) -> tuple[s
     return "", made
 
 
-def choose(words: str) -> dict[str, Callable[[Field], None]]:
-    """The attacks that have these words in their names, or the flood of this name."""
-    if words in FLOODS:
-        return {words: FLOODS[words]}
-    return {name: attack for name, attack in ATTACKS.items() if words in name}
+def choose(message: str) -> dict[str, Callable[[AttackedRobot], None]]:
+    """Return the attacks that have these words in their names, or the flood of this name."""
+    if message in FLOODS:
+        return {message: FLOODS[message]}
+    return {name: attack for name, attack in ATTACKS.items() if message in name}
 
 
 def main() -> None:
-    """Runs every attack at once."""
+    """Run every attack at once."""
     # It logs an internal error, with its trace, where a connection ends in the middle of a message.
     logging.getLogger("websockets").setLevel(logging.CRITICAL)
-    url, viewer, operator, ros2, *words = sys.argv[1:]
-    field, end, attacks = Field(url, viewer, operator, Path(ros2)), Event(), choose(" ".join(words))
+    url, viewer, operator, ros2, *arguments = sys.argv[1:]
+    field, end, attacks = (
+        AttackedRobot(url, viewer, operator, Path(ros2)),
+        Event(),
+        choose(" ".join(arguments)),
+    )
     with ThreadPoolExecutor(len(attacks)) as threads:
-        found = threads.map(lambda attack: repeat(attack, field, end), attacks.values())
+        result = threads.map(lambda attack: repeat(attack, field, end), attacks.values())
         sys.stdin.read()
         end.set()
-    print(json.dumps(dict(zip(attacks, found, strict=True))))
+    print(json.dumps(dict(zip(attacks, result, strict=True))))
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ TESTS = {
     "security headers, stored scripts": "tests/server/http/test_security.py",
     "zip-slip, packed, checksums, cut": "tests/server/features/exports/test_imports.py",
     "malformed archives": "tests/server/features/exports/test_malformed_archives.py",
-    "stored bombs": "tests/server/features/sessions/test_replay.py",
+    "stored bombs": "tests/server/library/test_replay.py",
     "sessions of other versions": "tests/server/test_released_sessions.py",
     "formulas and exports": "tests/server/features/exports/test_tables.py",
     "panels and layouts": "tests/server/features/panels",
@@ -64,7 +64,7 @@ TESTS = {
     "X-Forwarded-For": "tests/server/http/test_proxies.py",
     "numbers that are none": "tests/server/http/test_body_numbers.py",
     "Zenoh over TCP": "tests/server/platform/test_authority.py",
-    "a full disk": "tests/server/features/sessions/test_full_disk.py",
+    "a full disk": "tests/server/recording/test_full_disk.py",
     "exits of the panel sandbox": "tests/browser/test_panels.py",
     "modes of files, whatever the umask": "tests/server/test_cli.py -k private",
 }
@@ -78,13 +78,13 @@ DOORS = '[doors]\nrosbridge = true\nfoxglove = true\nros2 = true\nros2_listen = 
 
 
 def percentile(values: Sequence[float], share: float) -> float:
-    """The value that this share does not exceed; infinite without values."""
+    """Return the value that this share does not exceed; infinite without values."""
     ordered = sorted(values)
     return ordered[min(int(share * len(ordered)), len(ordered) - 1)] if ordered else float("inf")
 
 
 def press(stack: Stack, count: int) -> list[float]:
-    """The delays of so many STOPs of the armed robot, s."""
+    """Return the delays of so many STOPs of the armed robot, s."""
     delays = []
     for _ in range(count):
         stack.arm()
@@ -96,7 +96,7 @@ def press(stack: Stack, count: int) -> list[float]:
 
 
 def read_jitter(stack: Stack, start: float, end: float) -> float:
-    """The 99th percentile of the control loop's deviation from its median period, s."""
+    """Return the 99th percentile of the control loop's deviation from its median period, s."""
     answer = stack.api.get("/past", params={"topic": "control", "until": end}, timeout=60).raise_for_status()
     times = [moment for block in read_blocks(answer.content) for moment, _ in read_rows(block)]
     periods = [later - earlier for earlier, later in pairwise(times) if start <= earlier <= end]
@@ -105,7 +105,7 @@ def read_jitter(stack: Stack, start: float, end: float) -> float:
 
 
 def make_token(stack: Stack, scope: str) -> str:
-    """A token of a new program."""
+    """Return a token of a new program."""
     name = f"attacker {len(stack.api.get('/access/devices').json())}"
     made = stack.api.post("/access/tokens", json={"name": name, "scope": scope}).raise_for_status()
     token: str = made.json()["token"]
@@ -113,7 +113,7 @@ def make_token(stack: Stack, scope: str) -> str:
 
 
 def ros2_folder(stack: Stack) -> Path:
-    """The folder of a viewer's certificate for the door of ROS 2."""
+    """Return the folder of a viewer's certificate for the door of ROS 2."""
     return stack.data.parent / "ros2"
 
 
@@ -141,11 +141,11 @@ def crowd(stack: Stack) -> None:
         (start,) = database.execute("SELECT started_steady FROM session WHERE id = ?", (session,)).fetchone()
         database.executemany(
             "INSERT INTO gap (session_id, topic, kind, time, missed) VALUES (?, 'depth', 'missed', ?, 1)",
-            ((session, start + place / GAPS) for place in range(GAPS)),
+            ((session, start + position / GAPS) for position in range(GAPS)),
         )
         database.executemany(
             "INSERT INTO marker (session_id, time, text, made) VALUES (?, ?, 'x', 0)",
-            ((session, start + place / BOOKMARKS) for place in range(BOOKMARKS)),
+            ((session, start + position / BOOKMARKS) for position in range(BOOKMARKS)),
         )
 
 
@@ -160,36 +160,36 @@ def weigh(stack: Stack) -> bool:
 
 
 def look_as_nobody(data: Path) -> str:
-    """Returns the token, database, sockets and serial line that another user finds."""
+    """Return the token, database, sockets and serial line that another user finds."""
     for folder in data.parents[: len(data.parts) - len(Path(tempfile.gettempdir()).parts) - 1]:
         folder.chmod(0o755)
     places = [data / "server.token", data / "run" / "runtime.sock", data / "run" / "board.tty"]
     command = ["/usr/bin/find", str(data), *map(str, places)]
     as_nobody: dict[str, Any] = {"user": NOBODY, "group": NOBODY, "extra_groups": []}
-    found = subprocess.run(command, **as_nobody, capture_output=True, text=True)
-    seen = [line for line in found.stdout.splitlines() if line != str(data)]
+    result = subprocess.run(command, **as_nobody, capture_output=True, text=True)
+    seen = [line for line in result.stdout.splitlines() if line != str(data)]
     line = str((data / "run" / "board.tty").resolve())
     ways = [["/usr/bin/test", way, line] for way in ("-r", "-w")]
-    seen += [str(one) for one in ways if subprocess.run(one, **as_nobody).returncode == 0]
-    return f"nobody finds {seen}" if seen or not found.stderr else ""
+    seen += [str(way) for way in ways if subprocess.run(way, **as_nobody).returncode == 0]
+    return f"nobody finds {seen}" if seen or not result.stderr else ""
 
 
 def kill_the_runtime(stack: Stack) -> str:
-    """The runtime is killed while commands are sent: they fail in words, and the robot is there again."""
+    """Kill the runtime while commands are sent: they fail with a reason, and the robot comes back."""
     stack.arm()
     running = pid_file(stack.data / "run", "runtime").read()
     assert running is not None
     with ThreadPoolExecutor(1) as thread:
         commands = [thread.submit(stack.api.post, "/robot/stop", timeout=60) for _ in range(20)]
         os.kill(running.pid, signal.SIGKILL)
-        statuses = {one.result().status_code for one in commands}
+        statuses = {command.result().status_code for command in commands}
     stack.wait_ready()
     armed = stack.api.get("/robot").json()["armed"]
     return "" if statuses <= {204, 503} and not armed else f"answers {statuses}, armed: {armed}"
 
 
 @dataclass
-class Outcome:
+class FloodOutcome:
     """The result of the attacks on a whole robot."""
 
     problems: dict[str, str] = field(default_factory=dict)
@@ -202,25 +202,25 @@ class Outcome:
     """Attacks that were made while STOP was pressed."""
 
 
-def attack(stack: Stack, words: str) -> Outcome:
+def attack(stack: Stack, message: str) -> FloodOutcome:
     """Make the attacks that have these words in their names."""
-    chosen = {} if words in FLOODS else choose(words)
-    outcome = attack_while_pressing(stack, words) if chosen else Outcome()
+    chosen = {} if message in FLOODS else choose(message)
+    outcome = attack_while_pressing(stack, message) if chosen else FloodOutcome()
     nobody, killed = AFTERWARDS
-    if words in nobody and os.geteuid() == 0:
+    if message in nobody and os.geteuid() == 0:
         outcome.problems[nobody] = look_as_nobody(stack.data)
-    if words in killed:
+    if message in killed:
         outcome.problems[killed] = kill_the_runtime(stack)
-    if any(words in name for name in FLOODS):
+    if any(message in name for name in FLOODS):
         crowd(stack)
     for name in FLOODS:
-        if words in name:
+        if message in name:
             outcome.problems[name] = flood(stack, name)
     return outcome
 
 
-def start_attackers(stack: Stack, words: str) -> subprocess.Popen[str]:
-    """The process of the attackers, which attack until their input is closed."""
+def start_attackers(stack: Stack, message: str) -> subprocess.Popen[str]:
+    """Return the process of the attackers, which attack until their input is closed."""
     tokens = [make_token(stack, scope) for scope in ("read", "administer")]
     command = [
         sys.executable,
@@ -229,14 +229,14 @@ def start_attackers(stack: Stack, words: str) -> subprocess.Popen[str]:
         stack.url,
         *tokens,
         str(ros2_folder(stack)),
-        words,
+        message,
     ]
     pipe = subprocess.PIPE
     return subprocess.Popen(command, cwd=ROOT, stdin=pipe, stdout=pipe, text=True)
 
 
 def flood(stack: Stack, name: str) -> str:
-    """The problem of a flood; empty where STOP was answered in time, always by the same server."""
+    """Return the problem of a flood; empty where STOP was answered in time, always by the same server."""
     server, delays = stack.server, list[float]()
     with start_attackers(stack, name) as attackers:
         end = time.monotonic() + 2 * FLOOD_SECONDS
@@ -260,15 +260,15 @@ def flood(stack: Stack, name: str) -> str:
     return str(problem)
 
 
-def attack_while_pressing(stack: Stack, words: str) -> Outcome:
+def attack_while_pressing(stack: Stack, message: str) -> FloodOutcome:
     """Make those that the attackers repeat meanwhile."""
     record(stack)
     weight = "as in the units" if weigh(stack) else "not as in the units: that needs root and autogroups"
     print(f"Shares of the processors: {weight}", flush=True)
     began = time.monotonic()
     press(stack, QUIET_PRESSES)
-    outcome = Outcome(quiet_jitter=read_jitter(stack, began, time.monotonic()))
-    with start_attackers(stack, words) as attackers:
+    outcome = FloodOutcome(quiet_jitter=read_jitter(stack, began, time.monotonic()))
+    with start_attackers(stack, message) as attackers:
         began = time.monotonic()
         outcome.delays = press(stack, PRESSES)
         outcome.jitter = read_jitter(stack, began, time.monotonic())
@@ -280,7 +280,7 @@ def attack_while_pressing(stack: Stack, words: str) -> Outcome:
 
 
 def test(path: str) -> str:
-    """The last line of a row's tests where one fails, all lines of which are printed; else empty."""
+    """Return the last line of a row's tests where one fails, all lines of which are printed; else empty."""
     chosen = [] if path.startswith("tests/browser") else ["-m", "not stack"]
     command = [sys.executable, "-m", "pytest", "-q", *chosen, "-p", "no:cacheprovider", *path.split()]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
@@ -292,20 +292,20 @@ def test(path: str) -> str:
 
 def main() -> int:
     """Exit status: 1 where a row did not hold or STOP was late."""
-    words = " ".join(sys.argv[1:])
-    rows = {name: test(path) for name, path in TESTS.items() if words in name}
-    outcome = Outcome()
-    if any(words in name for name in LIVE):
+    text = " ".join(sys.argv[1:])
+    rows = {name: test(path) for name, path in TESTS.items() if text in name}
+    outcome = FloodOutcome()
+    if any(text in name for name in LIVE):
         with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
             config = Path(folder) / "robot.toml"
             endpoint = f"tls/127.0.0.1:{free_port()}"
             config.write_text(DOORS.format(endpoint), encoding="utf-8")
             with Stack(Path(folder) / "data", "--config", str(config)) as stack:
                 certify(stack, config, endpoint)
-                outcome = attack(stack, words)
+                outcome = attack(stack, text)
         rows |= outcome.problems
     if not rows:
-        print(f"No attack has “{words}” in its name.")
+        print(f"No attack has “{text}” in its name.")
         return 1
     width = max(map(len, rows))
     for name, problem in rows.items():

@@ -31,12 +31,12 @@ from tempfile import TemporaryDirectory
 import httpx
 import psutil
 
+from robot_runtime.contract.chunks import decode_documents
 from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
-from server.features.sessions.chunks import decode_documents
 from server.stream.hub import HISTORY_SECONDS
 from tests.proofs.counting import count
 from tests.proofs.kills import row_times
-from tests.proofs.outages import World
+from tests.proofs.outages import OutageTrial
 from tests.proofs.scales import anonymous
 from tests.proofs.slow_page import SlowPage
 from tests.proofs.watching import wait
@@ -60,7 +60,7 @@ LINE_SECONDS = (20.0, 600.0)
 
 
 @dataclass
-class Report:
+class ChaosReport:
     """Injected faults, their effects, and the problems found."""
 
     seconds: float = 0.0
@@ -88,10 +88,10 @@ class Storm:
     """A running robot under faults."""
 
     def __init__(self, stack: Stack, clock: Path, seed: int, *, small_disk: bool) -> None:
-        self.report = Report()
+        self.report = ChaosReport()
         self._chance = random.Random(seed)
         self._clock = clock
-        self._world = World(stack, self._chance)
+        self._world = OutageTrial(stack, self._chance)
         self._stack = stack
         self._pages = [SlowPage(self._stack, stalled=stalled) for stalled in (False, False, True, True)]
         self._memory: dict[int, tuple[str, list[tuple[float, float]]]] = {}
@@ -136,10 +136,10 @@ class Storm:
 
     def _require_recording(self, session: int) -> None:
         """Check that no fault has ended a session."""
-        found = self._ask(lambda: self._stack.api.get(f"/sessions/{session}"))
-        if found.is_error or found.json()["state"] != "recording":
-            said = self._stack.log.read_text()[-2000:]
-            raise AssertionError(f"the session does not record any more: {found.text}\n{said}")
+        result = self._ask(lambda: self._stack.api.get(f"/sessions/{session}"))
+        if result.is_error or result.json()["state"] != "recording":
+            output = self._stack.log.read_text()[-2000:]
+            raise AssertionError(f"the session does not record any more: {result.text}\n{output}")
 
     def _wait_stored(self, session: int) -> None:
         def stored() -> int:
@@ -215,7 +215,7 @@ class Storm:
         return "disk full"
 
     def _is_told(self, fault: str) -> bool:
-        return any(one["fault"] == fault and one["active"] for one in self._world.viewer.alarms)
+        return any(alarm["fault"] == fault and alarm["active"] for alarm in self._world.viewer.alarms)
 
     # In between
 
@@ -223,7 +223,7 @@ class Storm:
         """Arm again where the robot was stopped; a refusal is not tested here."""
         with suppress(httpx.TransportError):
             self._stack.api.post("/robot/commands/acknowledge")
-            self._stack.api.post("/robot/commands/arm")
+            self._stack.api.post("/robot/commands/arm", json={"unwatched": 0})
 
     def _rest(self, seconds: float) -> None:
         end = time.monotonic() + seconds
@@ -253,11 +253,11 @@ class Storm:
     def _count(self, session: int) -> None:
         report, done = self.report, self.report.done
         for page, name in zip(self._pages, ("slow 1", "slow 2"), strict=False):
-            missing, told = page.missing.total(), page.told.total()
-            report.pages[name] = [missing, told]
-            self._insist(missing == told, f"{name}: {missing} rows missing, {told} told")
+            missing, reports = page.missing.total(), page.told.total()
+            report.pages[name] = [missing, reports]
+            self._insist(missing == reports, f"{name}: {missing} rows missing, {reports} told")
         for name, weights in self._memory.values():
-            self._judge_memory(name, [one for one in weights if one[0] > weights[0][0] + WARM_UP])
+            self._judge_memory(name, [weight for weight in weights if weight[0] > weights[0][0] + WARM_UP])
         self._examine(session)
         for name in PARTS:
             self._expect(f"{name}_down", report.alarms[f"{name}_down"], done[f"{name} killed"])
@@ -314,14 +314,16 @@ class Storm:
                     ticks += row_times(topic, data)
                 elif topic == "notice":
                     notices = list(decode_documents(data))
-                    report.alarms.update(one["kind"] for one in notices)
-                    self._disk_low += [one["time"] - started for one in notices if one["kind"] == "disk_low"]
+                    report.alarms.update(notice["kind"] for notice in notices)
+                    self._disk_low += [
+                        notice["time"] - started for notice in notices if notice["kind"] == "disk_low"
+                    ]
         late = [1000 * abs(after - before - 0.1) for before, after in pairwise(ticks)]
         cuts = quantiles(late, n=1000)
         report.jitter = {"p50": round(cuts[499], 2), "p99": round(cuts[989], 2), "max": round(max(late), 1)}
 
 
-def storm(folder: Path, seconds: float, seed: int, *, small_disk: bool) -> Report:
+def storm(folder: Path, seconds: float, seed: int, *, small_disk: bool) -> ChaosReport:
     """Run all faults in this folder; `small_disk`: it is a small disk of its own."""
     library, clock = folder / "wall_clock.so", folder / "wall_clock"
     clock.write_bytes(struct.pack("<q", 0))
@@ -329,14 +331,14 @@ def storm(folder: Path, seconds: float, seed: int, *, small_disk: bool) -> Repor
     subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-o", str(library), str(source), "-ldl"], check=True)
     os.environ |= {"LD_PRELOAD": str(library), "MUCAT_WALL_CLOCK": str(clock)}
     with Stack(folder / "data") as stack:
-        one = Storm(stack, clock, seed, small_disk=small_disk)
+        item = Storm(stack, clock, seed, small_disk=small_disk)
         try:
-            one.rage(seconds)
+            item.rage(seconds)
         finally:
-            one.close()
+            item.close()
     del os.environ["LD_PRELOAD"]
     to_host, to_board = count(min(max(seconds / 6, LINE_SECONDS[0]), LINE_SECONDS[1]), seed)
-    report = one.report
+    report = item.report
     report.frames = {
         "to host": [to_host.damaged, to_host.invalid],
         "unreliable to host": [to_host.unreliable, to_host.missed],
@@ -349,7 +351,7 @@ def storm(folder: Path, seconds: float, seed: int, *, small_disk: bool) -> Repor
 
 
 def run(seconds: float, seed: int, folder: Path) -> str:
-    """Run in another process, on a small disk where the system permits; returns its report as JSON."""
+    """Run in another process, on a small disk where the system permits; return its report as JSON."""
     command = [sys.executable, "-m", "tests.proofs.chaos", str(seconds), str(seed), str(folder)]
     mount = f'mount -t tmpfs -o size={DISK} tmpfs "{folder}" && exec "$@"'
     namespace = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", mount, "sh"]

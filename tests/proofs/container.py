@@ -39,7 +39,7 @@ DISK_GROUP = Path("/sys/fs/cgroup/blkio/mucat-proof")
 _POLL = 0.2
 
 
-class Container:
+class SystemdContainer:
     """A copy of the system, with a folder of this computer at /releases and an empty small card at /card.
 
     It has a network of its own; `options` are systemd-nspawn's.
@@ -117,15 +117,15 @@ class Container:
     def cut_power(self) -> None:
         """End every process in it at once."""
         assert self._nspawn is not None
-        for one in self._init():
-            one.kill()
+        for process in self._init():
+            process.kill()
         self._nspawn.kill()
         self._nspawn.wait()
         self._nspawn = None
 
     def processes(self) -> list[psutil.Process]:
-        """All processes in it."""
-        return [one for init in self._init() for one in init.children(recursive=True)]
+        """Return all processes in it."""
+        return [process for init in self._init() for process in init.children(recursive=True)]
 
     @contextmanager
     def limited_memory(self, limit: int) -> Iterator[None]:
@@ -137,21 +137,21 @@ class Container:
             (GROUP / "memory.limit_in_bytes").write_text("-1")
 
     def kills(self) -> int:
-        """Processes that were ended for want of memory since the power came."""
-        words = (GROUP / "memory.oom_control").read_text().split()
-        return int(words[words.index("oom_kill") + 1]) - self._kills
+        """Return the processes that were ended for want of memory since the power came."""
+        parts = (GROUP / "memory.oom_control").read_text().split()
+        return int(parts[parts.index("oom_kill") + 1]) - self._kills
 
-    def order(self, words: str) -> tuple[int, str]:
+    def order(self, message: str) -> tuple[int, str]:
         """Run a line of shell in it; its status, and what it printed."""
-        found = self._init()
-        if not found:
+        result = self._init()
+        if not result:
             return 1, ""
         # As a unit of its own: it ends with the power, as everything does.
         inside = ["systemd-run", "--quiet", "--pipe", "--wait", "--collect", "--setenv=HOME=/root"]
-        enter = ["nsenter", "--target", str(found[0].pid), "--mount", "--uts", "--ipc", "--net", "--pid"]
+        enter = ["nsenter", "--target", str(result[0].pid), "--mount", "--uts", "--ipc", "--net", "--pid"]
         path = "PATH=/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
         done = subprocess.run(
-            [*enter, "env", "--ignore-environment", path, *inside, f"--setenv={path}", "sh", "-c", words],
+            [*enter, "env", "--ignore-environment", path, *inside, f"--setenv={path}", "sh", "-c", message],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -163,4 +163,4 @@ class Container:
     def _init(self) -> list[psutil.Process]:
         assert self._nspawn is not None
         below = psutil.Process(self._nspawn.pid).children() if self._nspawn.poll() is None else []
-        return [one for one in below if one.name() == "systemd"]
+        return [process for process in below if process.name() == "systemd"]

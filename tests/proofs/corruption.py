@@ -47,15 +47,15 @@ MODELS = {
 
 
 @dataclass
-class Counts:
+class FrameCounts:
     """Corrupted frames, accepted frames that were sent, and accepted frames that were never sent."""
 
     corrupted: int = 0
     accepted: int = 0
     undetected: int = 0
 
-    def __add__(self, other: Self) -> "Counts":
-        return Counts(
+    def __add__(self, other: Self) -> "FrameCounts":
+        return FrameCounts(
             self.corrupted + other.corrupted,
             self.accepted + other.accepted,
             self.undetected + other.undetected,
@@ -77,21 +77,21 @@ class DamagingLine:
         self._library.corruption_destroy(self._line)
 
     def batches(self, frames: int) -> Iterator[None]:
-        """Makes at least `frames` damaged frames, a batch at a time, to be read by `chip` and `host`."""
+        """Make at least `frames` damaged frames, a batch at a time, to be read by `chip` and `host`."""
         for start in range(0, frames, BATCH):
             self._library.corruption_carry(self._line, min(BATCH, frames - start))
             yield
 
-    def chip(self) -> Counts:
-        """Counts of the batch by the chip's decoder."""
+    def chip(self) -> FrameCounts:
+        """Return the counts of the batch by the chip's decoder."""
         counts = (ctypes.c_uint32 * 3)()
         self._library.corruption_read(self._line, counts)
-        return Counts(*counts)
+        return FrameCounts(*counts)
 
-    def host(self) -> Counts:
-        """Counts of the same bytes by the host's decoder."""
+    def host(self) -> FrameCounts:
+        """Return the counts of the same bytes by the host's decoder."""
         damaged = self._bytes("damaged")
-        counts = Counts(corrupted=sum(damaged) + int(self._library.corruption_foreign(self._line)))
+        counts = FrameCounts(corrupted=sum(damaged) + int(self._library.corruption_foreign(self._line)))
         sent = [frame + b"\0" for frame in self._bytes("sent").split(b"\0")[:-1]]
         decoder = Decoder()
         decoder.key = self.key
@@ -100,15 +100,15 @@ class DamagingLine:
             key = 0 if frame.open else self.key
             messages = b"".join(bytes([type_]) + payload for type_, payload in frame.messages)
             try:
-                found = sent.index(
+                result = sent.index(
                     assemble(messages, frame.reliable, frame.number, frame.acknowledged, key), at
                 )
             except ValueError:
                 counts.undetected += 1
                 continue
             counts.accepted += 1
-            counts.corrupted -= damaged[found]
-            at = found + 1
+            counts.corrupted -= damaged[result]
+            at = result + 1
         return counts
 
     def _bytes(self, name: str) -> bytes:
@@ -121,15 +121,15 @@ def prepare() -> None:
     build(ROOT / "firmware", "proofs")
 
 
-def measure(end: End, model: str, frames: int, checksum: Checksum = "crc32", seed: int = 0) -> Counts:
-    """Counts of one end that reads at least `frames` damaged frames; the same for the same seed."""
+def measure(end: End, model: str, frames: int, checksum: Checksum = "crc32", seed: int = 0) -> FrameCounts:
+    """Return the counts of an end that reads at least `frames` damaged frames; the same for the same seed."""
     with DamagingLine(checksum, model, seed * len(MODELS) + list(MODELS).index(model)) as line:
-        read: Callable[[], Counts] = getattr(line, end)
-        return sum((read() for _ in line.batches(frames)), Counts())
+        read: Callable[[], FrameCounts] = getattr(line, end)
+        return sum((read() for _ in line.batches(frames)), FrameCounts())
 
 
-def measure_all(frames: int) -> dict[tuple[End, str], Counts]:
-    """Counts by end and model: each end reads at least `frames` damaged frames, equally of each model."""
+def measure_all(frames: int) -> dict[tuple[End, str], FrameCounts]:
+    """Return counts by end and model: each end reads at least `frames` damaged frames, equally of each."""
     prepare()
     share = -(-frames // len(MODELS) // BATCH) * BATCH
     with processes(2) as pool:
@@ -137,25 +137,27 @@ def measure_all(frames: int) -> dict[tuple[End, str], Counts]:
         return {(end, model): future.result()[end] for end in ENDS for model, future in futures.items()}
 
 
-def _measure_both(model: str, frames: int) -> dict[End, Counts]:
+def _measure_both(model: str, frames: int) -> dict[End, FrameCounts]:
     with DamagingLine("crc32", model, list(MODELS).index(model)) as line:
-        counts = {end: Counts() for end in ENDS}
+        counts = {end: FrameCounts() for end in ENDS}
         for _ in line.batches(frames):
             counts["chip"] += line.chip()
             counts["host"] += line.host()
         return counts
 
 
-def table(counts: Mapping[tuple[End, str], Counts]) -> str:
-    """A text table: undetected of corrupted frames, by model and end."""
+def table(counts: Mapping[tuple[End, str], FrameCounts]) -> str:
+    """Return a text table: undetected of corrupted frames, by model and end."""
     lines = [f"{'undetected of corrupted':<28}" + "".join(f"{end:>22}" for end in ENDS)]
     for model in MODELS:
         cells = (counts[end, model] for end in ENDS)
         lines.append(
-            f"{model:<28}" + "".join(f"{f'{one.undetected} of {one.corrupted}':>22}" for one in cells)
+            f"{model:<28}" + "".join(f"{f'{cell.undetected} of {cell.corrupted}':>22}" for cell in cells)
         )
-    totals = (sum((one for (end, _), one in counts.items() if end == of), Counts()) for of in ENDS)
-    lines.append(f"{'all':<28}" + "".join(f"{f'{one.undetected} of {one.corrupted}':>22}" for one in totals))
+    totals = (sum((count for (end, _), count in counts.items() if end == of), FrameCounts()) for of in ENDS)
+    lines.append(
+        f"{'all':<28}" + "".join(f"{f'{total.undetected} of {total.corrupted}':>22}" for total in totals)
+    )
     return "\n".join(lines)
 
 

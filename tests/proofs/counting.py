@@ -26,7 +26,7 @@ SETTLE = 1.0
 
 
 @dataclass
-class Counts:
+class DamageCounts:
     """Damaged frames of one direction, and the receiver's count of them.
 
     `unreliable` of them are sent once; the host counts as `missed` what the numbers show to be missing.
@@ -38,18 +38,18 @@ class Counts:
     missed: int = 0
 
 
-class Wire(EmulatedBoard):
+class NoisyBoard(EmulatedBoard):
     """A board on a line that damages frames."""
 
     def __init__(self, water: Water, seed: int) -> None:
-        self.to_host, self.to_board = Counts(), Counts()
+        self.to_host, self.to_board = DamageCounts(), DamageCounts()
         self.share = 0.0
         self._chance = random.Random(seed)
         self._partial = b""
         super().__init__(BUILD / "board", firmware_path(BUILD, LinkConfig().baud, ".elf"), water)
 
     def run(self, periods: int) -> bytes:
-        """Run for this time; returns the bytes for the host, some of them damaged."""
+        """Run for this time; return the bytes for the host, some of them damaged."""
         *frames, self._partial = (self._partial + super().run(periods)).split(b"\0")
         return b"".join(self._pass(frame, self.to_host) + b"\0" for frame in frames)
 
@@ -59,33 +59,33 @@ class Wire(EmulatedBoard):
         assert frames.pop() == b"", "the host writes whole frames"
         super().write(b"".join(self._pass(frame, self.to_board) + b"\0" for frame in frames))
 
-    def _pass(self, frame: bytes, counts: Counts) -> bytes:
+    def _pass(self, frame: bytes, counts: DamageCounts) -> bytes:
         if not frame or self._chance.random() >= self.share:
             return frame
         counts.damaged += 1
         counts.unreliable += not PACKETS[decode(frame)[1]].reliable
         while True:
-            place, bit = self._chance.randrange(len(frame)), self._chance.randrange(8)
-            changed = frame[place] ^ 1 << bit
+            position, bit = self._chance.randrange(len(frame)), self._chance.randrange(8)
+            changed = frame[position] ^ 1 << bit
             if changed:
-                return frame[:place] + bytes([changed]) + frame[place + 1 :]
+                return frame[:position] + bytes([changed]) + frame[position + 1 :]
 
 
-def count(seconds: float, seed: int) -> tuple[Counts, Counts]:
-    """Run for this time on such a line; returns the counts of both directions."""
-    wires: list[Wire] = []
+def count(seconds: float, seed: int) -> tuple[DamageCounts, DamageCounts]:
+    """Run for this time on such a line; return the counts of both directions."""
+    wires: list[NoisyBoard] = []
 
-    def make(water: Water) -> Wire:
-        wires.append(Wire(water, seed))
+    def make(water: Water) -> NoisyBoard:
+        wires.append(NoisyBoard(water, seed))
         return wires[0]
 
     with Flight(make) as flight:
         wire = wires[0]
-        told: list[Status] = []
-        flight.robot.bus.on_row(STATUS, lambda _, record: told.append(Status.from_bytes(record)))
+        notices: list[Status] = []
+        flight.robot.bus.on_row(STATUS, lambda _, record: notices.append(Status.from_bytes(record)))
         flight.arm()
         flight.run(SETTLE)
-        before, board_before = flight.robot.link.statistics(), told[-1].frames_invalid
+        before, board_before = flight.robot.link.statistics(), notices[-1].frames_invalid
         wire.share = SHARE
         flight.run(seconds)
         wire.share = 0.0
@@ -93,5 +93,5 @@ def count(seconds: float, seed: int) -> tuple[Counts, Counts]:
         after = flight.robot.link.statistics()
         wire.to_host.invalid = after.frames_invalid - before.frames_invalid
         wire.to_host.missed = after.frames_missed - before.frames_missed
-        wire.to_board.invalid = told[-1].frames_invalid - board_before
+        wire.to_board.invalid = notices[-1].frames_invalid - board_before
     return wire.to_host, wire.to_board

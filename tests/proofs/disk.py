@@ -35,13 +35,13 @@ def build(folder: Path) -> Path:
 
 
 def logging(library: Path, folder: Path, log: Path) -> dict[str, str]:
-    """The environment that records a program's file operations below `folder`."""
+    """Return the environment that records a program's file operations below `folder`."""
     names = {"LD_PRELOAD": str(library), "DISK_LOG_FOLDER": str(folder), "DISK_LOG": str(log)}
     return os.environ | names
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class DiskStep:
     """Kinds: c created, t truncated to `offset`, w written at `offset`, s synced, r renamed, l linked,
     u unlinked, m made a folder, a acknowledged. `node` is the file's or folder's inode.
     """
@@ -64,8 +64,8 @@ def note(log: Path, demands: dict[str, list[Any] | None]) -> None:
     os.close(handle)
 
 
-def read(log: Path) -> Iterator[Step]:
-    """All records, in order."""
+def read(log: Path) -> Iterator[DiskStep]:
+    """Yield all records, in order."""
     text = log.read_bytes()
     at = 0
     while at < len(text):
@@ -73,7 +73,7 @@ def read(log: Path) -> Iterator[Step]:
         begin = at + HEAD.size
         at += SIZE_BYTES + size
         name = os.fsdecode(text[begin : begin + first])
-        yield Step(kind.decode(), process, handle, node, offset, name, text[begin + first : at])
+        yield DiskStep(kind.decode(), process, handle, node, offset, name, text[begin + first : at])
 
 
 @dataclass
@@ -89,7 +89,7 @@ class File:
         self.pending.clear()
 
 
-class Disk:
+class LoggedDisk:
     """The files below a folder after some of the steps."""
 
     def __init__(self, folder: Path) -> None:
@@ -100,7 +100,7 @@ class Disk:
         self._pending: dict[str, list[dict[str, int | None]]] = {}
         self._now: dict[str, int | None] = dict(self._synced)
 
-    def take(self, step: Step) -> None:
+    def take(self, step: DiskStep) -> None:
         """Apply a step."""
         if step.kind == "w":
             self._file(step).pending.append((step.offset, step.data))
@@ -122,14 +122,14 @@ class Disk:
             gone = {step.name: -1} if step.kind == "r" else {}
             self._rename(to, {**gone, to: self._now[step.name]})
 
-    def _file(self, step: Step) -> File:
+    def _file(self, step: DiskStep) -> File:
         return self.files[self._nodes[step.node]]
 
     def _rename(self, name: str, names: dict[str, int | None]) -> None:
         self._now |= names
         self._pending.setdefault(os.path.dirname(name), []).append(names)  # noqa: PTH120 - a text
 
-    def _sync(self, step: Step) -> None:
+    def _sync(self, step: DiskStep) -> None:
         if step.node in self._folders:
             for names in self._pending.pop(self._folders[step.node], []):
                 self._synced |= names
@@ -137,19 +137,19 @@ class Disk:
             self._file(step).sync()
 
     def after(self, cut: Cut, chance: random.Random) -> dict[str, bytearray]:
-        """The files, by name, that the next start may find."""
+        """Return the files, by name, that the next start may find."""
         names = dict(self._synced)
         for changes in self._pending.values():
             for change in _some(changes, cut, chance):
                 names |= change
-        found = {
+        results = {
             name: number
             for name, number in names.items()
             if number is not None and number >= 0 and _is_there(name, names)
         }
         sector = chance.choice(SECTORS)
         return {
-            name: self._content(self.files[number], cut, sector, chance) for name, number in found.items()
+            name: self._content(self.files[number], cut, sector, chance) for name, number in results.items()
         }
 
     def _content(self, file: File, cut: Cut, sector: int, chance: random.Random) -> bytearray:
@@ -173,11 +173,11 @@ def _some(all_: list[T], cut: Cut, chance: random.Random) -> list[T]:
     if cut == "in order":
         return all_[: chance.randint(0, len(all_))]
     share = chance.random()
-    return [one for one in all_ if chance.random() < share]
+    return [candidate for candidate in all_ if chance.random() < share]
 
 
 def _is_there(name: str, names: dict[str, int | None]) -> bool:
-    """True if all its folders exist; the first always exists."""
+    """Return True if all its folders exist; the first always exists."""
     folder = os.path.dirname(name)  # noqa: PTH120 - a text
     first = next(iter(names))
     while len(folder) > len(first):

@@ -24,11 +24,11 @@ class DamagedDataError(Exception):
 
 
 def read_facts(database: Path, mode: Literal["ro", "rw"]) -> dict[str, Any]:
-    """Every fact by its name; rows of samples as checksums. Raises DamagedDataError.
+    """Return every fact by its name; rows of samples as checksums. Raise DamagedDataError.
 
     After a cut SQLite must be able to write ("rw"), since it rolls back what was not finished.
     """
-    found: dict[str, Any] = {}
+    results: dict[str, Any] = {}
     try:
         with closing(sqlite3.connect(f"{database.as_uri()}?mode={mode}", uri=True)) as connection:
             (health,) = connection.execute("PRAGMA integrity_check").fetchone()
@@ -40,12 +40,12 @@ def read_facts(database: Path, mode: Literal["ro", "rw"]) -> dict[str, Any]:
                     continue
                 for name, value in connection.execute(query):
                     fact = zlib.crc32(value) if isinstance(value, bytes) else value
-                    found[f"{kind}/{name}"] = fact
+                    results[f"{kind}/{name}"] = fact
     except sqlite3.DatabaseError as problem:
         raise DamagedDataError(str(problem)) from problem
-    return found
+    return results
 
 
 def holds(fact: Any, allowed: list[Any], *, grows: bool) -> bool:
-    """True if a fact has an allowed value, or a larger one if it only grows."""
+    """Return True if a fact has an allowed value, or a larger one if it only grows."""
     return fact in allowed or (grows and isinstance(fact, int) and fact >= min(allowed))

@@ -15,7 +15,7 @@ FROM = "127.0.0.2"
 PATIENCE = 60.0
 
 
-class Field:
+class AttackedRobot:
     """The attacked robot, the tokens of a viewer and an operator without control, and a viewer's ROS 2.
 
     `ros2` is the folder of its certificate for the door; the door's endpoint is in its file `endpoint`.
@@ -30,7 +30,7 @@ class Field:
         self.operator = {"authorization": f"Bearer {operator}"}
 
     def ask(self, method: str, path: str, headers: dict[str, str] | None = None, **options: object) -> int:
-        """The status of an answer, which is no internal error."""
+        """Return the status of an answer, which is no internal error."""
         with httpx.Client(
             base_url=self.url, timeout=PATIENCE, transport=httpx.HTTPTransport(local_address=FROM)
         ) as client:
@@ -40,14 +40,14 @@ class Field:
         return answer.status_code
 
     def newest_session(self) -> int:
-        """The number of the newest session."""
+        """Return the number of the newest session."""
         transport = httpx.HTTPTransport(local_address=FROM)
         with httpx.Client(base_url=self.url, timeout=PATIENCE, transport=transport) as client:
             answer = client.get("/api/sessions?limit=1", headers=self.viewer).raise_for_status()
         return int(answer.json()[0]["id"])
 
     def make_viewers(self, count: int) -> list[dict[str, str]]:
-        """The headers of so many new viewers."""
+        """Return the headers of so many new viewers."""
         made = []
         transport = httpx.HTTPTransport(local_address=FROM)
         with httpx.Client(base_url=self.url, timeout=PATIENCE, transport=transport) as client:
@@ -65,11 +65,11 @@ class Field:
         assert 400 <= status < 500 or status == 503, (method, path, status)
 
     def reach(self, timeout: float, source: str = FROM) -> socket.socket:
-        """A connection from the attackers' address. Raises OSError."""
+        """Return a connection from the attackers' address. Raise OSError."""
         return socket.create_connection(self.address, timeout, source_address=(source, 0))
 
     def send(self, data: bytes) -> bytes:
-        """The beginning of the answer to these bytes."""
+        """Return the beginning of the answer to these bytes."""
         with self.reach(PATIENCE) as line:
             line.sendall(data)
             with suppress(ConnectionError):
@@ -79,7 +79,7 @@ class Field:
     def open(
         self, headers: dict[str, str], path: str = "/api/live", subprotocol: str | None = None
     ) -> ClientConnection:
-        """A live socket, or one of a door. Raises OSError, WebSocketException."""
+        """Return a live socket, or one of a door. Raise OSError, WebSocketException."""
         return connect(
             f"{self.url.replace('http', 'ws', 1)}{path}",
             origin=Origin(self.url),

@@ -42,7 +42,7 @@ class FuzzError(Exception):
 
 
 def raw(packets: Sequence[Packet], number: int, key: int = _KEY) -> bytes:
-    """An action of the fuzzer's input: this frame, as the host encodes it."""
+    """Return an action of the fuzzer's input: this frame, as the host encodes it."""
     frame = build_frame(packets, number, 0, key)
     return _RAW + bytes([len(frame)]) + frame
 
@@ -81,7 +81,7 @@ def prepare(folder: Path) -> None:
 
 
 def run(corpus: Path, *limits: str) -> int:
-    """Fuzz within these limits of libFuzzer; returns the executions. Raises FuzzError at a finding."""
+    """Fuzz within these limits of libFuzzer; return the executions. Raise FuzzError at a finding."""
     command = [
         str(PROGRAM),
         f"-max_len={INPUT_BYTES_MAX}",
@@ -102,8 +102,8 @@ def main() -> None:
     prepare(CORPUS / "corpus")
     try:
         executions = run(CORPUS / "corpus", f"-max_total_time={seconds}")
-    except FuzzError as found:
-        sys.exit(f"{found}\nThe input is in {CORPUS}; {PROGRAM} runs it again.")
+    except FuzzError as result:
+        sys.exit(f"{result}\nThe input is in {CORPUS}; {PROGRAM} runs it again.")
     print(f"{executions} executions, no finding")  # noqa: T201 - it is the result
 
 

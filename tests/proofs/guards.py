@@ -1,4 +1,4 @@
-"""Removes each guard in turn, in a copy of the tree, and checks that a test fails.
+"""Remove each guard in turn, in a copy of the tree, and check that a test fails.
 
 `python -m tests.proofs.guards` does so for all of `guards.toml`, or for those whose names hold one of the
 words given, and prints a table; status 1 where a guard is not missed by any of its tests.
@@ -15,9 +15,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 from xml.etree import ElementTree
 
 from tests.board.rig import ROOT, build
+from tests.proofs.mutations import KINDS, MutationError, mutate, replace
 from tests.sources import copy_sources
 
 LIST = Path(__file__).with_name("guards.toml")
@@ -32,22 +34,26 @@ class GuardError(Exception):
 
 @dataclass(frozen=True)
 class Guard:
-    """A guarding text, its replacement `without` it, and the tests that must fail then."""
+    """A piece of code that guards something, and the tests that must fail without it."""
 
     name: str
     file: str
-    guard: str
-    without: str
+    mutation: tuple[str, ...]
+    """In Python scope, kind and names of `mutate`; in C++ the text and its replacement."""
     tests: tuple[str, ...]
     subjects: tuple[str, ...] = ()
     """Entries of `guarded.list_guarded` that it covers."""
 
+    def remove(self, source: str) -> str:
+        """Return the source of its file without it. Raise MutationError."""
+        return (mutate if self.file.endswith(".py") else replace)(source, *self.mutation)
+
     def problem(self, root: Path) -> str:
-        """The reason why the guard cannot be removed there; empty where it can."""
-        path = root / self.file
-        found = path.read_text(encoding="utf-8").count(self.guard) if path.is_file() else 0
-        if found != 1:
-            return f"{self.name}: its text is in {self.file} {found} times, not once"
+        """Return the reason why the guard cannot be removed there; empty where it can."""
+        try:
+            self.remove((root / self.file).read_text(encoding="utf-8"))
+        except (MutationError, OSError) as problem:
+            return f"{self.name}: {self.file}: {problem}"
         for test in self.tests:
             file, _, case = test.partition("::")
             function = case.partition("[")[0]
@@ -57,7 +63,7 @@ class Guard:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RemovalOutcome:
     """Result of the tests: the failed ones, and those that could not start."""
 
     failed: tuple[str, ...]
@@ -86,27 +92,27 @@ class Tree:
                 shutil.copytree(ROOT / "build" / name, self.root / "build" / name)
         build(self.root / "firmware/emulator")
 
-    def run(self, tests: Iterable[str]) -> Outcome:
+    def run(self, tests: Iterable[str]) -> RemovalOutcome:
         """Run these tests in the copy, up to the first that fails."""
-        report, said, started = self.root / "report.xml", self.root / "said", time.monotonic()
+        report, answer, started = self.root / "report.xml", self.root / "said", time.monotonic()
         # Nobody reads why a test fails here, so its assertions need not be rewritten. The native traceback
         # parses no sources: CPython's parser of them can fail where a failed test leaves a process behind.
         options = ["-q", "-x", "-p", "no:cacheprovider", "--assert=plain", "--tb=native"]
         limits = [f"--timeout={TEST_SECONDS}", f"--junitxml={report}"]
         report.unlink(missing_ok=True)
-        status = self._pytest([*options, *limits, *tests], said)
-        words = said.read_text(errors="replace")[-4000:]
+        status = self._pytest([*options, *limits, *tests], answer)
+        text = answer.read_text(errors="replace")[-4000:]
         if not report.is_file() or status not in (0, 1):
-            return Outcome((), ("the tests do not run",), time.monotonic() - started, words)
-        found: Mapping[str, list[str]] = {"failure": [], "error": []}
+            return RemovalOutcome((), ("the tests do not run",), time.monotonic() - started, text)
+        results: Mapping[str, list[str]] = {"failure": [], "error": []}
         for case in ElementTree.parse(report).iter("testcase"):
-            for kind, names in found.items():
+            for kind, names in results.items():
                 if case.find(kind) is not None:
                     names.append(case.attrib["name"])
         seconds = time.monotonic() - started
-        return Outcome(tuple(found["failure"]), tuple(found["error"]), seconds, words)
+        return RemovalOutcome(tuple(results["failure"]), tuple(results["error"]), seconds, text)
 
-    def _pytest(self, options: list[str], said: Path) -> int:
+    def _pytest(self, options: list[str], answer: Path) -> int:
         """Exit status of pytest in the copy, whose output goes to the file `said`."""
         if self._preloaded is None:
             # Without -P the folder of the script would be where modules are looked for.
@@ -116,18 +122,18 @@ class Tree:
             )
         assert self._preloaded.stdin is not None
         assert self._preloaded.stdout is not None
-        asked = {"folder": str(self.root), "options": options, "output": str(said)}
+        asked = {"folder": str(self.root), "options": options, "output": str(answer)}
         self._preloaded.stdin.write(json.dumps(asked) + "\n")
         self._preloaded.stdin.flush()
         return int(self._preloaded.stdout.readline())
 
-    def run_without(self, guard: Guard) -> Outcome:
-        """Run a guard's tests without it. Raises GuardError where it cannot be removed."""
+    def run_without(self, guard: Guard) -> RemovalOutcome:
+        """Run a guard's tests without it. Raise GuardError where it cannot be removed."""
         if problem := guard.problem(self.root):
             raise GuardError(problem)
         path = self.root / guard.file
         whole = path.read_text(encoding="utf-8")
-        path.write_text(whole.replace(guard.guard, guard.without), encoding="utf-8")
+        path.write_text(guard.remove(whole), encoding="utf-8")
         try:
             return self.run(guard.tests)
         finally:
@@ -135,10 +141,21 @@ class Tree:
 
 
 def read_guards(path: Path = LIST) -> list[Guard]:
-    """The guards of the list."""
-    entries = tomllib.loads(path.read_text(encoding="utf-8"))["guards"]
-    lists = ("tests", "subjects")
-    return [Guard(**entry | {name: tuple(entry.get(name, ())) for name in lists}) for entry in entries]
+    """Return the guards of the list."""
+    return [_read_guard(entry) for entry in tomllib.loads(path.read_text(encoding="utf-8"))["guards"]]
+
+
+def _read_guard(entry: dict[str, Any]) -> Guard:
+    mutation: tuple[str, ...]
+    if "at" in entry:
+        module, _, scope = entry["at"].partition(":")
+        (kind,) = entry.keys() & KINDS.keys()
+        names = entry[kind]
+        file = module.replace(".", "/") + ".py"
+        mutation = (scope, kind, *([names] if isinstance(names, str) else names))
+    else:
+        file, mutation = entry["file"], (entry["guard"], entry["without"])
+    return Guard(entry["name"], file, mutation, tuple(entry["tests"]), tuple(entry.get("subjects", ())))
 
 
 @contextmanager
@@ -154,7 +171,7 @@ def copy_tree() -> Iterator[Tree]:
 
 
 def prove(guards: list[Guard]) -> int:
-    """Print the test that detects the removal of each guard; returns the number of undetected ones."""
+    """Print the test that detects the removal of each guard; return the number of undetected ones."""
     with copy_tree() as tree:
         tree.build_board()
         whole = tree.run(sorted({test for guard in guards for test in guard.tests}))
@@ -167,19 +184,19 @@ def prove(guards: list[Guard]) -> int:
             outcome = tree.run_without(guard)
             noticed = bool(outcome.failed) and not outcome.broken
             unnoticed += not noticed
-            words = outcome.failed[0] if noticed else " ".join(("NOT NOTICED", *outcome.broken))
-            print(f"{guard.name:<58}{outcome.seconds:>6.1f} s  {words}", flush=True)
+            text = outcome.failed[0] if noticed else " ".join(("NOT NOTICED", *outcome.broken))
+            print(f"{guard.name:<58}{outcome.seconds:>6.1f} s  {text}", flush=True)
     print(f"\n{len(guards)} guards, {unnoticed} of which nobody would miss")
     return unnoticed
 
 
 def main() -> int:
     """Exit status."""
-    words = sys.argv[1:]
-    guards = [one for one in read_guards() if not words or any(word in one.name for word in words)]
+    text = sys.argv[1:]
+    guards = [guard for guard in read_guards() if not text or any(word in guard.name for word in text)]
     if not guards:
-        sys.exit(f"guards: no guard has one of these words in its name: {' '.join(words)}")
-    if problems := [problem for one in guards if (problem := one.problem(ROOT))]:
+        sys.exit(f"guards: no guard has one of these words in its name: {' '.join(text)}")
+    if problems := [problem for guard in guards if (problem := guard.problem(ROOT))]:
         sys.exit("\n".join(problems))
     try:
         return 1 if prove(guards) else 0

@@ -27,25 +27,25 @@ from bench.hour import CONFIG, STARTED_STEADY
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import BY_NAME, TIME, Kind
 from robot_runtime.transport.blocks import Block, read_blocks
-from server.features.comparison.comparer import Comparer
-from server.features.comparison.schemas import LinesQuery, TimeRange
+from server.analysis.comparer import Comparer
+from server.analysis.schemas import LinesQuery, TimeRange
 from server.features.exports.archive import write_archive
 from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.exports.tables import write_tables
-from server.features.sessions.config import SessionsConfig
-from server.features.sessions.recorder import PERIOD, STANDING_SECONDS, Recorder
-from server.features.sessions.recording import Recording
-from server.features.sessions.replay import read_blocks_between
-from server.features.sessions.retention import RetentionWorker
-from server.features.sessions.session import find_row, new_row
+from server.library.config import SessionsConfig
+from server.library.content import Recording
+from server.library.replay import read_blocks_between
+from server.library.retention import RetentionWorker
 from server.platform.models import Chunk, Gap, SessionRow
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
 from server.platform.wall_clock import DAY
+from server.recording.recorder import PERIOD, STANDING_SECONDS, Recorder
+from server.recording.session import find_row, new_row
 
 OLD_SECONDS = 0.1
 """Length of the older session, as a share of the dive."""
@@ -57,7 +57,7 @@ STRETCH = 61.3
 
 
 @dataclass
-class Report:
+class RecordingReport:
     """Figures of a recording, and what was wrong with it."""
 
     hours: float
@@ -88,8 +88,8 @@ class Checksums:
 
     def add_documents(self, topic: str, documents: Iterable[object]) -> None:
         """The next documents of a topic."""
-        for one in documents:
-            self.add(topic, 1, json.dumps(one, sort_keys=True).encode())
+        for document in documents:
+            self.add(topic, 1, json.dumps(document, sort_keys=True).encode())
 
     def add_block(self, block: Block) -> None:
         """A block as the robot sends it."""
@@ -100,7 +100,7 @@ class Checksums:
 
     @classmethod
     def of(cls, recording: Recording) -> "Checksums":
-        """Those of a recording."""
+        """Return the checksums of a recording."""
         sums = cls()
         for name, described in recording.topics.items():
             kind = BY_NAME[name].kind
@@ -124,7 +124,7 @@ class Hours:
     """A dive of this length in a data folder, and the older session before it."""
 
     def __init__(self, folder: Path, seconds: float) -> None:
-        self.report = Report(seconds / 3600)
+        self.report = RecordingReport(seconds / 3600)
         self._seconds = seconds
         data = DataFolder(folder / "data")
         rules = SessionsConfig(keep_days=1.0, undo_days=seconds / 4 / DAY)
@@ -140,7 +140,7 @@ class Hours:
         self._old = self._session = 0
         self._sent = Checksums()
 
-    def run(self) -> Report:
+    def run(self) -> RecordingReport:
         """Record, and judge what was recorded."""
         with closing(self.store):
             for step in (
@@ -220,13 +220,13 @@ class Hours:
 
     def _judge_retention(self) -> None:
         with self.store.read() as database:
-            left = database.exec(select(func.count()).where(col(Chunk.session_id) == self._old)).one()
+            remaining = database.exec(select(func.count()).where(col(Chunk.session_id) == self._old)).one()
             connection = database.connection()
             free = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
             pages = connection.exec_driver_sql("PRAGMA page_count").scalar_one()
             size = connection.exec_driver_sql("PRAGMA page_size").scalar_one()
         report = self.report
-        report.insist(left == 0, f"{left} chunks of the removed session are left")
+        report.insist(remaining == 0, f"{remaining} chunks of the removed session are left")
         report.insist(free <= 0.01 * pages, f"{free} of {pages} pages are free, and not given back")
         report.megabytes = round(pages * size / 1e6, 1)
         report.megabytes_per_hour = round(report.megabytes / report.hours, 1)
@@ -259,7 +259,7 @@ class Hours:
         write_tables(self.store, ExportSelection(self.store, row, options), output)
         with zipfile.ZipFile(output) as archive, archive.open("depth.csv") as file:
             lines = csv.DictReader(io.TextIOWrapper(file))
-            table = np.array([(float(one["time [s]"]), float(one["depth [m]"])) for one in lines])
+            table = np.array([(float(line["time [s]"]), float(line["depth [m]"])) for line in lines])
         times, columns = self._recording().columns("depth", ["depth"])
         same = len(table) == len(times) and (
             np.allclose(table[:, 0], times - row.started_steady, atol=1e-6)

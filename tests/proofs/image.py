@@ -17,7 +17,7 @@ from packages.image import NUMBER, build_image
 from packages.wheels import DIST
 from server.platform.settings import DataFolder
 from tests.control import Commander
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 from tests.stack import free_port
 
 PATIENCE = 120.0
@@ -61,17 +61,20 @@ def swim(container: str, folder: Path) -> None:
                     return
             except (httpx.TransportError, OSError):
                 pass
-            said = log.read_text(errors="replace")[-LOG_CHARACTERS:]
-            assert process.poll() is None, f"it ended: {said}"
-            assert time.monotonic() - began < PATIENCE, f"no {what}: {said}"
+            output = log.read_text(errors="replace")[-LOG_CHARACTERS:]
+            assert process.poll() is None, f"it ended: {output}"
+            assert time.monotonic() - began < PATIENCE, f"no {what}: {output}"
             time.sleep(0.1)
 
     url = f"http://127.0.0.1:{port}"
-    api = Commander(base_url=f"{url}/api", timeout=30.0, auth=ShellToken(DataFolder(data)))
+    api = Commander(base_url=f"{url}/api", timeout=30.0, auth=ShellAuth(DataFolder(data)))
     try:
         wait(lambda: "<title>" in httpx.get(url).text, "the page")
         wait(lambda: api.get("/health").json()["status"] == "ok", "a health of ok")
-        wait(lambda: api.post("/robot/commands/arm").status_code == 204, "an armed robot")
+        wait(
+            lambda: api.post("/robot/commands/arm", json={"unwatched": 0}).status_code == 204,
+            "an armed robot",
+        )
         api.post("/robot/stop").raise_for_status()
         assert (data / "mucat.db").stat().st_uid == NUMBER, "it does not run as its own user"
     finally:
@@ -80,9 +83,9 @@ def swim(container: str, folder: Path) -> None:
         process.wait(60)
 
 
-def buildah(*words: str) -> str:
-    """Runs buildah; returns what it printed."""
-    done = subprocess.run(["buildah", *words], check=True, stdout=subprocess.PIPE, text=True)
+def buildah(*arguments: str) -> str:
+    """Run buildah; return what it printed."""
+    done = subprocess.run(["buildah", *arguments], check=True, stdout=subprocess.PIPE, text=True)
     return done.stdout.strip()
 
 

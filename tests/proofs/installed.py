@@ -18,7 +18,7 @@ from server.platform.settings import DataFolder
 from tests.control import Commander
 from tests.documents.blocks import read_blocks
 from tests.proofs.roots import RootSystem
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 from tests.stack import free_port
 
 PATIENCE = 300.0
@@ -41,11 +41,11 @@ file = "/etc/card.png"
 
 
 def install_wheels(root: RootSystem) -> float:
-    """Installs the wheels in place of those before, by the commands of the page. Returns s it took."""
+    """Install the wheels in place of those before, by the commands of the page. Return s it took."""
     began = time.monotonic()
     root.run("rm", "-rf", PLACE, f"/{DATA}")
     root.run("mkdir", "-p", PLACE)
-    (block,) = [one for one in read_blocks("run/packages.md") if one.title == root.page]
+    (block,) = [block for block in read_blocks("run/packages.md") if block.title == root.page]
     # apt has installed its part when the root was made.
     lines = [line for line in block.text.splitlines() if not line.startswith(("sudo apt", "mucat/bin/mucat"))]
     assert len(lines) == 2, f"the page has {lines}"
@@ -67,20 +67,20 @@ class InstalledRobot:
         self.port = free_port()
         self.url = self.first = f"http://127.0.0.1:{self.port}"
         self.data = root.path / DATA
-        self.api = Commander(base_url=f"{self.url}/api", timeout=60.0, auth=ShellToken(DataFolder(self.data)))
-        words = [MUCAT, "run", "--port", str(self.port), "--data", f"/{DATA}"]
+        self.api = Commander(base_url=f"{self.url}/api", timeout=60.0, auth=ShellAuth(DataFolder(self.data)))
+        text = [MUCAT, "run", "--port", str(self.port), "--data", f"/{DATA}"]
         if config is not None:
             (root.path / "etc/robot.toml").write_text(config)
             store_picture(root.path / "etc/card.png")
-            words += ["--config", "/etc/robot.toml"]
+            text += ["--config", "/etc/robot.toml"]
         self._log = (root.path / "var/log/mucat.log").open("wb")
         self._began = time.monotonic()
         self._process = subprocess.Popen(
-            root.command(words), stdout=self._log, stderr=subprocess.STDOUT, env=root.environment()
+            root.command(text), stdout=self._log, stderr=subprocess.STDOUT, env=root.environment()
         )
 
     def wait(self, condition: Callable[[], object], what: str) -> float:
-        """Waits until the condition holds. Returns s since the start."""
+        """Wait until the condition holds. Return s since the start."""
         end = time.monotonic() + PATIENCE
         while True:
             try:
@@ -88,25 +88,27 @@ class InstalledRobot:
                     return time.monotonic() - self._began
             except httpx.TransportError:
                 pass
-            said = Path(self._log.name).read_text(errors="replace")[-1500:]
-            assert self._process.poll() is None, f"mucat run ended: {said}"
-            assert time.monotonic() < end, f"no {what} within {PATIENCE:g} s: {said}"
+            output = Path(self._log.name).read_text(errors="replace")[-1500:]
+            assert self._process.poll() is None, f"mucat run ended: {output}"
+            assert time.monotonic() < end, f"no {what} within {PATIENCE:g} s: {output}"
             time.sleep(0.2)
 
     def wait_for_page(self) -> float:
-        """Returns s from the start to the page."""
+        """Return s from the start to the page."""
         return self.wait(lambda: httpx.get(self.url, timeout=30).status_code == 200, "page")
 
     def wait_for_health(self) -> float:
-        """Returns s from the start to a health of ok."""
+        """Return s from the start to a health of ok."""
         return self.wait(lambda: self.api.get("/health").json()["status"] == "ok", "health of ok")
 
     def arm(self) -> None:
-        """Arms as soon as it may."""
-        self.wait(lambda: self.api.post("/robot/commands/arm").status_code == 204, "arming")
+        """Arm as soon as it may."""
+        self.wait(
+            lambda: self.api.post("/robot/commands/arm", json={"unwatched": 0}).status_code == 204, "arming"
+        )
 
     def wait_for_recording(self, seconds: float) -> dict[str, Any]:
-        """Returns the session that is recorded, once it is so long."""
+        """Return the session that is recorded, once it is so long."""
         recording: dict[str, Any] = {}
 
         def has_recorded() -> bool:
@@ -119,15 +121,15 @@ class InstalledRobot:
         return recording
 
     def processes(self) -> dict[str, psutil.Process]:
-        """The processes that a robot has, by name."""
+        """Return the processes that a robot has, by name."""
         runner = psutil.Process(self._process.pid)
-        (server,) = [one for one in runner.children() if one.name() == "mucat-server"]
+        (server,) = [process for process in runner.children() if process.name() == "mucat-server"]
         runtime = psutil.Process(running_parts(DataFolder(self.data).run)["runtime"].pid)
         (vision,) = runtime.children()
         return {"runner": runner, "server": server, "runtime": runtime, "vision": vision}
 
     def end(self) -> None:
-        """Presses Ctrl-C."""
+        """Press Ctrl-C."""
         self.api.close()
         self._process.send_signal(signal.SIGINT)
         try:

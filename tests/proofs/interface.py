@@ -31,6 +31,8 @@ from schemathesis.specs.openapi.checks import (
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
+from robot_runtime.config import RobotConfig
+from server.features.events.config import EventsConfig
 from server.health.monitor import HealthMonitor
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.server.blocks import depth_block, state_block
@@ -43,6 +45,8 @@ SILENT = {"putView": {503, 504}, "checkAlive": {503}, "getRobot": {503}}
 """Operations without an answer here: there is no scene, and no runtime that is alive."""
 SLOW = {"importSession": 10}
 """Operations that start a process, and for how many questions to others one is put to them."""
+NOBODY = EventsConfig(mqtt="mqtt://127.0.0.1:1")
+"""A broker that is not there."""
 SEED = 5
 PATIENCE = 60.0
 """s for an answer, on a busy computer."""
@@ -58,9 +62,11 @@ class Surface:
         self.session.headers.update(shell_headers(served.settings.data))
         answer = self.session.get(f"{self.url}/api/openapi.json")
         answer.raise_for_status()
-        found = schemathesis.openapi.from_dict(answer.json()).get_all_operations()
+        result = schemathesis.openapi.from_dict(answer.json()).get_all_operations()
         self.operations = {
-            one.ok().definition.raw["operationId"]: one.ok() for one in found if isinstance(one, Ok)
+            result.ok().definition.raw["operationId"]: result.ok()
+            for result in result
+            if isinstance(result, Ok)
         }
 
     def take_control(self) -> None:
@@ -68,13 +74,13 @@ class Surface:
         self.session.post(f"{self.url}/api/control/take?over=true").raise_for_status()
 
     def connect(self) -> ClientConnection:
-        """A WebSocket to /api/live."""
+        """Return a WebSocket to /api/live."""
         headers = {name: value for name, value in self.session.headers.items() if name == "authorization"}
         address = f"{self.url.replace('http', 'ws')}/api/live"
         return connect(address, origin=Origin(self.url), additional_headers=headers, max_size=None)
 
     def prove(self, name: str, examples: int) -> None:
-        """Send this many requests to one operation. Raises the failures that schemathesis finds."""
+        """Send this many requests to one operation. Raise the failures that schemathesis finds."""
         operation = self.operations[name]
         good = operation.as_strategy(generation_mode=GenerationMode.POSITIVE)
         bad = operation.as_strategy(generation_mode=GenerationMode.NEGATIVE)
@@ -123,12 +129,12 @@ CHECKS = [
 def run_surface() -> Iterator[Surface]:
     """A server in its own thread, with a short recording and a bookmark, until the context is left."""
     ready, leave = threading.Event(), threading.Event()
-    found: list[Surface] = []
+    results: list[Surface] = []
 
     async def run(settings: Settings) -> None:
         async with serve(settings) as served:
             await _record(served)
-            found.append(await asyncio.to_thread(Surface, served))
+            results.append(await asyncio.to_thread(Surface, served))
             ready.set()
             await asyncio.to_thread(leave.wait)
 
@@ -140,13 +146,15 @@ def run_surface() -> Iterator[Surface]:
         page = Path(name) / "page"
         page.mkdir()
         (page / "index.html").write_text("the page", encoding="utf-8")
-        settings = Settings(data=folder, config=config, robot="tested", page=page, every_feature=True)
+        settings = Settings(
+            data=folder, config=config, robot=RobotConfig(name="tested"), page=page, every_feature=True
+        ).with_section(NOBODY)
         thread = threading.Thread(target=lambda: asyncio.run(run(settings)))
         thread.start()
         try:
             while not ready.wait(0.1):
                 assert thread.is_alive(), "the server did not start"
-            yield found[0]
+            yield results[0]
         finally:
             leave.set()
             thread.join()

@@ -20,8 +20,8 @@ from typing import NamedTuple
 
 import httpx
 
+from robot_runtime.contract.chunks import decode_documents, decode_rows
 from robot_runtime.contract.topics import BY_NAME, TIME, Kind
-from server.features.sessions.chunks import decode_documents, decode_rows
 from tests.stack import Stack
 
 RECORDED_MAX = 2.0
@@ -32,7 +32,7 @@ PATIENCE = 60.0
 PARTS = ("board", "runtime", "simulator")
 
 
-class StateSilence(NamedTuple):
+class SampleHole(NamedTuple):
     """Missing samples of a topic, and the duration of the gap."""
 
     topic: str
@@ -41,7 +41,7 @@ class StateSilence(NamedTuple):
 
 
 @dataclass
-class Report:
+class KillReport:
     """Results of the kills."""
 
     kills: int = 0
@@ -51,7 +51,7 @@ class Report:
     """Samples that the server had told of as stored, and that were not there after its next start."""
     away: list[float] = field(default_factory=list)
     """s from each kill until the next server answered."""
-    holes: list[StateSilence] = field(default_factory=list)
+    holes: list[SampleHole] = field(default_factory=list)
     doubles: int = 0
     gaps: list[tuple[str, str, int]] = field(default_factory=list)
     replaced: list[str] = field(default_factory=list)
@@ -64,16 +64,16 @@ class Report:
     @property
     def problems(self) -> list[str]:
         """Problems found."""
-        found = [f"{hole.samples} samples of {hole.topic} are missing" for hole in self.holes]
-        found += [f"a gap is noted: {missed} of {topic} ({kind})" for topic, kind, missed in self.gaps]
-        found += [f"the {name} did not outlive the server" for name in self.replaced]
+        results = [f"{hole.samples} samples of {hole.topic} are missing" for hole in self.holes]
+        results += [f"a gap is noted: {missed} of {topic} ({kind})" for topic, kind, missed in self.gaps]
+        results += [f"the {name} did not outlive the server" for name in self.replaced]
         if self.lost:
-            found.append(f"{self.lost} samples that were stored are gone")
+            results.append(f"{self.lost} samples that were stored are gone")
         if self.doubles:
-            found.append(f"{self.doubles} samples are there twice or out of order")
+            results.append(f"{self.doubles} samples are there twice or out of order")
         if self.integrity != "ok":
-            found.append(f"the database is damaged: {self.integrity}")
-        return found
+            results.append(f"the database is damaged: {self.integrity}")
+        return results
 
     def table(self) -> str:
         """Describe the result for a person."""
@@ -90,16 +90,18 @@ class Report:
         return "\n".join([*lines, *self.problems])
 
 
-def measure(kills: int, seed: int, tell: Callable[[str], None] = lambda _: None) -> Report:
+def measure(kills: int, seed: int, tell: Callable[[str], None] = lambda _: None) -> KillReport:
     """Record, kill and restart a robot of its own repeatedly; then check the stored samples."""
     with TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
         return measure_on(stack, kills, seed, tell)
 
 
-def measure_on(stack: Stack, kills: int, seed: int, tell: Callable[[str], None] = lambda _: None) -> Report:
+def measure_on(
+    stack: Stack, kills: int, seed: int, tell: Callable[[str], None] = lambda _: None
+) -> KillReport:
     """Record, kill and restart repeatedly; then check the samples of this session."""
     chance = random.Random(seed)
-    report = Report()
+    report = KillReport()
     data = stack.data
     parts = {part: _pid(data, part) for part in PARTS}
     session = stack.api.post("/sessions", json={"name": "kills"}).raise_for_status().json()["id"]
@@ -125,7 +127,7 @@ def measure_on(stack: Stack, kills: int, seed: int, tell: Callable[[str], None] 
 
 def _arm(stack: Stack) -> None:
     """Arm, so that samples flow; after a refusal, the next round tries again."""
-    stack.api.post("/robot/commands/arm")
+    stack.api.post("/robot/commands/arm", json={"unwatched": 0})
 
 
 def _samples(stack: Stack, session: int) -> int:
@@ -135,7 +137,7 @@ def _samples(stack: Stack, session: int) -> int:
     return samples
 
 
-def _kill(stack: Stack, report: Report) -> None:
+def _kill(stack: Stack, report: KillReport) -> None:
     stack.kill()
     report.kills += 1
 
@@ -153,11 +155,11 @@ def _wait_for_answer(stack: Stack) -> None:
 
 
 def _pid(data: Path, part: str) -> int:
-    found: int = json.loads((data / "run" / f"{part}.pid").read_text())["pid"]
-    return found
+    text: int = json.loads((data / "run" / f"{part}.pid").read_text())["pid"]
+    return text
 
 
-def _examine(database: Path, session: int, report: Report) -> None:
+def _examine(database: Path, session: int, report: KillReport) -> None:
     with closing(sqlite3.connect(database)) as connection:
         (report.integrity,) = connection.execute("PRAGMA integrity_check").fetchone()
         gaps = "SELECT topic, kind, missed FROM gap WHERE session_id = ?"
@@ -171,11 +173,11 @@ def _examine(database: Path, session: int, report: Report) -> None:
         )
         ends: dict[str, tuple[int, float]] = {}
         ticks: list[float] = []
-        told: dict[str, int] = defaultdict(int)
+        reports: dict[str, int] = defaultdict(int)
         for topic, first, count, first_time, last_time, data in chunks:
             number, time_before = ends.get(topic, (first, first_time))
             if first > number:
-                report.holes.append(StateSilence(topic, first - number, first_time - time_before))
+                report.holes.append(SampleHole(topic, first - number, first_time - time_before))
             report.doubles += max(number - first, 0)
             ends[topic] = (first + count, last_time)
             report.rows += count
@@ -183,17 +185,17 @@ def _examine(database: Path, session: int, report: Report) -> None:
                 ticks += row_times(topic, data)
             elif topic == "event":
                 for event in decode_documents(data):
-                    told[event["text"].partition(";")[0]] += 1
-    report.stops = told["The server sends no heartbeat"]
+                    reports[event["text"].partition(";")[0]] += 1
+    report.stops = reports["The server sends no heartbeat"]
     report.tick_longest = max((after - before for before, after in pairwise(ticks)))
 
 
 def row_times(topic: str, data: bytes) -> list[float]:
-    """The times of a chunk's rows, s."""
+    """Return the times of a chunk's rows, s."""
     assert BY_NAME[topic].kind is Kind.ROWS
     size = BY_NAME[topic].row_bytes
     rows = decode_rows(data, size)
-    return [TIME.unpack_from(rows, place)[0] for place in range(0, len(rows), size)]
+    return [TIME.unpack_from(rows, position)[0] for position in range(0, len(rows), size)]
 
 
 def main() -> int:

@@ -21,14 +21,15 @@ import httpx
 from websockets.exceptions import ConnectionClosed
 
 from bench.dive import Dive
+from robot_runtime.config import RobotConfig
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.transport import replay_cache
-from server.features.comparison import comparer, samples
-from server.features.comparison.comparer import Comparer
-from server.features.comparison.schemas import ComparisonQuery
+from server.analysis import comparer, samples
+from server.analysis.comparer import Comparer
+from server.analysis.schemas import ComparisonQuery
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
 from server.stream import hub
@@ -37,7 +38,7 @@ from tests.exports import export_session
 from tests.proofs.scales import ANONYMOUS, IN_USE, Limit, Scales, judge
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
-from tests.shell import ShellToken
+from tests.shell import ShellAuth
 from tests.stack import ROOT
 
 MINUTE = 60.0
@@ -124,7 +125,10 @@ def load_server(minutes: int) -> dict[str, list[float]]:
         data = DataFolder(Path(name) / "data")
         make_folders(data)
         settings = Settings(
-            data=data, config=ROOT / "robot.toml", robot="tested", page=ROOT / "server" / "page"
+            data=data,
+            config=ROOT / "robot.toml",
+            robot=RobotConfig(name="tested"),
+            page=ROOT / "server" / "page",
         )
         asyncio.run(_serve_minutes(settings, minutes, scales))
     return scales.held
@@ -205,15 +209,15 @@ class _Day:
             await self._get(f"/sessions/{session}/blocks", start=start, end=end, history=60.0)
         for path in (f"/sessions/{session}/timeline", "/sessions", "/storage", "/health"):
             await self._get(path)
-        both = [one for one in (session, self._before) if one is not None]
+        both = [recording for recording in (session, self._before) if recording is not None]
         compared = ComparisonQuery(sessions=both, signals=["depth.depth"])
         await self._post("/compare", compared.model_dump(mode="json"))
         await asyncio.to_thread(self._comparer.compare, compared)
 
     def _export(self, session: int) -> None:
         settings = self._served.settings
-        base = f"{settings.scheme}://127.0.0.1:{settings.port}/api"
-        with httpx.Client(base_url=base, auth=ShellToken(settings.data), timeout=30) as client:
+        base = f"{settings.scheme}://127.0.0.1:{settings.server.port}/api"
+        with httpx.Client(base_url=base, auth=ShellAuth(settings.data), timeout=30) as client:
             assert len(export_session(client, session).content) > 100_000
 
     async def _remove(self, session: int) -> None:
@@ -234,8 +238,8 @@ def measure(part: str, minutes: int) -> dict[str, list[float]]:
     command = [sys.executable, "-m", "tests.proofs.memory", part, str(minutes)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-4000:]
-    found: dict[str, list[float]] = json.loads(done.stdout)
-    return found
+    answer: dict[str, list[float]] = json.loads(done.stdout)
+    return answer
 
 
 def main() -> int:
@@ -249,7 +253,7 @@ def main() -> int:
     for part, limits in LIMITS.items():
         held = measure(part, minutes)
         for kind, sizes in held.items():
-            print(f"{part}, {kind}: {', '.join(f'{one:.2f}' for one in sizes)} MB")
+            print(f"{part}, {kind}: {', '.join(f'{size:.2f}' for size in sizes)} MB")
         problem = judge(limits, held)
         grown |= bool(problem)
         print(f"{part}: {problem or 'memory does not grow'}.")

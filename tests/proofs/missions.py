@@ -1,7 +1,7 @@
 """`python -m tests.proofs.missions [MISSIONS]`: ends each leaf in each way; status 1 if one fails.
 
-The firmware on the emulated chip, the whole runtime and the water, in simulated time. Afterwards so many
-random missions, with readings that jump; a share of them swims.
+The firmware on the emulated chip, the whole runtime and the water, in simulated time. Then lanes by dead
+reckoning, and so many random missions, with readings that jump; a share of them swims.
 """
 
 import sys
@@ -20,14 +20,15 @@ from robot_runtime.contract.documents import Mission
 from robot_runtime.contract.topics import MISSION
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.boards import boards
-from robot_runtime.experiments.scenario.rig import SimulatedRobot
 from robot_runtime.experiments.scenario.run import PRELUDE, _RunLoop
+from robot_runtime.experiments.scenario.simulated_robot import SimulatedRobot
 from robot_runtime.simulation.boards.emulator_process import Water
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
+from tests.proofs.lanes import prove_lanes
 from tests.proofs.pool import processes
-from tests.proofs.watching import Motion
+from tests.proofs.watching import WatchedMotions
 from tests.runtime.control.flight import Flight
 from tests.runtime.experiments.scenario.staging import Told
 from tests.runtime.missions.random_missions import STEPS, check_random_mission, write
@@ -64,10 +65,17 @@ LEAVES = {
     "hold": "{ do = 'hold', seconds = 60, within = 9 }",
     "turn": "{ do = 'turn', by = 3.0, within = 0.02, timeout = 60 }",
     "swim": "{ do = 'swim', x = 0.5, seconds = 60 }",
+    "go": "{ do = 'go', distance = 50, heading = 1.0, timeout = 60 }",
     "to_light": "{ do = 'to_light', timeout = 60, lost = 60 }",
+    "wait": "{ do = 'wait', seconds = 60 }",
+    "count_down": "{ do = 'repeat', times = 3, steps = [{ do = 'count_down', seconds = 20 }] }",
+    # Under water it is over at once; it rises meanwhile, and then waits.
+    "wait_until_wet": "{ do = 'repeat', times = 50, steps = [{ do = 'wait_until_wet', timeout = 60 }] }",
     # Its end falls together with what else would end it.
     "surface": "{ do = 'hold', seconds = 1.5, within = 9 }, { do = 'surface' }",
 }
+SEEDS = 20
+"""Of the lanes by dead reckoning."""
 LIMITS = "depth = 2.0\ntime = 3400\nbattery = 7.0"
 
 
@@ -78,7 +86,7 @@ class MissionSwim(Flight):
         self.moved = self.powered = -inf
         """s; when the fins moved last, and when the motors had power last."""
         self._felt = 0
-        self._motion = Motion()
+        self._motion = WatchedMotions()
         self.missions: list[Mission] = []
         super().__init__(partial(self._make, board))
         self.supervisor._heartbeat = HEARTBEAT
@@ -92,7 +100,7 @@ class MissionSwim(Flight):
         return self.missions[-1]
 
     def begin(self, text: str) -> None:
-        """Arms the robot and begins a mission."""
+        """Arm the robot and begin a mission."""
         arming = Commands(self.robot).begin_mission(MissionCommand(text=text, library={}))
         while not arming.over:
             self.run(0.1)
@@ -100,12 +108,12 @@ class MissionSwim(Flight):
         assert arming.refusal == ""
 
     def status(self, path: str) -> str:
-        """The status of a step."""
+        """Return the status of a step."""
         steps = self.mission.steps if self.missions else []
-        return next((one.status for one in steps if one.path == path), "")
+        return next((step.status for step in steps if step.path == path), "")
 
     def settings(self) -> dict[str, Any]:
-        """Everything that a mission may change: parameters, set points, course."""
+        """Return everything that a mission may change: parameters, set points, course."""
         control = self.robot.control
         points = {name: loop.set_point_in_force for name, loop in control.loops.items()}
         return self.robot.parameters.values() | {
@@ -198,11 +206,11 @@ CAUSES = (
     ),
 )
 BY_HAND, RUNTIME = "take-over", "runtime killed"
-NAMES = (*(one.name for one in CAUSES), BY_HAND, RUNTIME)
+NAMES = (*(cause.name for cause in CAUSES), BY_HAND, RUNTIME)
 
 
 def perform(leaf: str, cause: str, board: str = "host") -> list[str]:
-    """Ends a leaf in this way. Returns the broken promises."""
+    """End a leaf in this way. Return the broken promises."""
     with MissionSwim(board) as swim:
         swim.begin(mission(*SETS, ARRIVE, TURN, LEAVES[leaf], limits=LIMITS))
         swim.until(lambda: swim.status(LEAF) == "running", CALM)
@@ -214,7 +222,7 @@ def perform(leaf: str, cause: str, board: str = "host") -> list[str]:
         elif cause == RUNTIME:
             problems = _kill_runtime(swim)
         else:
-            problems = _end(swim, next(one for one in CAUSES if one.name == cause), leaf)
+            problems = _end(swim, next(item for item in CAUSES if item.name == cause), leaf)
     return [f"{leaf}, {cause}: {problem}" for problem in problems]
 
 
@@ -281,7 +289,7 @@ def _kill_runtime(swim: MissionSwim) -> list[str]:
 
 
 def _find_motion(swim: MissionSwim, began: float, ended: float) -> list[str]:
-    """The promises about fins and motors that are broken; `began`: when they had to rest from, s."""
+    """Return the promises about fins and motors that are broken; `began`: when they had to rest from, s."""
     problems = []
     if swim.moved > began + REST:
         problems.append(f"the fins moved {swim.moved - began:.2f} s later")
@@ -295,7 +303,7 @@ def _find_motion(swim: MissionSwim, began: float, ended: float) -> list[str]:
 def _find_remains(swim: MissionSwim) -> list[str]:
     """Remains of the mission, once all is well again."""
     swim.sticks = None
-    swim.until(lambda: not any(one.active for one in swim.supervisor.alarms), CALM)
+    swim.until(lambda: not any(alarm.active for alarm in swim.supervisor.alarms), CALM)
     swim.until(lambda: not swim.robot.parameters.is_pending("fins.gain"), CALM)
     count = len(swim.missions)
     swim.run(1.5)
@@ -316,10 +324,10 @@ def _find_remains(swim: MissionSwim) -> list[str]:
 def perform_all(
     pairs: Sequence[tuple[str, str]], board: str, workers: int = 2
 ) -> dict[tuple[str, str], list[str]]:
-    """Performs these pairs of leaf and cause, some in parallel."""
+    """Perform these pairs of leaf and cause, some in parallel."""
     with processes(workers) as pool:
         running = {pair: pool.submit(perform, *pair, board) for pair in pairs}
-        return {pair: one.result() for pair, one in running.items()}
+        return {pair: run.result() for pair, run in running.items()}
 
 
 def swim_random(steps: list[dict[str, Any]]) -> None:
@@ -342,16 +350,19 @@ def main() -> int:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     pairs = [(leaf, cause) for leaf in LEAVES for cause in NAMES]
     print(f"{len(LEAVES)} leaves, each ended in {len(NAMES)} ways, on the emulated chip ...", flush=True)
-    problems = [one for found in perform_all(pairs, "emulated").values() for one in found]
+    problems = [problem for result in perform_all(pairs, "emulated").values() for problem in result]
     print("\n".join(problems) or "Every promise holds.", flush=True)
     swum = max(count // 20, 1)
+    print(f"Lanes by dead reckoning over {SEEDS} seeds ...", flush=True)
+    missed = prove_lanes(SEEDS)
+    print("\n".join(missed) or "They lie as planned.", flush=True)
     print(f"{count} random missions with readings that jump, {swum} in the water ...", flush=True)
     some = st.lists(STEPS, min_size=1, max_size=4)
     lasting = settings(database=None, deadline=None, suppress_health_check=list(HealthCheck))
     settings(lasting, max_examples=count)(given(some, st.integers(0, 99))(check_random_mission))()
     settings(lasting, max_examples=swum)(given(some)(swim_random))()
     print("All end in their time, and take everything back.")
-    return 1 if problems else 0
+    return 1 if problems or missed else 0
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ from robot_runtime.transport.zenoh_transport import join
 from server.platform.settings import DataFolder
 from server.processes.supervisor import HEARTBEAT_SECONDS
 from tests.proofs.pool import processes
-from tests.proofs.watching import Fins, Viewer, find_silence, wait
+from tests.proofs.watching import FinWatch, Viewer, find_silence, wait
 from tests.stack import Stack
 
 Blow = Literal["kill", "stop", "hang"]
@@ -41,6 +41,8 @@ AGAIN = 2.0
 ALWAYS = ("state", "depth", "truth")
 STEADY = 1.0
 """s for which at most the next blow is waited for."""
+STARVED = 0.4
+"""s without a processor after which a robot may have had to stop: a depth half a second old is too old."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +65,8 @@ class Outage:
     @property
     def name(self) -> str:
         """The outage as one word."""
-        words = {"kill": "killed", "stop": "hung", "hang": "hung_for_good"}
-        return f"{self.victim}_{words[self.blow]}"
+        text = {"kill": "killed", "stop": "hung", "hang": "hung_for_good"}
+        return f"{self.victim}_{text[self.blow]}"
 
 
 OUTAGES = (
@@ -82,17 +84,19 @@ OUTAGES = (
 
 
 @dataclass
-class Outcome:
+class OutageOutcome:
     """Result of one outage: s after the fault, and problems."""
 
     outage: Outage
     armed: bool
-    told: float = 0.0
+    reported: float = 0.0
     """Until the page showed the alarm."""
     rest: float = 0.0
     off: float = 0.0
     unheard: float = 0.0
     """The longest time between two heartbeats of a server, as somebody else hears them."""
+    starved: float = 0.0
+    """For which the one of the processes that swim that waited longest had work, and no processor."""
     again: float = 0.0
     """Until everything was well again; after what was stopped went on, from then."""
     problems: list[str] = field(default_factory=list)
@@ -107,14 +111,14 @@ class Outcome:
         return self.again > AGAIN
 
 
-class World:
+class OutageTrial:
     """Observers of a running robot, and its outages."""
 
     def __init__(self, stack: Stack, chance: random.Random) -> None:
         self.stack = stack
         self.folder = DataFolder(stack.data)
         self._chance = chance
-        self.fins = Fins(self.folder.board_socket)
+        self.fins = FinWatch(self.folder.board_socket)
         self.viewer = Viewer(self.stack)
 
     def close(self) -> None:
@@ -122,13 +126,13 @@ class World:
         self.viewer.close()
         self.fins.close()
 
-    def inject(self, outage: Outage, armed: bool) -> Outcome:
+    def inject(self, outage: Outage, armed: bool) -> OutageOutcome:
         """Wait until all is well, arm if `armed`, cause the outage, and measure its effects."""
         self.calm()
         if armed:
             self.arm()
-        outcome = Outcome(outage, armed)
-        with self._hearing() as heard:
+        outcome = OutageOutcome(outage, armed)
+        with self._hearing() as heard, self._starving(outcome):
             time.sleep(self._chance.uniform(0, STEADY))
             outcome.again = self._strike(outcome)
         outcome.unheard = max((after - before for before, after in pairwise(heard)), default=0.0)
@@ -145,8 +149,19 @@ class World:
             wait(lambda: heard, "a heartbeat")
             yield heard
 
-    def _strike(self, outcome: Outcome) -> float:
-        """Cause the outage; returns s until all is well again."""
+    @contextmanager
+    def _starving(self, outcome: OutageOutcome) -> Iterator[None]:
+        """Note how long runtime, simulator and board have waited for a processor, as the kernel counts it."""
+        swimmers = [self.find(name) for name in ("runtime", "simulator", "board")]
+        before = [_waited_for_processor(process.pid) for process in swimmers]
+        yield
+        outcome.starved = max(
+            _waited_for_processor(process.pid) - waited
+            for process, waited in zip(swimmers, before, strict=True)
+        )
+
+    def _strike(self, outcome: OutageOutcome) -> float:
+        """Cause the outage; return s until all is well again."""
         outage = outcome.outage
         victim = self.find(outage.victim)
         since = time.monotonic()
@@ -170,24 +185,27 @@ class World:
         topics = (*ALWAYS, "detection") if outage.victim == "vision" else ALWAYS
         return wait(lambda: self.well(since_up, topics), f"all to be well after {outage.name}") - since
 
-    def _see(self, outcome: Outcome, since: float) -> None:
+    def _see(self, outcome: OutageOutcome, since: float) -> None:
         outage = outcome.outage
         alarm = outage.alarm
         if alarm is not None and not (outage.victim == "server" and outage.blow == "stop"):
-            outcome.told = wait(lambda: self.viewer.tells(alarm), f"the alarm {alarm}") - since
+            outcome.reported = wait(lambda: self.viewer.tells(alarm), f"the alarm {alarm}") - since
         if outcome.armed and outage.off is not None:
             wait(lambda: self.fins.seen[-1].time > since and not self.fins.seen[-1].powered, "no power")
             begun = find_silence(self.fins.seen, since) if outage.victim == "runtime" else since
             outcome.rest, outcome.off = self.fins.moved_for(begun), self.fins.powered_for(begun)
 
-    def _judge(self, outcome: Outcome) -> None:
+    def _judge(self, outcome: OutageOutcome) -> None:
         outage, problems = outcome.outage, outcome.problems
         armed = bool(self.viewer.state["armed"])
         if armed and not (outcome.armed and outage.off is None):
             problems.append("it came up armed")
-        # A server that comes up late is slow; a robot that had to stop meanwhile has done right.
-        waited = outage.victim == "server" and outcome.unheard >= HEARTBEAT_SECONDS
-        if not armed and outcome.armed and outage.off is None and not waited:
+        # A server that comes up late is slow; a robot that had to stop meanwhile has done right. So has one
+        # that other work keeps from its processor.
+        right = outcome.starved >= STARVED or (
+            outage.victim == "server" and outcome.unheard >= HEARTBEAT_SECONDS
+        )
+        if not armed and outcome.armed and outage.off is None and not right:
             alarms = "; ".join(
                 f"{alarm['fault']} since {alarm['since']:.1f} s ({alarm['what']})"
                 for alarm in self.viewer.alarms
@@ -217,14 +235,17 @@ class World:
 
     def arm(self) -> None:
         """Arm, and wait for power and moving fins."""
-        wait(lambda: self.stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
+        wait(
+            lambda: self.stack.api.post("/robot/commands/arm", json={"unwatched": 0}).status_code == 204,
+            "the robot to arm",
+        )
         try:
             wait(lambda: self.fins.seen[-1].powered and self.fins.seen[-1].moving, "the fins to move")
         except AssertionError as problem:
             raise AssertionError(f"{problem}: {self.viewer.state}; {self.fins.seen[-1]}") from problem
 
     def find(self, name: str) -> psutil.Process:
-        """The process of this name."""
+        """Return the process of this name."""
         if name == "server":
             return self.stack.server
         if name == "runner":
@@ -232,14 +253,14 @@ class World:
         return self.stack.part(name)
 
     def is_replaced(self, name: str, pid: int) -> bool:
-        """True if a new process has this name."""
+        """Return True if a new process has this name."""
         try:
             return self.find(name).pid != pid
         except (LookupError, psutil.Error):
             return False
 
     def well(self, since: float, topics: tuple[str, ...] = ALWAYS) -> bool:
-        """True if all parts are well, by data of these topics since then."""
+        """Return True if all parts are well, by data of these topics since then."""
         if not self.viewer.fresh(topics, since) or not self.viewer.state["connected"]:
             return False
         try:
@@ -249,7 +270,17 @@ class World:
         return bool(health["status"] == "ok")
 
 
-def measure_all(times: int, seed: int, robots: int, tell: Callable[[str], None]) -> list[Outcome]:
+def _waited_for_processor(pid: int) -> float:
+    """Return s for which the threads of a process were ready to run, and did not; 0 where it has ended."""
+    tasks = Path(f"/proc/{pid}/task")
+    try:
+        counted = [int((task / "schedstat").read_text().split()[1]) for task in tasks.iterdir()]
+    except OSError:
+        return 0.0
+    return sum(counted) / 1e9
+
+
+def measure_all(times: int, seed: int, robots: int, tell: Callable[[str], None]) -> list[OutageOutcome]:
     """Run each outage so often altogether, on several robots at once; `tell` is a function of a module."""
     shares = [times // robots + (number < times % robots) for number in range(robots)]
     with processes(robots, get_context("spawn")) as pool:
@@ -261,13 +292,13 @@ def measure_all(times: int, seed: int, robots: int, tell: Callable[[str], None])
         return [outcome for run in runs for outcome in run.result()]
 
 
-def _measure_share(times: int, seed: int, number: int, tell: Callable[[str], None]) -> list[Outcome]:
+def _measure_share(times: int, seed: int, number: int, tell: Callable[[str], None]) -> list[OutageOutcome]:
     return measure(times, seed + number, lambda text: tell(f"robot {number + 1}: {text}"))
 
 
 def measure(
     times: int, seed: int, tell: Callable[[str], None] = lambda _: None, outages: tuple[Outage, ...] = OUTAGES
-) -> list[Outcome]:
+) -> list[OutageOutcome]:
     """Run each outage repeatedly on a robot of its own."""
     with TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
         return measure_on(stack, times, seed, tell, outages)
@@ -279,20 +310,20 @@ def measure_on(
     seed: int,
     tell: Callable[[str], None] = lambda _: None,
     outages: tuple[Outage, ...] = OUTAGES,
-) -> list[Outcome]:
+) -> list[OutageOutcome]:
     """Run each outage repeatedly, in any order, every other one while the robot is armed."""
     chance = random.Random(seed)
     plan = [(outage, number % 2 == 0) for outage in outages for number in range(times)]
     chance.shuffle(plan)
     outcomes = []
-    world = World(stack, chance)
+    world = OutageTrial(stack, chance)
     try:
         for outage, armed in plan:
             outcome = world.inject(outage, armed)
             outcomes.append(outcome)
             tell(
                 f"{len(outcomes):>5} of {len(plan)}: {outage.name:<18} {'armed' if armed else '':<6}"
-                f"told {outcome.told:5.2f}  rest {outcome.rest:5.2f}  off {outcome.off:5.2f}  "
+                f"told {outcome.reported:5.2f}  rest {outcome.rest:5.2f}  off {outcome.off:5.2f}  "
                 f"again {outcome.again:5.2f}  {'; '.join(outcome.problems)}"
             )
     finally:
@@ -300,18 +331,22 @@ def measure_on(
     return outcomes
 
 
-def table(outcomes: Sequence[Outcome]) -> str:
+def table(outcomes: Sequence[OutageOutcome]) -> str:
     """Describe the longest times, in s, for a person."""
     lines = [
         f"{'outage':<18}{'n':>5}{'told':>7}{'at rest':>9}{'no power':>10}{'again':>7}{'median':>8}{'slow':>6}"
     ]
-    for outage in dict.fromkeys(one.outage for one in outcomes):
-        mine = [one for one in outcomes if one.outage == outage]
-        again = sorted(one.again for one in mine)
-        stopped = f"{max(one.rest for one in mine):>9.2f}{max(one.off for one in mine):>10.2f}"
-        lines.append(
-            f"{outage.name:<18}{len(mine):>5}{max(one.told for one in mine):>7.2f}"
-            f"{'' if outage.off is None else stopped:>19}{again[-1]:>7.2f}{again[len(again) // 2]:>8.2f}"
-            f"{sum(one.is_slow for one in mine):>6}"
+    for outage in dict.fromkeys(outcome.outage for outcome in outcomes):
+        mine = [outcome for outcome in outcomes if outcome.outage == outage]
+        again = sorted(outcome.again for outcome in mine)
+        stopped = (
+            f"{max(outcome.rest for outcome in mine):>9.2f}{max(outcome.off for outcome in mine):>10.2f}"
         )
-    return "\n".join([*lines, *(f"{one.outage.name}: {text}" for one in outcomes for text in one.problems)])
+        lines.append(
+            f"{outage.name:<18}{len(mine):>5}{max(outcome.reported for outcome in mine):>7.2f}"
+            f"{'' if outage.off is None else stopped:>19}{again[-1]:>7.2f}{again[len(again) // 2]:>8.2f}"
+            f"{sum(outcome.is_slow for outcome in mine):>6}"
+        )
+    return "\n".join(
+        [*lines, *(f"{outcome.outage.name}: {text}" for outcome in outcomes for text in outcome.problems)]
+    )

@@ -56,7 +56,7 @@ class Figures:
 
 
 def prove(root: RootSystem) -> Figures:
-    """Installs, runs and judges one root."""
+    """Install, run and judge one root."""
     figures = Figures(root.name)
     try:
         root.make()
@@ -70,8 +70,8 @@ def prove(root: RootSystem) -> Figures:
             root.run(*pip, f"mucat-emulator=={VERSION}")
             if not root.is_emulated:  # two emulators within each other are too slow for real time
                 _swim(root, figures, "emulated", None)
-        for words in COMMANDS:
-            root.run(MUCAT, *words, *(("--data", f"/{DATA}") if words != ("--version",) else ()))
+        for text in COMMANDS:
+            root.run(MUCAT, *text, *(("--data", f"/{DATA}") if text != ("--version",) else ()))
     except (AssertionError, OSError, subprocess.SubprocessError, httpx.HTTPError) as problem:
         figures.problem = str(problem) or type(problem).__name__
     return figures
@@ -126,7 +126,7 @@ def _measure(robot: InstalledRobot, figures: Figures) -> None:
 
 
 def _look(robot: InstalledRobot) -> None:
-    """Opens the page by Chromium, signed in as an operator, while the robot is armed."""
+    """Open the page by Chromium, signed in as an operator, while the robot is armed."""
     with launched() as browser:
         cookies = signed_in(browser, robot)
         with opened_page(browser, robot, cookies, DESKTOP) as page:

@@ -8,7 +8,7 @@ from multiprocessing.context import BaseContext
 
 @contextmanager
 def processes(count: int, context: BaseContext | None = None) -> Iterator[ProcessPoolExecutor]:
-    """Yields a pool; where the block is left by an exception, what has not begun is not begun any more."""
+    """Yield a pool; where the block is left by an exception, what has not begun is not begun any more."""
     with ProcessPoolExecutor(count, context) as pool:
         try:
             yield pool

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from tests.proofs import disk
-from tests.proofs.disk import Cut, Disk, Step
+from tests.proofs.disk import Cut, DiskStep, LoggedDisk
 from tests.proofs.facts import DamagedDataError, holds, read_facts
 from tests.stack import ROOT
 
@@ -35,7 +35,7 @@ WEAKER = {
 
 
 @dataclass
-class Report:
+class PowerReport:
     """Result of the cuts: count of each kind, acknowledged facts, and problems."""
 
     cuts: Counter[Cut] = field(default_factory=Counter)
@@ -62,24 +62,24 @@ class Report:
 HEADER = f"{'':<22}{'states':>8}{'damaged':>9}{'lossy':>8}{'lost':>9}   bad states by kind"
 
 
-def record(folder: Path, library: Path, *weaker: str) -> tuple[Path, Disk, list[Step]]:
-    """Run the work in `folder`; returns its data folder, the disk before it, and its steps."""
+def record(folder: Path, library: Path, *weaker: str) -> tuple[Path, LoggedDisk, list[DiskStep]]:
+    """Run the work in `folder`; return its data folder, the disk before it, and its steps."""
     log = folder / "steps"
     work = folder / "work"
     work.mkdir()
     log.touch()
-    before = Disk(work)
+    before = LoggedDisk(work)
     command = [sys.executable, "-m", "tests.proofs.power_work", str(work), str(log), *weaker]
     subprocess.run(command, cwd=ROOT, env=disk.logging(library, work, log), check=True)
     return work / "data", before, list(disk.read(log))
 
 
-def replay(data: Path, at: Disk, steps: list[Step], states: int, seed: int) -> Report:
+def replay(data: Path, at: LoggedDisk, steps: list[DiskStep], states: int, seed: int) -> PowerReport:
     """Cut the power at this many moments, as many of each kind, and check the data."""
     chance = random.Random(seed)
     kinds = cycle(CUTS)
     moments = Counter(chance.randrange(1, len(steps) + 1) for _ in range(states))
-    report, demands = Report(), dict[str, list[Any]]()
+    report, demands = PowerReport(), dict[str, list[Any]]()
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         for number, step in enumerate(steps, 1):
             if step.kind == "a":
@@ -92,8 +92,8 @@ def replay(data: Path, at: Disk, steps: list[Step], states: int, seed: int) -> R
     return report
 
 
-def is_whole(data: Path, at: Disk) -> bool:
-    """True if the recorded steps explain every byte in the folder."""
+def is_whole(data: Path, at: LoggedDisk) -> bool:
+    """Return True if the recorded steps explain every byte in the folder."""
     seen = at.after("kept", random.Random(0))
     watched = [data / "mucat.db", *data.glob("exports/*"), *data.glob("backups/*"), *data.glob("scenarios/*")]
     return all(seen.get(str(path)) == path.read_bytes() for path in watched) and not any(
@@ -101,7 +101,7 @@ def is_whole(data: Path, at: Disk) -> bool:
     )
 
 
-def _demand(demands: dict[str, list[Any]], step: Step) -> None:
+def _demand(demands: dict[str, list[Any]], step: DiskStep) -> None:
     for name, allowed in json.loads(step.data).items():
         if allowed is None:
             demands.pop(name, None)
@@ -115,7 +115,7 @@ def _look(
     data: Path,
     folder: Path,
     cut: Cut,
-    report: Report,
+    report: PowerReport,
 ) -> None:
     report.cuts[cut] += 1
     report.facts += len(demands)

@@ -27,16 +27,16 @@ from server.features.comm_tests.runs import CommTestStore
 from server.features.exports.jobs import Jobs
 from server.features.exports.schemas import NewExport
 from server.features.scenarios.library import _shipped, keep_scenario
-from server.features.sessions.bookmarks import Bookmarks
-from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.recorder import PERIOD, Recorder
-from server.features.sessions.retention import RetentionWorker
-from server.features.sessions.session import find_row, new_row
+from server.library.bookmarks import Bookmarks
+from server.library.catalogue import Catalogue
+from server.library.retention import RetentionWorker
 from server.platform import store as store_module
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
+from server.recording.recorder import PERIOD, Recorder
+from server.recording.session import find_row, new_row
 from tests.proofs.disk import note
 from tests.proofs.facts import read_facts
 from tests.server.blocks import debug_block, depth_record
@@ -82,7 +82,8 @@ class Work:
         """Rows that compression cannot shrink."""
         size = len(depth_record(0).to_bytes())
         rows = b"".join(
-            row(100.0 + (self._first + place) * 0.002, self._chance.randbytes(size)) for place in range(ROWS)
+            row(100.0 + (self._first + position) * 0.002, self._chance.randbytes(size))
+            for position in range(ROWS)
         )
         self._first += ROWS
         return Block.of(BY_NAME["depth"], ROWS, self._first - ROWS, rows)
@@ -148,8 +149,8 @@ class Work:
         jobs = Jobs(self.settings.data, store, SteadyClock())
         jobs.open()
         working = asyncio.create_task(jobs.run())
-        found = find_row(store, session)
-        job = await jobs.add(found, NewExport(session=session, format="archive"))
+        result = find_row(store, session)
+        job = await jobs.add(result, NewExport(session=session, format="archive"))
         while job.state in ("waiting", "running"):
             await asyncio.sleep(0.01)
             job = jobs.find(job.id)
@@ -160,8 +161,8 @@ class Work:
 
     def _look_from_a_shell(self) -> None:
         where = ["--data", str(self.settings.data.path), "--config", str(self.settings.config)]
-        for words in (["sessions", "list"], ["commtest", "list"], ["backup"]):
-            assert main([*words, *where]) == 0
+        for text in (["sessions", "list"], ["commtest", "list"], ["backup"]):
+            assert main([*text, *where]) == 0
         (backup,) = self.settings.data.backups.glob("mucat-backup-*.db")
         self.file(backup)
 

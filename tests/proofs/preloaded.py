@@ -36,9 +36,9 @@ def main() -> None:
 
 def run(folder: str, options: list[str], output: str) -> int:
     """Exit status of `python -m pytest` in this folder, which comes first where modules are looked for."""
-    said = os.open(output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    for place, file in enumerate((os.open(os.devnull, os.O_RDONLY), said, said)):
-        os.dup2(file, place)
+    answer = os.open(output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    for index, file in enumerate((os.open(os.devnull, os.O_RDONLY), answer, answer)):
+        os.dup2(file, index)
     os.chdir(folder)
     os.environ |= {"PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"}
     sys.dont_write_bytecode = True

@@ -13,7 +13,7 @@ from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
 from server.features.board.previous_firmware import read_program, write_program
 from server.features.installation.installer import set_values
-from tests.proofs.container import Container
+from tests.proofs.container import SystemdContainer
 from tests.proofs.small_computer import CONFIG, DATA, SERVICES
 from tests.proofs.steps import Steps, ask_server
 
@@ -29,7 +29,7 @@ print(*(one["state"] for one in ask(data, "GET", "/health")["parts"] if one["nam
 
 @contextmanager
 def board(folder: Path, baud: int) -> Iterator[list[str]]:
-    """Run the board; yields the options by which systemd-nspawn gives it to a container."""
+    """Run the board; yield the options by which systemd-nspawn gives it to a container."""
     build_firmware(BUILD, baud)
     tty, socket = folder / "tty", folder / "socket"
     loader = ("--bootloader", str(BUILD / "firmware/optiboot.hex"))
@@ -43,7 +43,7 @@ def board(folder: Path, baud: int) -> Iterator[list[str]]:
 
 
 def connect(config: str, baud: int) -> str:
-    """The configuration of a robot that is connected to the board; a container has no camera."""
+    """Return the configuration of a robot that is connected to the board; a container has no camera."""
     values = {
         "mode": '"robot"',
         "port": f'"{PORT}"',
@@ -61,7 +61,7 @@ def mark_firmware(path: Path) -> None:
     write_program(program.replace(WORDS, MARK), path)
 
 
-def update_with_board(container: Container, steps: Steps, older: str, later: str) -> None:
+def update_with_board(container: SystemdContainer, steps: Steps, older: str, later: str) -> None:
     """Connect the board, and let an update and the way back change its firmware."""
     config = container.root / CONFIG.lstrip("/")
     config.write_text(connect(config.read_text(), container.system.baud))

@@ -88,7 +88,6 @@ STAGES: tuple[Stage, ...] = (
                 Proof(
                     "services", "Installation, updates and the way back, with systemd and a cut of the power."
                 ),
-                Proof("bring-ups", "Each mistake of a new robot is found and named, on page and shell."),
                 Proof("image-swims", "The container image starts, and its robot swims."),
                 Proof("packages", "The wheels install and swim on fresh systems of each architecture."),
             )
@@ -99,7 +98,7 @@ STAGES: tuple[Stage, ...] = (
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ProofOutcome:
     """The result of a proof on a commit."""
 
     target: str
@@ -128,43 +127,43 @@ class Run:
         return self._ending.is_set()
 
     def perform(self, named: Sequence[str]) -> int:
-        """Runs those that are named, or those without a result. Returns the number of failed ones."""
-        wanted = {
+        """Run those that are named, or those without a result. Return the number of failed ones."""
+        request = {
             proof.target
             for proof in self._proofs
             if (proof.target in named if named else not self._is_known(proof.target))
         }
         for proof in self._proofs:
-            if not named and proof.target not in wanted:
+            if not named and proof.target not in request:
                 print(f"{proof.target}: has a result on {self._now} already", flush=True)
         before = {number: signal.signal(number, lambda *_: self._end()) for number in ENDING}
         try:
             for stage in self._stages:
-                self._perform_stage(stage, wanted)
+                self._perform_stage(stage, request)
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
-        return sum(one.status != 0 for one in self._outcomes.values() if one.commit == self._now)
+        return sum(outcome.status != 0 for outcome in self._outcomes.values() if outcome.commit == self._now)
 
     def _is_known(self, target: str) -> bool:
         known = self._outcomes.get(target)
         return known is not None and known.commit == self._now
 
-    def _perform_stage(self, stage: Stage, wanted: set[str]) -> None:
+    def _perform_stage(self, stage: Stage, expected: set[str]) -> None:
         pools = [ThreadPoolExecutor(lane.at_once) for lane in stage]
         begun = [
             pool.submit(self._perform, proof, lane.prefix)
             for pool, lane in zip(pools, stage, strict=True)
             for proof in lane.proofs
-            if proof.target in wanted
+            if proof.target in expected
         ]
-        for one in begun:
-            one.result()
+        for process in begun:
+            process.result()
         for pool in pools:
             pool.shutdown()
 
     def _end(self) -> None:
-        """Ends what runs, of which nothing is stored."""
+        """End what runs, of which nothing is stored."""
         self._ending.set()
         for process in list(self._running.values()):
             _interrupt(process)
@@ -174,17 +173,17 @@ class Run:
             return
         print(f"\n== {proof.target}: {proof.statement}", flush=True)
         began, started = datetime.now(UTC).isoformat(timespec="seconds"), time.monotonic()
-        status, said = self._make(proof, prefix)
+        status, answer = self._make(proof, prefix)
         if self._ending.is_set():
             return
         seconds = time.monotonic() - started
-        outcome = Outcome(proof.target, self._now, machine(), began, seconds, status, said)
+        outcome = ProofOutcome(proof.target, self._now, machine(), began, seconds, status, answer)
         with self._storing:
             self._outcomes[proof.target] = outcome
-            stored = {name: asdict(one) for name, one in self._outcomes.items()}
+            stored = {name: asdict(outcome) for name, outcome in self._outcomes.items()}
             self._file.write_text(json.dumps(stored, indent=2) + "\n")
             (FOLDER / "report.md").write_text(report(self._proofs, self._outcomes, self._now))
-            done = sum(map(self._is_known, (one.target for one in self._proofs)))
+            done = sum(map(self._is_known, (proof.target for proof in self._proofs)))
         minutes = f"{_minutes(outcome)} min; {done} of {len(self._proofs)} have a result"
         print(f"\n== {proof.target}: {_verdict(outcome)} after {minutes}", flush=True)
 
@@ -232,17 +231,17 @@ def main() -> int:
     return 1 if failed else 0
 
 
-def report(proofs: Sequence[Proof], outcomes: dict[str, Outcome], now: str) -> str:
-    """Returns the report of a commit in Markdown; results of other commits count as missing."""
-    mine = {name: one for name, one in outcomes.items() if one.commit == now}
+def report(proofs: Sequence[Proof], outcomes: dict[str, ProofOutcome], now: str) -> str:
+    """Return the report of a commit in Markdown; results of other commits count as missing."""
+    mine = {name: outcome for name, outcome in outcomes.items() if outcome.commit == now}
     rows = [
         f"| [{proof.target}](#{proof.target}) | {proof.statement} | {_verdict(mine.get(proof.target))} "
         f"| {_minutes(mine.get(proof.target))} |"
         for proof in proofs
     ]
     details = [
-        f"\n## {name}\n\nBegun {one.began} on {one.machine}.\n\n```text\n{one.said}\n```"
-        for name, one in mine.items()
+        f"\n## {name}\n\nBegun {outcome.began} on {outcome.machine}.\n\n```text\n{outcome.said}\n```"
+        for name, outcome in mine.items()
     ]
     head = [
         "# Proofs",
@@ -255,14 +254,14 @@ def report(proofs: Sequence[Proof], outcomes: dict[str, Outcome], now: str) -> s
     return "\n".join([*head, *rows, *details]) + "\n"
 
 
-def _read(file: Path) -> dict[str, Outcome]:
+def _read(file: Path) -> dict[str, ProofOutcome]:
     if not file.exists():
         return {}
-    return {name: Outcome(**one) for name, one in json.loads(file.read_text()).items()}
+    return {name: ProofOutcome(**values) for name, values in json.loads(file.read_text()).items()}
 
 
 def _environment() -> dict[str, str]:
-    """The environment without make's own variables, and without ONLY, which chooses parts of a proof."""
+    """Return the environment without make's own variables and ONLY, which chooses parts of a proof."""
     dropped = {"MAKEFLAGS", "MAKELEVEL", "MAKEOVERRIDES", "MFLAGS", "ONLY"}
     return {name: value for name, value in os.environ.items() if name not in dropped}
 
@@ -273,13 +272,13 @@ def _interrupt(process: subprocess.Popen[str]) -> None:
         os.killpg(process.pid, signal.SIGINT)
 
 
-def _verdict(outcome: Outcome | None) -> str:
+def _verdict(outcome: ProofOutcome | None) -> str:
     if outcome is None:
         return "not run"
     return "held" if outcome.status == 0 else f"**failed** (status {outcome.status})"
 
 
-def _minutes(outcome: Outcome | None) -> str:
+def _minutes(outcome: ProofOutcome | None) -> str:
     return "" if outcome is None else f"{outcome.seconds / 60:.0f}"
 
 

@@ -18,7 +18,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Literal, NamedTuple, Self
 
-from robot_runtime.contract.packets import Debug, Hello, Navigation, Packet, Start, Status, StatusFlag
+from robot_runtime.contract.board_events import describe_event
+from robot_runtime.contract.packets import BoardEvent, Hello, Navigation, Packet, Start, Status, StatusFlag
 from robot_runtime.link.session import BoardMessage, LinkSession, SessionStage
 from robot_runtime.simulation.boards.emulator_process import LineDirection, LineFault
 from tests.board.host import BAUD, start
@@ -61,7 +62,7 @@ class Return(NamedTuple):
 
 
 @dataclass
-class Report:
+class ResetReport:
     """Result of many resets; `problems` are counted by kind and described in `words`."""
 
     resets: Counter[Reset] = field(default_factory=Counter)
@@ -73,8 +74,8 @@ class Report:
     problems: Counter[str] = field(default_factory=Counter)
     words: list[str] = field(default_factory=list)
 
-    def __add__(self, other: Self) -> "Report":
-        return Report(
+    def __add__(self, other: Self) -> "ResetReport":
+        return ResetReport(
             self.resets + other.resets,
             self.returns + other.returns,
             self.answers + other.answers,
@@ -87,7 +88,11 @@ class Report:
 
     def seconds(self, reset: Reset, noisy: bool) -> list[float]:
         """Durations of each recovery of that kind."""
-        return [one.seconds for one in self.returns if (one.reset, one.noisy) == (reset, noisy)]
+        return [
+            recovery.seconds
+            for recovery in self.returns
+            if (recovery.reset, recovery.noisy) == (reset, noisy)
+        ]
 
     def table(self) -> str:
         """Describe the result for a person."""
@@ -107,11 +112,11 @@ class Report:
         return "\n".join([*lines, *self.words])
 
 
-class World:
+class ResetTrial:
     """The board with a program, its host, and the invariants of both."""
 
     def __init__(self, folder: Path, program: str, seed: int) -> None:
-        self.report = Report()
+        self.report = ResetReport()
         self.now = 0.0
         self.joined = False
         self._folder = folder
@@ -162,7 +167,7 @@ class World:
     # Actions of the host
 
     def _converse(self) -> None:
-        """Send three STARTs, one of which is for this boot; returns the answers."""
+        """Send three STARTs, one of which is for this boot; return the answers."""
         epochs = [self._wrong(), self._boot or 0, self._wrong()]
         self._chance.shuffle(epochs)
         for epoch in epochs:
@@ -227,10 +232,10 @@ class World:
     def _await_watchdog(self) -> None:
         """Run the program that hangs 2 s after arming; arm it where it is not armed yet."""
         before = self._rig.board.stats()["watchdog_resets"]
-        said = self.now - ASKING
+        answer = self.now - ASKING
         while self._rig.board.stats()["watchdog_resets"] == before:
-            if not self._rig.board.fins().powered and self.now >= said + ASKING:
-                said = self.now
+            if not self._rig.board.fins().powered and self.now >= answer + ASKING:
+                answer = self.now
                 self._say_start(self._boot or 0)
             self._run(STEP)
 
@@ -280,8 +285,9 @@ class World:
                 self._forget()
         elif message.type == Status.type:
             self._see(Status.from_bytes(message.payload))
-        elif message.type == Debug.type:
-            self._read(Debug.from_bytes(message.payload))
+        elif message.type == BoardEvent.type:
+            event = BoardEvent.from_bytes(message.payload)
+            self._read(event.time, describe_event(event).text)
 
     def _see(self, status: Status) -> None:
         if status.epoch != self._boot:
@@ -299,19 +305,15 @@ class World:
         if status.flags & StatusFlag.ARMED and not self._may_be_armed:
             self._problem("armed by itself", f"STATUS says so: {status}")
 
-    def _read(self, line: Debug) -> None:
-        if (line.time, line.text) in self._lines:
-            self._problem("twice", f"{line}")
-        elif self._lines and line.time < self._lines[-1][0]:
-            self._problem("out of order", f"{line} after {self._lines[-1]}")
-        self._lines.append((line.time, line.text))
+    def _read(self, time: int, text: str) -> None:
+        if (time, text) in self._lines:
+            self._problem("twice", f"{text} at {time}")
+        elif self._lines and time < self._lines[-1][0]:
+            self._problem("out of order", f"{text} at {time}, after {self._lines[-1]}")
+        self._lines.append((time, text))
         # Answers to requests of an earlier host may arrive at this one.
-        if (
-            self.joined
-            and line.time > self._joined_at
-            and (line.text.startswith(_REFUSED) or line.text == "armed")
-        ):
-            self._answers.append(line.text)
+        if self.joined and time > self._joined_at and (text.startswith(_REFUSED) or text == "armed"):
+            self._answers.append(text)
 
     def _forget(self) -> None:
         self._lines: list[tuple[int, str]] = []
@@ -328,10 +330,10 @@ class World:
                 self._problem("twice or out of order", f"{self._answers} to {self._asked}")
                 return
 
-    def _problem(self, kind: str, words: str) -> None:
+    def _problem(self, kind: str, message: str) -> None:
         self.report.problems[kind] += 1
         if len(self.report.words) < 20:
-            self.report.words.append(f"{self.now:.3f} s: {kind}: {words}")
+            self.report.words.append(f"{self.now:.3f} s: {kind}: {message}")
 
 
 def prepare() -> None:
@@ -340,16 +342,16 @@ def prepare() -> None:
     build(ROOT / "firmware", "robot", "hang")
 
 
-def measure(program: str, kinds: Sequence[Reset], resets: int, seed: int) -> Report:
+def measure(program: str, kinds: Sequence[Reset], resets: int, seed: int) -> ResetReport:
     """Run at least this many resets of these kinds; the same for the same seed."""
-    with TemporaryDirectory() as folder, World(Path(folder), program, seed) as world:
+    with TemporaryDirectory() as folder, ResetTrial(Path(folder), program, seed) as world:
         world.join()
         while world.report.resets.total() < resets:
             world.case(kinds)
     return world.report
 
 
-def measure_all(resets: int, seed: int = 0) -> Report:
+def measure_all(resets: int, seed: int = 0) -> ResetReport:
     """Run at least this many resets, in two processes."""
     prepare()
     hangs = resets // 8
@@ -361,4 +363,4 @@ def measure_all(resets: int, seed: int = 0) -> Report:
             pool.submit(measure, "robot", others, half, 2 * seed + 1),
             pool.submit(measure, "robot_hang", ("watchdog",), hangs, seed),
         ]
-        return sum((part.result() for part in parts), Report())
+        return sum((part.result() for part in parts), ResetReport())

@@ -76,7 +76,7 @@ class RootSystem:
         return FOLDER / self.name
 
     def make(self) -> None:
-        """Makes it, if it does not exist. Raises CalledProcessError."""
+        """Make it, if it does not exist. Raise CalledProcessError."""
         if self.is_emulated:
             _enable(self.interpreter)
         if self.path.exists():
@@ -91,21 +91,21 @@ class RootSystem:
         subprocess.run([*command, source], check=True, env=os.environ | self._emulation())
         part.rename(self.path)
 
-    def command(self, words: Sequence[str]) -> list[str]:
-        """The command line that runs `words` in the root; its mounts end with it."""
+    def command(self, message: Sequence[str]) -> list[str]:
+        """Return the command line that runs `words` in the root; its mounts end with it."""
         enter = ["unshare", "--mount", "--propagation", "private", "sh", "-c", ENTER, "enter"]
-        return [*self.setarch, *enter, str(self.path), str(self.wheels), *words]
+        return [*self.setarch, *enter, str(self.path), str(self.wheels), *message]
 
-    def run(self, *words: str) -> str:
-        """Runs a command in the root; returns what it printed. Fails where the command does."""
+    def run(self, *arguments: str) -> str:
+        """Run a command in the root; return what it printed. Fails where the command does."""
         done = subprocess.run(
-            self.command(words), capture_output=True, text=True, check=False, env=self.environment()
+            self.command(arguments), capture_output=True, text=True, check=False, env=self.environment()
         )
-        assert done.returncode == 0, f"{' '.join(words)}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        assert done.returncode == 0, f"{' '.join(arguments)}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
         return done.stdout
 
     def environment(self) -> dict[str, str]:
-        """The environment inside: pip's settings of this computer, a plain locale, and the processor."""
+        """Return the environment inside: pip's settings of this computer, a plain locale, the processor."""
         for file in PIP_FILES:
             if file.exists():
                 (self.path / file.parent.relative_to("/")).mkdir(parents=True, exist_ok=True)

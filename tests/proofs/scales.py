@@ -34,7 +34,7 @@ class Limit:
     """MB a minute; what a day on a Raspberry Pi Zero with 512 MB bears"""
 
     def judge(self, kind: str, held: Sequence[float]) -> str:
-        """The fault in the MB after each minute, in words; empty where there is none."""
+        """Return the fault in the MB after each minute, in words; empty where there is none."""
         after = held[self.warm :]
         if len(after) < 2:
             return f"{kind}: {len(held)} minutes do not show whether it grows; {self.warm} warm it"
@@ -46,7 +46,7 @@ class Limit:
 
 
 def judge(limits: Mapping[str, Limit], held: Mapping[str, Sequence[float]]) -> str:
-    """The faults in the MB of each kind after each minute, in words; empty where there is none."""
+    """Return the faults in the MB of each kind after each minute, in words; empty where there is none."""
     return "; ".join(filter(None, (limits[kind].judge(kind, held[kind]) for kind in KINDS)))
 
 
@@ -92,13 +92,13 @@ class _Mallinfo(ctypes.Structure):
 def _in_python_blocks() -> int:
     """Bytes of Python's small objects, which its own allocator gives out; Python only prints them."""
     with tempfile.TemporaryFile() as file:
-        kept = os.dup(STANDARD_ERROR)
+        stored = os.dup(STANDARD_ERROR)
         try:
             os.dup2(file.fileno(), STANDARD_ERROR)
             sys._debugmallocstats()
         finally:
-            os.dup2(kept, STANDARD_ERROR)
-            os.close(kept)
+            os.dup2(stored, STANDARD_ERROR)
+            os.close(stored)
         file.seek(0)
         (size,) = re.findall(rb"# bytes in allocated blocks\s+=\s+([\d,]+)", file.read())
     return int(size.replace(b",", b""))

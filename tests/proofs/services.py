@@ -20,7 +20,7 @@ from robot_runtime.places import BUILD, DEFAULT_CONFIG
 from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
 from server.features.installation.installer import adapt_config
-from tests.proofs.container import SYSTEMS, Container
+from tests.proofs.container import SYSTEMS, SystemdContainer
 from tests.proofs.real_board import board, connect, mark_firmware, update_with_board
 from tests.proofs.roots import RootSystem
 from tests.proofs.small_computer import CONFIG, RECORDING, live
@@ -45,27 +45,30 @@ print(ask(data, "GET", "/update")["text"])
 
 
 def main() -> int:
-    """Run all steps on each system; returns 1 where one failed."""
+    """Run all steps on each system; return 1 where one failed."""
     systems = [system for system in SYSTEMS if not sys.argv[1:] or system.name in sys.argv[1:]]
     return 1 if sum(map(prove, systems)) or not systems else 0
 
 
 def prove(system: RootSystem) -> int:
-    """The number of steps that did not end as they must."""
+    """Return the number of steps that did not end as they must."""
     print(f"     {system.name}", flush=True)
     with tempfile.TemporaryDirectory() as name:
         releases = Path(name)
         # The user of the data sends one.
         releases.chmod(0o755)
         make_releases(system, releases)
-        place = releases / "board"
-        place.mkdir()
-        with board(place, system.baud) as options, Container(system, releases, *options) as container:
+        position = releases / "board"
+        position.mkdir()
+        with (
+            board(position, system.baud) as options,
+            SystemdContainer(system, releases, *options) as container,
+        ):
             return try_all(container)
 
 
-def try_all(container: Container) -> int:
-    """The number of steps that did not end as they must."""
+def try_all(container: SystemdContainer) -> int:
+    """Return the number of steps that did not end as they must."""
     steps = Steps(container)
     current = container.root / "opt/mucat/current"
     if container.system.is_emulated:
@@ -124,16 +127,16 @@ def try_all(container: Container) -> int:
     return steps.failed
 
 
-def cut_power(container: Container) -> None:
+def cut_power(container: SystemdContainer) -> None:
     """Cut the power, and start the computer again."""
     container.cut_power()
     print("     the power is cut", flush=True)
     container.start()
 
 
-def tells(container: Container, words: str) -> bool:
-    """True once the page would show these words of the update."""
-    return words in container.order(ask_server(WATCH))[1]
+def tells(container: SystemdContainer, message: str) -> bool:
+    """Return True once the page would show these words of the update."""
+    return message in container.order(ask_server(WATCH))[1]
 
 
 def make_releases(system: RootSystem, folder: Path) -> None:

@@ -87,10 +87,10 @@ class SlowPage:
             # Of these only the newest is sent: what it replaces is not missing.
             if block.topic.kind is Kind.PICTURE or block.topic.newest_only:
                 continue
-            wanted = expected.get(name)
+            target = expected.get(name)
             # A smaller number: the sender was restarted, and losses are not known.
-            if wanted is not None and block.first >= wanted:
-                self.missing[name] += block.first - wanted
+            if target is not None and block.first >= target:
+                self.missing[name] += block.first - target
                 self.told[name] += pending[name]
             del pending[name]
             expected[name] = block.following

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import psutil
 
-from tests.proofs.container import Container
+from tests.proofs.container import SystemdContainer
 from tests.proofs.steps import Steps, ask_server
 
 DATA = "/var/lib/mucat"
@@ -37,8 +37,8 @@ print(*(one["samples"] > 0 for one in ask(data, "GET", "/sessions") if one["name
 """
 
 
-def live(container: Container, steps: Steps, version: str) -> None:
-    """Takes this installation through all of it."""
+def live(container: SystemdContainer, steps: Steps, version: str) -> None:
+    """Take this installation through all of it."""
     damage_configuration(steps, version)
     fill_card(container, steps, version)
     starve(container, steps, version)
@@ -61,7 +61,7 @@ def damage_configuration(steps: Steps, version: str) -> None:
     steps.take("all is well", f"mucat doctor | grep Configuration: ; {ask_server(FINDINGS)}", "^ok +Config")
 
 
-def fill_card(container: Container, steps: Steps, version: str) -> None:
+def fill_card(container: SystemdContainer, steps: Steps, version: str) -> None:
     """The data lie on a small card, which is full while it records, and then worn out."""
     copy = f"systemctl stop {SERVICES}; cp -a {DATA}/. /card; chown mucat: /card; chmod 700 /card"
     card = f"mount --bind /card {DATA}; systemctl start {SERVICES}"
@@ -90,19 +90,19 @@ def fill_card(container: Container, steps: Steps, version: str) -> None:
     steps.runs(version)
 
 
-def starve(container: Container, steps: Steps, version: str) -> None:
+def starve(container: SystemdContainer, steps: Steps, version: str) -> None:
     """A program eats the memory: of µ-CAT the server is ended for it, and never the runtime."""
     runtime = runtime_of(container)
-    watched = {one.pid: (one, adjustment(one)) for one in container.processes()}
+    watched = {process.pid: (process, adjustment(process)) for process in container.processes()}
     gone: list[int] = []
     with container.limited_memory(MEMORY_BYTES):
         container.order(f'systemd-run --unit=eater --collect python3 -c "{EATER}"')
         end = time.monotonic() + EATER_SECONDS
         while time.monotonic() < end:
-            for one in container.processes():
-                watched.setdefault(one.pid, (one, adjustment(one)))
-            for number, (one, adjusted) in list(watched.items()):
-                if not one.is_running() or one.status() == psutil.STATUS_ZOMBIE:
+            for item in container.processes():
+                watched.setdefault(item.pid, (item, adjustment(item)))
+            for number, (item, adjusted) in list(watched.items()):
+                if not item.is_running() or item.status() == psutil.STATUS_ZOMBIE:
                     gone.append(adjusted)
                     del watched[number]
             if container.kills() and gone and gone[-1] == 0:
@@ -117,13 +117,13 @@ def starve(container: Container, steps: Steps, version: str) -> None:
 
 
 def adjustment(process: psutil.Process) -> int:
-    """Returns what is added to the chance that it is ended for memory; 0 for one that has just ended."""
+    """Return what is added to the chance that it is ended for memory; 0 for one that has just ended."""
     try:
         return int(Path(f"/proc/{process.pid}/oom_score_adj").read_text())
     except OSError:
         return 0
 
 
-def runtime_of(container: Container) -> str:
-    """The number of the runtime's process."""
+def runtime_of(container: SystemdContainer) -> str:
+    """Return the number of the runtime's process."""
     return container.order("systemctl show --property MainPID --value mucat-runtime")[1].strip()

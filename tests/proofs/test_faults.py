@@ -14,7 +14,7 @@ SLOW = {"capsized", "not_rising", "battery_low"}
 @pytest.fixture(scope="module", autouse=True)
 def _built() -> None:
     build(ROOT / "firmware/emulator")
-    build(ROOT / "firmware", "robot", "hang")
+    build(ROOT / "firmware", "robot", "hang", "full")
 
 
 @pytest.mark.parametrize("row", [row for row in ROWS if row.name not in SLOW], ids=lambda row: row.name)
@@ -26,5 +26,5 @@ def test_a_fault_is_reported_and_the_fins_stop_in_time(row: Row) -> None:
 @pytest.mark.timeout(300)
 def test_processes_that_are_killed_or_hang_stop_the_robot_and_come_back(shared_stack: Stack) -> None:
     outcomes = outages.measure_on(shared_stack, 1, seed=3)
-    assert {one.outage for one in outcomes} == set(outages.OUTAGES)
-    assert [(one.outage.name, problem) for one in outcomes for problem in one.problems] == []
+    assert {outcome.outage for outcome in outcomes} == set(outages.OUTAGES)
+    assert [(outcome.outage.name, problem) for outcome in outcomes for problem in outcome.problems] == []

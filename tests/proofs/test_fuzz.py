@@ -79,10 +79,10 @@ def test_both_decoders_agree_on_any_content(firmware: ctypes.CDLL, content: byte
 
 @settings(max_examples=300)
 @given(st.lists(st.tuples(contents(), st.sampled_from([OPEN, KEY])), max_size=20))
-def test_the_host_s_session_survives_any_input(said: list[tuple[bytes, int]]) -> None:
+def test_the_host_s_session_survives_any_input(answer: list[tuple[bytes, int]]) -> None:
     session = LinkSession(HOST, 250_000)
     hello = encode(Hello(definitions=DEFINITIONS_HASH, epoch=BOARD, credit=64))
     session.receive(framed(b"\0" + hello + b"\0", OPEN), 0.0)
-    for step, (content, key) in enumerate(said):
+    for step, (content, key) in enumerate(answer):
         session.receive(framed(content, key), step / 100)
         session.poll(step / 100)

@@ -11,7 +11,7 @@ import pytest
 
 from robot_runtime.experiments.comm_test.document import SKETCH
 from tests.board.rig import ROOT
-from tests.proofs.hostile import ENTRANCES, Field, open_field
+from tests.proofs.hostile import ENTRANCES, HostileField, open_field
 from tests.proofs.words import SHELL, Words
 
 TIMES = 15
@@ -20,13 +20,13 @@ TESTS_RUN = 3
 
 
 @pytest.fixture(scope="module")
-def field() -> Iterator[Field]:
+def field() -> Iterator[HostileField]:
     with open_field() as field:
         yield field
 
 
 @pytest.mark.parametrize("name", ENTRANCES)
-def test_no_hostile_input_takes_effect(field: Field, name: str) -> None:
+def test_no_hostile_input_takes_effect(field: HostileField, name: str) -> None:
     for _ in range(TIMES):
         ENTRANCES[name](field)
     field.survey()
@@ -35,9 +35,9 @@ def test_no_hostile_input_takes_effect(field: Field, name: str) -> None:
 def test_the_canary_detects_an_executed_command(tmp_path: Path) -> None:
     canary, secret = tmp_path / "canary", tmp_path / "secret.txt"
     secret.write_text("secret")
-    words = Words(canary, secret, 1)
+    text = Words(canary, secret, 1)
     for _ in range(100):
-        word = words.word().replace("\0", "")
+        word = text.word().replace("\0", "")
         subprocess.run(f"true {word}", shell=True, capture_output=True, cwd=tmp_path, timeout=60)
         if canary.exists():
             return
@@ -50,16 +50,18 @@ def test_no_code_calls_a_shell() -> None:
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
                 if not isinstance(node, ast.Call):
                     continue
-                assert not any(one.arg == "shell" for one in node.keywords), f"{path}:{node.lineno}"
+                assert not any(keyword.arg == "shell" for keyword in node.keywords), f"{path}:{node.lineno}"
                 called = node.func
                 if isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name):
                     assert (called.value.id, called.attr) not in SHELLS, f"{path}:{node.lineno}"
 
 
 def test_a_shell_runs_hostile_documents_as_they_are(tmp_path: Path) -> None:
-    """Runs by `mucat commtest`, down to the compiler and the boards."""
+    """The document runs by `mucat commtest`, down to the compiler and the boards."""
     canary = tmp_path / "canary"
-    named = [one.format(canary=canary, secret=ROOT / "README.md", name="x") for one in SHELL[:TESTS_RUN]]
+    named = [
+        template.format(canary=canary, secret=ROOT / "README.md", name="x") for template in SHELL[:TESTS_RUN]
+    ]
     test: dict[str, object] = {"ino_path": SKETCH, "delay": [0.0], "baud_rate": [115200]}
     test |= {"arduinodelay": [0.0], "from_val": 0, "to_val": 2, "expected": 2, "framing": "plain"}
     file = tmp_path / f"$(touch {canary.name}).json"
@@ -69,4 +71,4 @@ def test_a_shell_runs_hostile_documents_as_they_are(tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert all(repr(name)[1:-1] in repr(done.stdout) for name in named)
-    assert {one.name for one in tmp_path.iterdir()} == {"data", file.name}
+    assert {path.name for path in tmp_path.iterdir()} == {"data", file.name}

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from server import board_reservation as reservation
 from server.app import create_app
-from server.features.board import reservation
 from server.platform.settings import DataFolder, Settings
 from tests.board.rig import ROOT
 from tests.proofs.interface import Surface, run_surface

@@ -12,7 +12,7 @@ PATIENCE = 20.0
 
 
 def _await(signal: Path) -> bool:
-    """Returns True once there is this file."""
+    """Return True once there is this file."""
     end = time.monotonic() + PATIENCE
     while not signal.exists() and time.monotonic() < end:
         time.sleep(0.01)

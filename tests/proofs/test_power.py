@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from tests.proofs import disk
-from tests.proofs.disk import Disk, Step
+from tests.proofs.disk import DiskStep, LoggedDisk
 from tests.proofs.power import MEMORY, WEAKER, is_whole, record, replay
 
-Recorded = tuple[Path, Disk, list[Step]]
+Recorded = tuple[Path, LoggedDisk, list[DiskStep]]
 
 
 @pytest.fixture(scope="module")
@@ -49,14 +49,14 @@ def test_weaker_settings_lose_data(name: str, library: Path, folder: Path) -> No
 def test_one_connection_writes_the_database(recorded: Recorded) -> None:
     """Only one connection writes, during an export and beside shell commands that list and back up."""
     data, _, steps = recorded
-    prepared = [place for place, step in enumerate(steps) if step.kind == "a"][1]
+    prepared = [index for index, step in enumerate(steps) if step.kind == "a"][1]
     nodes: dict[int, str] = {}
     writers: dict[str, set[tuple[int, int]]] = {}
     processes = set()
-    for place, step in enumerate(steps):
+    for position, step in enumerate(steps):
         if step.kind == "c":
             nodes[step.node] = step.name
-        elif place > prepared and step.kind == "w":
+        elif position > prepared and step.kind == "w":
             processes.add(step.process)
             writers.setdefault(nodes[step.node], set()).add((step.process, step.handle))
     assert [len(writers[f"{data}/mucat.db{end}"]) for end in ("", "-wal")] == [1, 1]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.proofs import report
-from tests.proofs.report import STAGES, Lane, Outcome, Proof, Stage
+from tests.proofs.report import STAGES, Lane, Proof, ProofOutcome, Stage
 
 MAKEFILE = """
 good:
@@ -17,15 +17,8 @@ bad:
 	@echo one was lost; exit 3
 later:
 	@date +%N >> ran
-# Each waits for the other: they end only where both run at once.
-left:
-	@mkfifo pipe; echo well > pipe
-right:
-	@until [ -p pipe ]; do sleep 0.01; done; cat pipe
 part:
 	@echo "part <$(ONLY)>"
-idle:
-	@nice; cut -d' ' -f6 /proc/$$$$/stat
 halted:
 	@trap 'echo robots ended > ended; exit 1' INT; kill -$(PROOF_SIGNAL) $(PROOF_PID); sleep 60
 """
@@ -46,9 +39,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def outcomes(folder: Path) -> dict[str, Outcome]:
+def outcomes(folder: Path) -> dict[str, ProofOutcome]:
     stored = json.loads((folder / "build/proofs/outcomes.json").read_text())
-    return {name: Outcome(**one) for name, one in stored.items()}
+    return {name: ProofOutcome(**values) for name, values in stored.items()}
 
 
 def test_a_proof_is_run_whole_where_it_is_chosen_by_name(
@@ -78,23 +71,6 @@ def test_a_proof_with_a_result_on_this_commit_is_not_run_again(folder: Path) -> 
     assert len((folder / "ran").read_text().splitlines()) == 1
 
 
-def test_a_named_proof_is_run_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    report.main()
-    monkeypatch.setattr(sys, "argv", ["report", "later"])
-    report.main()
-    assert len((folder / "ran").read_text().splitlines()) == 2
-
-
-def test_results_of_another_commit_do_not_count(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    report.main()
-    monkeypatch.setattr(report, "commit", lambda: "decade")
-    monkeypatch.setattr(sys, "argv", ["report", "good"])
-    report.main()
-    text = (folder / "build/proofs/report.md").read_text()
-    assert "| [good](#good) | It works. | held | 0 |" in text
-    assert "| [bad](#bad) | It never fails. | not run |  |" in text
-
-
 @pytest.mark.usefixtures("folder")
 def test_an_unknown_proof_is_refused_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["report", "luck"])
@@ -107,41 +83,6 @@ def test_every_proof_is_a_target_of_the_makefile() -> None:
     proofs = [proof for stage in STAGES for lane in stage for proof in lane.proofs]
     assert [proof.target for proof in proofs if f"\n{proof.target}:" not in targets] == []
     assert len({proof.target for proof in proofs}) == len(proofs)
-
-
-def test_lanes_run_beside_each_other(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    stage = (Lane((Proof("left", "It waits."),)), Lane((Proof("right", "It waits."),)))
-    monkeypatch.setattr(report, "STAGES", (stage,))
-    assert report.main() == 0
-    assert outcomes(folder)["right"].said == "well"
-
-
-def test_a_lane_runs_as_many_at_once_as_it_says(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    lane = Lane((Proof("left", "It waits."), Proof("right", "It waits.")), at_once=2)
-    monkeypatch.setattr(report, "STAGES", ((lane,),))
-    assert report.main() == 0
-    assert set(outcomes(folder)) == {"left", "right"}
-
-
-def test_what_computes_leaves_the_processor_to_the_robots(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (lane,) = (lane for stage in STAGES for lane in stage if lane.prefix)
-    monkeypatch.setattr(report, "STAGES", ((Lane((Proof("idle", "It yields."),), prefix=lane.prefix),),))
-    assert report.main() == 0
-    niceness, session = map(int, outcomes(folder)["idle"].said.split())
-    assert niceness == min(os.nice(0) + 10, 19)
-    assert session != os.getsid(0)
-
-
-def test_the_next_stage_begins_when_all_of_the_first_has_ended(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    stages = (one_lane(Proof("bad", "It fails."))[0], one_lane(Proof("later", "It goes on."))[0])
-    monkeypatch.setattr(report, "STAGES", stages)
-    assert report.main() == 1
-    first, second = outcomes(folder).values()
-    assert (first.target, second.target, second.status) == ("bad", "later", 0)
 
 
 @pytest.mark.parametrize("signal", ["INT", "TERM"])

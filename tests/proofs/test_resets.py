@@ -17,4 +17,4 @@ def test_the_session_recovers_without_duplicates(program: str, kinds: Sequence[R
     assert not report.problems, report.table()
     assert report.resets.total() >= resets
     # Without noise a session is back with the next STATUS but one.
-    assert all(one.seconds < 0.2 for one in report.returns if not one.noisy)
+    assert all(recovery.seconds < 0.2 for recovery in report.returns if not recovery.noisy)

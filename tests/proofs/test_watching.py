@@ -1,16 +1,16 @@
 """The silence of a line, found in what was seen at the emulated board."""
 
-from tests.proofs.watching import SILENCE, Seen, find_silence
+from tests.proofs.watching import SILENCE, FinSight, find_silence
 
 APART = SILENCE / 5
 
 
-def looks(heard: list[float], rate: float) -> list[Seen]:
-    """The chip's received bytes at each look; the board's time passes at this rate."""
+def looks(heard: list[float], rate: float) -> list[FinSight]:
+    """Return the chip's received bytes at each look; the board's time passes at this rate."""
     times = [10 + APART * number for number in range(len(heard))]
     return [
-        Seen(time, time * rate, moving=False, powered=True, heard=one)
-        for time, one in zip(times, heard, strict=True)
+        FinSight(time, time * rate, moving=False, powered=True, heard=packet)
+        for time, packet in zip(times, heard, strict=True)
     ]
 
 

@@ -35,7 +35,7 @@ _APART = 0.003
 _AGAIN = 0.01
 
 
-class Seen(NamedTuple):
+class FinSight(NamedTuple):
     """The fins at a time (s, steady clock).
 
     `board` is the board's own time: on a busy computer the emulated one falls behind.
@@ -49,14 +49,14 @@ class Seen(NamedTuple):
     """Bytes that the chip has received; where there is no board it is 0, as are the times."""
 
 
-class Motion:
+class WatchedMotions:
     """Detects from one reading to the next if any fin moves."""
 
     def __init__(self) -> None:
         self._looks: deque[tuple[float, tuple[float, ...]]] = deque()
 
     def see(self, time: float, fins: FinMotion) -> bool:
-        """True if any fin moved in the last `SPAN`; `time` in s."""
+        """Return True if any fin moved in the last `SPAN`; `time` in s."""
         looks = self._looks
         if looks and time > looks[-1][0] + SPAN / 2:
             # Nobody knows when in between it moved.
@@ -68,24 +68,24 @@ class Motion:
         return any(abs(remainder(now - then, tau)) > MOVING * SPAN for now, then in pairs)
 
 
-def find_silence(seen: Sequence[Seen], since: float) -> float:
+def find_silence(seen: Sequence[FinSight], since: float) -> float:
     """Time at which the chip had received the last byte under way at `since` (both s, steady clock).
 
     `since` itself where the next runtime's bytes came within `SILENCE`: the board's time may pass slowly.
     """
-    later = [one for one in seen if one.time >= since]
-    for index, one in enumerate(later):
-        after = next((other for other in later[index:] if other.board >= one.board + SILENCE), None)
-        if after is not None and after.heard == one.heard:
-            return one.time
+    later = [sample for sample in seen if sample.time >= since]
+    for index, item in enumerate(later):
+        after = next((other for other in later[index:] if other.board >= item.board + SILENCE), None)
+        if after is not None and after.heard == item.heard:
+            return item.time
     return since
 
 
-class Fins:
+class FinWatch:
     """Reads the fins continuously, whatever happens to other processes; no board, no motion."""
 
     def __init__(self, socket: Path) -> None:
-        self.seen: list[Seen] = []
+        self.seen: list[FinSight] = []
         self._socket = socket
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._look, name="fins")
@@ -98,26 +98,28 @@ class Fins:
 
     def moved_for(self, since: float) -> float:
         """s of the board's time that the fins moved since then."""
-        return self._last(since, lambda one: one.moving)
+        return self._last(since, lambda sample: sample.moving)
 
     def powered_for(self, since: float) -> float:
         """s of the board's time that the motors had power since then."""
-        return self._last(since, lambda one: one.powered)
+        return self._last(since, lambda sample: sample.powered)
 
-    def _last(self, since: float, wanted: Callable[[Seen], bool]) -> float:
-        seen = [one for one in self.seen if one.time >= since]
-        return max((one.board for one in seen if wanted(one)), default=seen[0].board) - seen[0].board
+    def _last(self, since: float, expected: Callable[[FinSight], bool]) -> float:
+        seen = [sample for sample in self.seen if sample.time >= since]
+        return (
+            max((sample.board for sample in seen if expected(sample)), default=seen[0].board) - seen[0].board
+        )
 
     def _look(self) -> None:
         while not self._ending.is_set():
             with suppress(BoardError), EmulatorClient(self._socket) as board:
-                motion = Motion()
+                motion = WatchedMotions()
                 while not self._ending.wait(_LOOK):
                     now, before, fins, stats = time.monotonic(), board.stats(), board.fins(), board.stats()
                     there, heard = stats["time"], stats["bytes_to_board"]
                     if there - before["time"] <= _APART:
-                        self.seen.append(Seen(now, there, motion.see(there, fins), fins.powered, heard))
-            self.seen.append(Seen(time.monotonic(), 0.0, moving=False, powered=False, heard=0.0))
+                        self.seen.append(FinSight(now, there, motion.see(there, fins), fins.powered, heard))
+            self.seen.append(FinSight(time.monotonic(), 0.0, moving=False, powered=False, heard=0.0))
             self._ending.wait(_AGAIN)
 
 
@@ -144,11 +146,11 @@ class Viewer:
         self._thread.join()
 
     def fresh(self, topics: tuple[str, ...], since: float) -> bool:
-        """True if every topic has a sample newer than that."""
+        """Return True if every topic has a sample newer than that."""
         return all(self.newest.get(topic, 0.0) > since for topic in topics)
 
     def tells(self, fault: str) -> bool:
-        """True if this alarm is active or not acknowledged."""
+        """Return True if this alarm is active or not acknowledged."""
         return any(alarm["fault"] == fault for alarm in self.alarms)
 
     def _watch(self) -> None:
@@ -191,7 +193,7 @@ class Viewer:
 
 
 def wait(condition: Callable[[], object], what: str, patience: float = 30.0) -> float:
-    """Wait until the condition holds; returns the time. Fails where it never does."""
+    """Wait until the condition holds; return the time. Fails where it never does."""
     end = time.monotonic() + patience
     while not condition():
         assert time.monotonic() < end, f"waited {patience:g} s in vain for {what}"

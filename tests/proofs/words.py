@@ -144,11 +144,11 @@ class Words:
     def __init__(self, canary: Path, secret: Path, seed: int) -> None:
         self._names = {"canary": str(canary), "secret": str(secret), "name": secret.name}
         self._chance = random.Random(seed)
-        self._plain = [one.format(**self._names) for one in (*SHELL, *OPTIONS, *TEMPLATES, *PATHS)]
+        self._plain = [template.format(**self._names) for template in (*SHELL, *OPTIONS, *TEMPLATES, *PATHS)]
         self._plain += STRANGE
 
     def word(self) -> str:
-        """A hostile word, plain or mutated."""
+        """Return a hostile word, plain or mutated."""
         chance, word = self._chance, self._chance.choice(self._plain)
         match chance.randrange(8):
             case 0:
@@ -165,9 +165,9 @@ class Words:
                 return word
 
     def choose(self, among: tuple[T, ...]) -> T:
-        """One of these choices."""
+        """Return one of these choices."""
         return self._chance.choice(among)
 
     def value(self) -> object:
-        """A hostile word, or an odd value in place of a number."""
+        """Return a hostile word, or an odd value in place of a number."""
         return self.word() if self._chance.random() < 0.6 else self._chance.choice(NUMBERS)

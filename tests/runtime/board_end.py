@@ -36,7 +36,7 @@ class BoardEnd:
             os.write(self.master, self._end.say(packets, time.monotonic()))
 
     def hear(self, type_: int) -> bytes:
-        """The payload of the next packet of this type."""
+        """Return the payload of the next packet of this type."""
         end = time.monotonic() + DEADLINE
         while time.monotonic() < end:
             for heard, payload in self.listen(end - time.monotonic()):
@@ -45,7 +45,7 @@ class BoardEnd:
         raise AssertionError(f"the host did not send 0x{type_:02x}")
 
     def listen(self, seconds: float) -> list[tuple[int, bytes]]:
-        """The packets that come next, by type and payload; none where nothing comes in this time."""
+        """Return the packets that come next, by type and payload; none where nothing comes in this time."""
         if not select.select([self.master], [], [], max(seconds, 0))[0]:
             return []
         data = os.read(self.master, 4096)

@@ -11,7 +11,7 @@ START = 0.5
 
 
 def starts(clock: SimulatedClock, life: float, *, killed: bool, seconds: float) -> Iterator[float]:
-    """The pauses before the starts of a process that dies after `life` s each time, for `seconds`."""
+    """Yield the pauses before the starts of a process that dies after `life` s each time, for `seconds`."""
     backoff, end = Backoff(), clock.now() + seconds
     while clock.now() < end:
         clock.forward(life)

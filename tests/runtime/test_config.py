@@ -22,7 +22,8 @@ def test_the_shipped_file_holds_the_defaults() -> None:
         plain.control.controller,
     )
     defaults = {
-        cls.name: {name: one.default for name, one in cls.limits.items()} for cls in CONTROLLERS["depth"]
+        cls.name: {name: limits.default for name, limits in cls.limits.items()}
+        for cls in CONTROLLERS["depth"]
     }
     # Those of the craft are not set, so that another craft has its own.
     of_the_craft = {name: defaults["predictive"].pop(name) for name in craft_gains(Craft())}

@@ -9,7 +9,7 @@ import pytest
 
 from robot_runtime.contract.packets import DEFINITIONS_HASH, PACKETS, definitions
 from robot_runtime.contract.topics import TOPICS, Kind
-from robot_runtime.control.faults import FAULTS
+from robot_runtime.control.faults import ROBOT_FAULTS
 from robot_runtime.control.transitions import TRANSITIONS
 from robot_runtime.generate import __main__ as generate
 from robot_runtime.generate import cpp, json_schema, typescript
@@ -40,6 +40,7 @@ def test_the_board_s_compiler_finds_the_same_offsets(tmp_path: Path) -> None:
         "-std=gnu++14",
         "-Wall",
         "-Werror",
+        f"-I{generate.ROOT / 'firmware/src'}",
         "-c",
         source.name,
         "-o",
@@ -65,10 +66,13 @@ def test_the_page_knows_every_topic() -> None:
 
 def test_the_reference_shows_the_states_and_the_faults_as_they_are_in_the_code() -> None:
     text = faults_page()
-    for one in TRANSITIONS:
-        assert f"| `{one.before}` | {one.trigger} | `{one.after}` | {one.why} |\n" in text
-    for fault in FAULTS:
-        assert f"| `{fault.name}` | {fault.limit:g} s |" in text
+    for transition in TRANSITIONS:
+        assert (
+            f"| `{transition.before}` | {transition.trigger} | `{transition.after}` | {transition.why} |\n"
+            in text
+        )
+    for name, fault in ROBOT_FAULTS.items():
+        assert f"| `{name}` | {fault.limit:g} s |" in text
 
 
 def test_the_reference_has_a_chapter_for_every_packet_with_all_its_fields() -> None:

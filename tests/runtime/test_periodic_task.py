@@ -6,7 +6,7 @@ from robot_runtime.periodic_task import PeriodicTask
 PERIOD = 0.1
 
 
-class Control:
+class SleepingLoop:
     """A loop that sleeps until the task is due; some sleeps and some ticks take longer (s)."""
 
     def __init__(
@@ -19,7 +19,7 @@ class Control:
         self._task = PeriodicTask(PERIOD, PERIOD, self._tick)
 
     def run(self, seconds: float) -> list[float]:
-        """Returns when each tick began, in ms."""
+        """Return when each tick began, in ms."""
         while self._task.due < seconds:
             late = self._oversleeps.get(len(self.ticks), 0.0)
             self.clock.forward(max(self._task.due - self.clock.now(), 0.0) + late)
@@ -32,17 +32,17 @@ class Control:
 
 
 def test_it_runs_once_per_period_from_its_start_on() -> None:
-    assert Control().run(100.05) == [100 * tick for tick in range(1, 1001)]
+    assert SleepingLoop().run(100.05) == [100 * tick for tick in range(1, 1001)]
 
 
 def test_a_late_run_does_not_move_the_next_ones() -> None:
-    late = Control(oversleeps={2: 0.03, 4: 0.099})
+    late = SleepingLoop(oversleeps={2: 0.03, 4: 0.099})
     assert late.run(0.75) == [100, 200, 330, 400, 599, 600, 700]
 
 
 def test_periods_that_passed_as_a_whole_are_not_made_up_for() -> None:
-    assert Control(oversleeps={1: 0.35}).run(0.9) == [100, 550, 650, 750, 850]
-    assert Control(long={1: 0.35}).run(0.9) == [100, 200, 550, 650, 750, 850]
+    assert SleepingLoop(oversleeps={1: 0.35}).run(0.9) == [100, 550, 650, 750, 850]
+    assert SleepingLoop(long={1: 0.35}).run(0.9) == [100, 200, 550, 650, 750, 850]
 
 
 def test_it_does_not_run_before_it_is_due() -> None:

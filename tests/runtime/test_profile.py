@@ -38,5 +38,5 @@ def test_the_lean_one_has_fewer_and_smaller_pictures() -> None:
 
 
 def test_the_lean_one_enlarges_nothing() -> None:
-    vision = VisionConfig(width=100, height=80, rate=0.5)
+    vision = VisionConfig(width=100, height=80, rate=0.5, stream_width=200, stream_rate=2.0)
     assert fit(Config(vision=vision), "lean").vision == vision

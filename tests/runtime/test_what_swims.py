@@ -9,15 +9,15 @@ APART = ("robot_runtime.simulation", "robot_runtime.experiments", "robot_runtime
 SCRIPT = """
 import json, sys
 from robot_runtime import __main__ as runtime
-from robot_runtime.robot import Robot
+from robot_runtime.robot import RobotRuntime
 
-publish = Robot.publish_tick
+publish = RobotRuntime.publish_tick
 
 def publish_and_close(robot):
     publish(robot)
     robot.close()
 
-Robot.publish_tick = publish_and_close
+RobotRuntime.publish_tick = publish_and_close
 assert runtime.main() == 0
 print(json.dumps(sorted(sys.modules)))
 """

@@ -24,8 +24,8 @@ def depth_block(first: int, count: int, start: float = 100.0, period: float = 0.
 
 def debug_block(first: int, *texts: str, start: float = 100.0) -> Block:
     lines = [
-        documents.DebugLine(time=start + first + place, level=1, text=text)
-        for place, text in enumerate(texts)
+        documents.DebugLine(time=start + first + index, level=1, text=text)
+        for index, text in enumerate(texts)
     ]
     return Block.of(BY_NAME["debug"], len(lines), first, pack_documents(lines))
 
@@ -36,6 +36,10 @@ def picture_block(number: int, size: int = 20, topic: str = "picture") -> Block:
 
 def thumbnail_block(number: int, time: float, jpeg: bytes) -> Block:
     return Block.of(BY_NAME["thumbnail"], 1, number, row(time, jpeg))
+
+
+def snapshot_block(number: int, time: float, jpeg: bytes) -> Block:
+    return Block.of(BY_NAME["snapshot"], 1, number, row(time, jpeg))
 
 
 def link_block(first: int, bytes_received: int) -> Block:
@@ -66,9 +70,14 @@ def state_block(first: int, **changes: Any) -> Block:
         "loops": [DEPTH_LOOP],
         "set_point_default": 0.5,
         "set_point_detected": 1.0,
+        "deepest": 3.0,
+        "unwatched": 30.0,
+        "battery_left": None,
+        "buoyancy_known": True,
         "control_rate": 10.0,
         "profile": "full",
         "vision_rate": 4.0,
+        "stream_rate": 15.0,
         "vision_colour": "yellow",
         "colours": ["yellow"],
         "card": None,

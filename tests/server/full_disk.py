@@ -24,17 +24,17 @@ from robot_runtime.transport.blocks import Block, row
 from server.features.backup.command import back_up
 from server.features.comm_tests.runs import CommTestStore
 from server.features.scenarios.library import _shipped, keep_scenario
-from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.listing import Listing
-from server.features.sessions.recorder import Recorder
-from server.features.sessions.retention import RetentionWorker
-from server.features.sessions.session import new_row
+from server.library.catalogue import Catalogue
+from server.library.listing import Listing
+from server.library.retention import RetentionWorker
 from server.platform.disk_space import FileWriteError
 from server.platform.models import SessionRow
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders
 from server.platform.store import Store, StoreError
+from server.recording.recorder import Recorder
+from server.recording.session import new_row
 from tests.server.blocks import depth_record
 from tests.server.features.comm_tests.stored_runs import LOST, begin
 
@@ -49,7 +49,7 @@ LONG = {**LOST.values, "explanation": "why " * 50_000}
 def noisy_block(first: int, chance: random.Random) -> Block:
     """Rows that compression cannot shrink."""
     size = len(depth_record(0).to_bytes())
-    rows = b"".join(row(first + place, chance.randbytes(size)) for place in range(COUNT))
+    rows = b"".join(row(first + position, chance.randbytes(size)) for position in range(COUNT))
     return Block.of(BY_NAME["depth"], COUNT, first, rows)
 
 
@@ -106,7 +106,7 @@ def beside(data: DataFolder, runs: CommTestStore, run: int) -> list[Callable[[],
 
 
 async def refusal(work: Callable[[], Awaitable[object]]) -> str:
-    """The text of the refusal; "" without one."""
+    """Return the text of the refusal; "" without one."""
     try:
         await work()
     except (StoreError, FileWriteError, SetupError) as problem:
@@ -141,7 +141,7 @@ async def purge(data: DataFolder, config: Path) -> dict[str, Any]:
     await catalogue.purge(sessions[0])
     await retention.apply(time())
     given_up = not data.reserve.exists()
-    listed = [one.id for one in Listing(store).page().sessions]
+    listed = [session.id for session in Listing(store).page().sessions]
     (data.path / "ballast").unlink()
     await recorder.stop(sessions[1])
     await catalogue.delete(sessions[1])
@@ -153,16 +153,16 @@ async def purge(data: DataFolder, config: Path) -> dict[str, Any]:
         "reserved": reserved,
         "refused": refused,
         "given_up": given_up,
-        "listed": [sessions.index(one) for one in listed],
+        "listed": [sessions.index(entry) for entry in listed],
         "reserved_again": data.reserve.exists() and data.reserve.stat().st_size,
     }
 
 
-def fill(path: Path, left: int) -> None:
+def fill(path: Path, remaining: int) -> None:
     """Write a file that leaves this many bytes of the disk."""
     free = os.statvfs(path.parent)
     with path.open("wb") as file:
-        file.write(bytes(max(free.f_bavail * free.f_frsize - left, 0)))
+        file.write(bytes(max(free.f_bavail * free.f_frsize - remaining, 0)))
 
 
 def main() -> None:
@@ -171,14 +171,14 @@ def main() -> None:
     prepare(data)
     config = data.path / "robot.toml"
     config.touch()
-    told = asyncio.run(record(data, config) if sys.argv[2] == "record" else purge(data, config))
+    report = asyncio.run(record(data, config) if sys.argv[2] == "record" else purge(data, config))
     with closing(sqlite3.connect(data.database)) as database:
-        (told["integrity"],) = database.execute("PRAGMA integrity_check").fetchone()
-        told["gaps"] = database.execute("SELECT kind FROM gap").fetchall()
+        (report["integrity"],) = database.execute("PRAGMA integrity_check").fetchone()
+        report["gaps"] = database.execute("SELECT kind FROM gap").fetchall()
         chunks = database.execute("SELECT first, count FROM chunk ORDER BY number").fetchall()
     ends = [0, *(first + count for first, count in chunks)]
-    told["holes"] = sum(first != end for (first, _), end in zip(chunks, ends, strict=False))
-    sys.stdout.write(json.dumps(told))
+    report["holes"] = sum(first != end for (first, _), end in zip(chunks, ends, strict=False))
+    sys.stdout.write(json.dumps(report))
 
 
 if __name__ == "__main__":

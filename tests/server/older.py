@@ -9,8 +9,8 @@ from alembic import command
 from alembic.config import Config
 from sqlalchemy import create_engine, pool
 
+from robot_runtime.contract.chunks import describe_topics, encode_rows
 from robot_runtime.contract.topics import BY_NAME
-from server.features.sessions.chunks import describe_topics, encode_rows
 from server.platform import schema
 from server.platform.settings import Settings
 from tests.server.blocks import depth_block
@@ -35,7 +35,7 @@ def upgrade_to(settings: Settings, revision: str) -> None:
 def make_session(database: sqlite3.Connection) -> None:
     """Store session 1 as version 0.0.9 did, complete, with ROWS of depth; committed."""
     data, first, last = encode_rows([ROWS], BY_NAME["depth"].row_bytes)
-    topics = {name: one for name, one in describe_topics().items() if name != "thumbnail"}
+    topics = {name: topic for name, topic in describe_topics().items() if name != "thumbnail"}
     session = (1, "old", "cold", "complete", "turtle", "0.0.9", "00c0ffee", 1e9, 100.0, 1e9 + 1, 1.0, 10)
     database.execute(
         "INSERT INTO session (id, name, note, state, robot, version, definitions, started, "
@@ -64,12 +64,12 @@ def fill_tables(database: sqlite3.Connection, skip: Collection[str] = ()) -> Non
 
 
 def read_tables(database: sqlite3.Connection) -> dict[str, list[dict[str, Any]]]:
-    """The rows of each table, without Alembic's own."""
+    """Return the rows of each table, without Alembic's own."""
     tables = database.execute(
         "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite_%' "
         "AND name != 'alembic_version'"
     ).fetchall()
     database.row_factory = sqlite3.Row
-    found = {name: [dict(row) for row in database.execute(f"SELECT * FROM {name}")] for (name,) in tables}
+    rows = {name: [dict(row) for row in database.execute(f"SELECT * FROM {name}")] for (name,) in tables}
     database.row_factory = None
-    return found
+    return rows

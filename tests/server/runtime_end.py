@@ -10,17 +10,18 @@ import zenoh
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.commands import COMMANDS
-from robot_runtime.contract.topics import Kind
+from robot_runtime.contract.topics import TIME, Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block
+from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import SIMULATOR_STREAM, STREAM
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 
 def stream_of(block: Block) -> str:
-    """The stream by which a block's sender sends it."""
+    """Return the stream by which a block's sender sends it."""
     return SIMULATOR_STREAM if block.topic.sender == "simulator" else STREAM
 
 
@@ -43,13 +44,14 @@ class RuntimeEnd:
     """A Zenoh peer in place of the runtime.
 
     `asked` holds every command that came, but for the control's epochs, which are in `epochs`; each is
-    answered once its gate is open. `driven` holds what the driver sends.
+    answered once its gate is open. `driven` holds what the driver sends, `heartbeats` the server's.
     """
 
     def __init__(self, socket: Path, robot: str) -> None:
         self.asked: list[tuple[str, dict[str, Any]]] = []
         self.epochs: list[int] = []
         self.driven: list[dict[str, Any]] = []
+        self.heartbeats: list[str] = []
         self.refusal: str | None = None
         self.gates = {name: threading.Event() for name in COMMANDS if name != "lease"}
         self._messages = PatientTransport(robot, listen=[f"unixsock-stream/{socket}"])
@@ -62,6 +64,9 @@ class RuntimeEnd:
         self._messages.serve("query/vision", lambda _: {"settings": self.vision, "configured": self.vision})
         self.picked: list[dict[str, Any]] = []
         self._messages.serve("query/pick", self._pick)
+        self.snapshot: Block | None = None
+        """The picture that a snapshot sends."""
+        self._messages.serve("query/snapshot", lambda _: self._send_snapshot())
         self.state: dict[str, Any] = {"mode": "disarmed", "loops": []}
         self._messages.serve("query/state", lambda _: self.state)
         self.parameters: dict[str, Any] = {"time": 1.0, "parameters": []}
@@ -75,6 +80,7 @@ class RuntimeEnd:
             self._messages.serve_bytes(name, self._cache.answer)
         self._messages.serve("command/lease", lambda question: self.epochs.append(question["epoch"]))
         self._messages.subscribe("pilot", lambda _, command: self.driven.append(json.loads(command)))
+        self._messages.subscribe(HEARTBEAT, lambda _, payload: self.heartbeats.append(payload.decode()))
         # The last of all: who reaches this one reaches every other.
         self._messages.serve("command/there", lambda _: None)
 
@@ -106,7 +112,7 @@ class RuntimeEnd:
         self._messages.publish(STREAM, data)
 
     def is_heard(self, topic: str) -> bool:
-        """True where somebody subscribes to a topic."""
+        """Return True where somebody subscribes to a topic."""
         return self._messages.watched(topic)
 
     def _pick(self, question: dict[str, Any]) -> Mapping[str, Any]:
@@ -114,6 +120,12 @@ class RuntimeEnd:
         if self.refusal is not None:
             raise RefusedError(self.refusal)
         return {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
+
+    def _send_snapshot(self) -> Mapping[str, Any]:
+        if self.snapshot is None:
+            raise RefusedError("There is no picture to take. Camera: no picture: it is unplugged.")
+        self.publish_bytes(self.snapshot.data)
+        return {"time": TIME.unpack_from(self.snapshot.payload)[0]}
 
     def _answer(self, name: str, gate: threading.Event) -> None:
         def handle(question: dict[str, Any]) -> Mapping[str, Any] | None:

@@ -5,7 +5,7 @@ The client of it has control, which lasts while it asks something every few seco
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
@@ -27,7 +27,7 @@ from server.stream.bridge import Bridge, RuntimeSilentError
 from tests.server.new_database import place_with_samples
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import SECONDS, until
-from tests.shell import ShellToken, shell_headers
+from tests.shell import ShellAuth, shell_headers
 
 T = TypeVar("T")
 
@@ -42,19 +42,19 @@ class Served:
     runtime: RuntimeEnd
 
     def get(self, kind: type[T]) -> T:
-        """The server's service of this type."""
+        """Return the server's service of this type."""
         return self.container.services.get(kind)
 
     def connect(self, **options: Any) -> connect:
-        """A WebSocket to /api/live, with the shell's token and as from the server's own page."""
-        own = f"{self.settings.scheme}://127.0.0.1:{self.settings.port}"
+        """Return a WebSocket to /api/live, with the shell's token and as from the server's own page."""
+        own = f"{self.settings.scheme}://127.0.0.1:{self.settings.server.port}"
         token = shell_headers(self.settings.data)
         defaults: dict[str, Any] = {
             "origin": own,
             "max_size": None,
             "compression": None,
             "additional_headers": token,
-            "ssl": trust_only(self.settings.data) if self.settings.tls else None,
+            "ssl": trust_only(self.settings.data) if self.settings.server.tls else None,
         }
         return connect(f"{own.replace('http', 'ws', 1)}/api/live", **(defaults | options))
 
@@ -80,21 +80,21 @@ class Served:
 @asynccontextmanager
 async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> AsyncIterator[Served]:
     """Run the server of these settings at their host, on a port of the system's choice."""
-    certificate = prepare_certificate(settings) if settings.tls else None
-    with open_socket(settings.host, 0) as listener:
-        settings = replace(settings, port=listener.getsockname()[1])
+    certificate = prepare_certificate(settings) if settings.server.tls else None
+    with open_socket(settings.server.host, 0) as listener:
+        settings = settings.with_section(replace(settings.server, port=listener.getsockname()[1]))
         await place_with_samples(settings.data)
         prepare(settings.data)
         app = create_app(settings, commands)
-        server = make_server(app, certificate, settings.trusted_proxies)
+        server = make_server(app, certificate, settings.server.proxies)
         # The runtime listens before the server comes, which then need not try again.
-        with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime:
+        with RuntimeEnd(settings.data.runtime_socket, settings.robot.name) as runtime:
             running = asyncio.create_task(server.serve(sockets=[listener]))
             try:
                 await until(lambda: server.started or running.done(), "the server to start")
-                url = f"{settings.scheme}://127.0.0.1:{settings.port}/api"
-                shell = ShellToken(settings.data)
-                verify = trust_only(settings.data) if settings.tls else False
+                url = f"{settings.scheme}://127.0.0.1:{settings.server.port}/api"
+                shell = ShellAuth(settings.data)
+                verify = trust_only(settings.data) if settings.server.tls else False
                 async with httpx.AsyncClient(base_url=url, timeout=SECONDS, auth=shell, verify=verify) as api:
                     served = Served(settings, app.state.container, api, runtime)
                     await served.heard(STREAM)
@@ -108,23 +108,11 @@ async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> 
             assert not server.lifespan.should_exit, "the server failed to end; its log says why"
 
 
-def play(
-    settings: Settings, scenario: Callable[[Served], Awaitable[None]], *commands: ProcessCommand
-) -> None:
-    """Run `scenario` with the server of these settings."""
-
-    async def run() -> None:
-        async with serve(settings, commands) as served:
-            await scenario(served)
-
-    asyncio.run(run())
-
-
 async def next_text(socket: ClientConnection, op: str) -> dict[str, Any]:
-    """The next text message with this `op`; others are passed over."""
+    """Return the next text message with this `op`; others are passed over."""
     async with asyncio.timeout(SECONDS):
         async for message in socket:
-            if isinstance(message, str) and (found := json.loads(message))["op"] == op:
-                assert isinstance(found, dict)
-                return found
+            if isinstance(message, str) and (answer := json.loads(message))["op"] == op:
+                assert isinstance(answer, dict)
+                return answer
     raise AssertionError(f"the socket was closed before {op} came")

@@ -77,13 +77,13 @@ def wait_for_answer(port: int, process: subprocess.Popen[str] | None) -> None:
 
 
 def group_of(process: subprocess.Popen[str]) -> list[int]:
-    """The server and what belongs to it; the runtime is in a group of its own."""
-    found: list[int] = []
-    for one in psutil.Process(process.pid).children(recursive=True):
+    """Return the server and what belongs to it; the runtime is in a group of its own."""
+    results: list[int] = []
+    for item in psutil.Process(process.pid).children(recursive=True):
         with suppress(ProcessLookupError):
-            if os.getpgid(one.pid) == process.pid:
-                found.append(one.pid)
-    return found
+            if os.getpgid(item.pid) == process.pid:
+                results.append(item.pid)
+    return results
 
 
 @pytest.fixture
@@ -155,7 +155,7 @@ def test_an_impossible_start_is_refused_in_one_line(settings: Settings, tmp_path
     data = ("--data", str(settings.data.path))
     assert_refused(mucat("run", *data, "--config", str(tmp_path / "no.toml")), "no.toml cannot be read")
     bad = tmp_path / "bad.toml"
-    for text, words in (
+    for text, message in (
         ("[robot]\nname = 3", "name"),
         ('[robot]\nname = "a/b"', "robot.name"),
         ("[server]\nport = 0", "port"),
@@ -164,7 +164,7 @@ def test_an_impossible_start_is_refused_in_one_line(settings: Settings, tmp_path
         ("nonsense", "cannot be read"),
     ):
         bad.write_text(text)
-        assert_refused(mucat("run", *data, "--config", str(bad)), words)
+        assert_refused(mucat("run", *data, "--config", str(bad)), message)
     long = tmp_path / ("x" * 90)
     good = ("--config", str(settings.config))
     assert_refused(mucat("run", "--data", str(long), *good), "too long")
@@ -181,15 +181,15 @@ def test_an_impossible_start_is_refused_in_one_line(settings: Settings, tmp_path
 def test_commands_take_the_last_configuration_and_a_server_at_a_shell_does_not(
     settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("server.features.board.reservation.PORT_SECONDS", 0.1)
+    monkeypatch.setattr("server.board_reservation.PORT_SECONDS", 0.1)
     bad = tmp_path / "bad.toml"
     bad.write_text("")
     settings.data.last_config.write_text('[robot]\nmode = "robot"\n[link]\nport = "/dev/nowhere"\n')
     where = ("--data", str(settings.data.path), "--config", str(bad))
     assert cli.main(["upload", *where]) == 1
-    said = capsys.readouterr().err.splitlines()
-    assert "seems to be cut off" in said[0]
-    assert "/dev/nowhere" in said[-1]
+    output = capsys.readouterr().err.splitlines()
+    assert "seems to be cut off" in output[0]
+    assert "/dev/nowhere" in output[-1]
     bad.write_text("[robot")
     assert_refused(mucat("run", *where), "bad.toml cannot be read")
 
@@ -199,11 +199,11 @@ def test_the_help_lists_the_mistakes() -> None:
     assert all(f"  {line}\n" in listed for line in write_list())
 
 
-def assert_refused(result: subprocess.CompletedProcess[str], words: str) -> None:
+def assert_refused(result: subprocess.CompletedProcess[str], message: str) -> None:
     assert result.returncode == 1
     assert result.stdout == ""
     assert result.stderr.startswith("mucat: ")
-    assert words in result.stderr
+    assert message in result.stderr
     assert result.stderr.count("\n") == 1
 
 
@@ -212,15 +212,15 @@ def test_command_line_before_environment_before_file(settings: Settings, tmp_pat
     config.write_text('[server]\nport = 9001\nhost = "127.0.0.2"\nallowed_hosts = ["Turtle.local"]\n')
     environment = {"MUCAT_DATA": str(tmp_path / "env")}
     plain = read_settings(config, None, None, None, environment)
-    assert (plain.port, plain.host, plain.data.path) == (9001, "127.0.0.2", tmp_path / "env")
-    assert plain.allowed_hosts == ("turtle.local", "127.0.0.2")
+    assert (plain.server.port, plain.server.host, plain.data.path) == (9001, "127.0.0.2", tmp_path / "env")
+    assert plain.server.allowed_hosts == ["turtle.local", "127.0.0.2"]
     chosen = read_settings(config, tmp_path / "line", "::1", 9002, environment)
-    assert (chosen.port, chosen.host, chosen.data.path) == (9002, "::1", tmp_path / "line")
-    assert chosen.allowed_hosts == ("turtle.local", "[::1]")
+    assert (chosen.server.port, chosen.server.host, chosen.data.path) == (9002, "::1", tmp_path / "line")
+    assert chosen.server.allowed_hosts == ["turtle.local", "[::1]"]
     name = socket.gethostname().lower()
     everywhere = read_settings(config, None, "0.0.0.0", None, {})
-    assert everywhere.allowed_hosts[0] == "turtle.local"
-    assert everywhere.allowed_hosts[-2:] == (f"{name}.local", name)
+    assert everywhere.server.allowed_hosts[0] == "turtle.local"
+    assert everywhere.server.allowed_hosts[-2:] == [f"{name}.local", name]
 
 
 def test_the_run_folder_is_emptied_and_the_rest_stays(settings: Settings) -> None:
@@ -266,8 +266,8 @@ def test_what_the_shell_makes_is_private_whatever_it_inherits(settings: Settings
 
 
 def _modes(folder: Path) -> set[str]:
-    found = [path for path in (folder, *folder.rglob("*")) if not path.is_symlink()]
-    return {f"{path.stat().st_mode & 0o777:04o}" for path in found}
+    results = [path for path in (folder, *folder.rglob("*")) if not path.is_symlink()]
+    return {f"{path.stat().st_mode & 0o777:04o}" for path in results}
 
 
 def test_the_run_folder_stays_while_a_process_of_a_killed_server_lives(settings: Settings) -> None:
@@ -282,9 +282,18 @@ def test_the_run_folder_stays_while_a_process_of_a_killed_server_lives(settings:
     assert not list(folder.run.iterdir())
 
 
-def test_the_server_loads_no_heavy_library() -> None:
+def test_the_server_loads_no_heavy_library_and_nothing_of_a_feature_that_is_off(tmp_path: Path) -> None:
+    (tmp_path / "robot.toml").write_text("[features]\nidentification = false\n")
     program = (
-        "import sys, server.app; print(*sorted({'numpy', 'cv2', 'plotly', 'alembic'} & set(sys.modules)))"
+        "import sys, server.app; from pathlib import Path; from pkgutil import resolve_name\n"
+        "from server.container import features_on; from server.platform.settings import read_settings\n"
+        f"folder = Path({str(tmp_path)!r})\n"
+        "for one in features_on(read_settings(folder / 'robot.toml', folder, None, None, {})):\n"
+        "    [resolve_name(place) for place in (*one.routes, one.plug) if place]\n"
+        "heavy = {'numpy', 'cv2', 'plotly', 'alembic', 'scipy', 'rosbags', 'paho', 'pyarrow', 'xlsxwriter'}\n"
+        "off = ('server.features.doors.', 'server.features.events.', 'server.features.identification.')\n"
+        "found = [one for one in sys.modules if one in heavy or one.startswith(off)]\n"
+        "print(*sorted(one for one in found if not one.endswith('.config')))"
     )
     assert printed(program) == ""
 
@@ -315,11 +324,11 @@ def test_a_command_line_is_read_before_anything_slow_is_loaded(line: str, comple
         "atexit.register(lambda: print('slow:', *sorted(slow & set(sys.modules))))\n"
         f"sys.exit(server.cli.main({line.split()}))"
     )
-    words = completed.split()
+    parts = completed.split()
     completion = {
         "_MUCAT_COMPLETE": "bash_complete",
         "COMP_WORDS": completed,
-        "COMP_CWORD": str(len(words) - 1),
+        "COMP_CWORD": str(len(parts) - 1),
     }
     output = printed(program, **(completion if completed else {}))
     assert output.splitlines()[-1] == "slow:"
@@ -337,17 +346,19 @@ def test_every_command_has_a_help_text() -> None:
         if not command.help:
             yield path
         if isinstance(command, click.Group):
-            for name, one in command.commands.items():
-                yield from undescribed(one, f"{path} {name}")
+            for name, subcommand in command.commands.items():
+                yield from undescribed(subcommand, f"{path} {name}")
 
-    assert [path for name, one in commands.items() if one for path in undescribed(one, name)] == []
+    assert [
+        path for name, subcommand in commands.items() if subcommand for path in undescribed(subcommand, name)
+    ] == []
 
 
 def test_wrong_usage_ends_with_status_2(capsys: pytest.CaptureFixture[str]) -> None:
     for line in ("fly", "export", "export x", "export 1 --format pdf", "record", "run --colour"):
         assert cli.main(line.split()) == 2, line
-        told = capsys.readouterr()
-        assert (told.out, "Usage: mucat" in told.err) == ("", True)
+        report = capsys.readouterr()
+        assert (report.out, "Usage: mucat" in report.err) == ("", True)
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from robot_runtime.control.faults import BY_NAME
+from robot_runtime.control.faults import ROBOT_FAULTS
 from tests.in_the_loop import CUT_SECONDS
 from tests.stack import ROOT
 from tests.two_hosts import available
@@ -38,19 +38,19 @@ def swum(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], zipf
 def test_without_a_simulator_the_robot_reports_it_and_does_not_arm(
     swum: tuple[dict[str, Any], zipfile.ZipFile],
 ) -> None:
-    told, _ = swum
-    assert told["alone"] == [
+    report, _ = swum
+    assert report["alone"] == [
         "There is no simulator. Start it with “mucat simulator --connect ...”, or on the System page."
     ]
-    assert told["simulator"] == "ok: Simulates the water."
+    assert report["simulator"] == "ok: Simulates the water."
 
 
 def test_it_dives_to_its_set_point_through_delay_jitter_and_loss(
     swum: tuple[dict[str, Any], zipfile.ZipFile],
 ) -> None:
-    told, archive = swum
-    assert told["armed"]
-    carried, lost = told["packets"]
+    report, archive = swum
+    assert report["armed"]
+    carried, lost = report["packets"]
     assert carried > 500
     assert lost > 5
     truth = [float(line["position_2 [m]"]) for line in table(archive, "truth")]
@@ -63,17 +63,17 @@ def test_it_dives_to_its_set_point_through_delay_jitter_and_loss(
 def test_a_lost_simulator_is_a_fault_and_stops_the_robot(
     swum: tuple[dict[str, Any], zipfile.ZipFile],
 ) -> None:
-    told, archive = swum
-    assert told["cut"][1:] == told["alone"]
-    assert told["back"] == "failsafe"
+    report, archive = swum
+    assert report["cut"][1:] == report["alone"]
+    assert report["back"] == "failsafe"
     events = table(archive, "event")
     lost = next(event for event in events if "The simulator has been silent for 0.5 s" in event["text"])
     assert (lost["kind"], lost["severity"]) == ("simulator_silent", "alarm")
     # What else it brings is a consequence of it: the page shows the cause first.
     faults = {
         event["kind"] for event in events if float(event["time [s]"]) >= float(lost["time [s]"])
-    } & BY_NAME.keys()
-    assert faults <= {"simulator_silent", *BY_NAME["simulator_silent"].consequences}
+    } & ROBOT_FAULTS.keys()
+    assert faults <= {"simulator_silent", *ROBOT_FAULTS["simulator_silent"].consequences}
     armed = next(float(event["time [s]"]) for event in events if event["kind"] == "armed")
     disarmed = next(float(event["time [s]"]) for event in events if event["kind"] == "disarmed")
     times = [float(line["time [s]"]) for line in table(archive, "depth")]

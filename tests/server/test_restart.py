@@ -1,20 +1,19 @@
 """A server that follows a killed one, while a session is recorded."""
 
-import asyncio
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
+from robot_runtime.contract.chunks import decode_documents
 from server.app import create_app
-from server.features.sessions.chunks import decode_documents
 from server.platform.pidfile import pid_file
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.managed_process import ProcessCommand
 from tests.server.blocks import depth_block
-from tests.server.features.sessions.recorder_rig import RecorderRig
 from tests.server.new_database import place_empty
+from tests.server.recording.recorder_rig import RecorderRig
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import SECONDS
 
@@ -46,8 +45,8 @@ async def record_and_die(settings: Settings, runtime: RuntimeEnd) -> None:
     runtime.publish(depth_block(0, 5), depth_block(5, 5))
 
 
-def test_a_restarted_server_has_stored_its_restart_before_it_serves(settings: Settings) -> None:
-    async def scenario() -> list[str]:
+async def test_a_restarted_server_has_stored_its_restart_before_it_serves(settings: Settings) -> None:
+    with RuntimeEnd(settings.data.runtime_socket, settings.robot.name) as runtime, left_running(settings):
         await record_and_die(settings, runtime)
         app = create_app(settings, [RUNTIME])
         app.state.ended = ENDED
@@ -55,9 +54,6 @@ def test_a_restarted_server_has_stored_its_restart_before_it_serves(settings: Se
             recorded = RecorderRig(app.state.container.services.get(Store), settings)
             assert recorded.numbers() == list(range(10))
             notices = [decode_documents(chunk.data) for chunk in recorded.chunks("notice")]
-        return [notice["text"] for chunk in notices for notice in chunk]
-
-    with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime, left_running(settings):
-        said = asyncio.run(scenario())
-    assert any(text.startswith("The server was killed. Recording of “dive” continues") for text in said)
-    assert any(text.startswith(ENDED) for text in said)
+        answer = [notice["text"] for chunk in notices for notice in chunk]
+    assert any(text.startswith("The server was killed. Recording of “dive” continues") for text in answer)
+    assert any(text.startswith(ENDED) for text in answer)

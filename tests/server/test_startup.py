@@ -27,6 +27,8 @@ PROGRAM = """
 import sys
 from pathlib import Path
 import server.startup as startup
+from robot_runtime.config import RobotConfig
+from server.platform.server_config import ServerConfig
 from server.platform.settings import DataFolder, Settings
 from server.processes.server_runner import ServerRunner
 
@@ -34,7 +36,12 @@ folder, profile, *libraries = sys.argv[1:]
 ServerRunner.run = lambda _: print(*sorted(name for name in libraries if name in sys.modules)) or 0
 data = DataFolder(Path(folder))
 data.run.mkdir()
-sys.exit(startup._serve(Settings(data, Path("robot.toml"), mode="robot", profile=profile, port=0)))
+sys.exit(startup._serve(Settings(
+    data=data,
+    config=Path("robot.toml"),
+    robot=RobotConfig(mode="robot", profile=profile),
+    sections={ServerConfig: ServerConfig(port=0)},
+)))
 """
 
 
@@ -55,8 +62,11 @@ STOPPED = """
 import os
 import signal
 import sys
+import types
 from pathlib import Path
 import server.startup as startup
+from robot_runtime.config import RobotConfig
+from server.platform.server_config import ServerConfig
 from server.platform.settings import DataFolder, Settings
 
 def load(*_):
@@ -64,10 +74,15 @@ def load(*_):
     signal.pause()
     print("loaded")
 
-startup._load = load
+sys.modules["server.loading"] = types.SimpleNamespace(load=load)
 data = DataFolder(Path(sys.argv[1]))
 data.run.mkdir()
-sys.exit(startup._serve(Settings(data, Path("robot.toml"), mode="robot", profile="lean", port=0)))
+sys.exit(startup._serve(Settings(
+    data=data,
+    config=Path("robot.toml"),
+    robot=RobotConfig(mode="robot", profile="lean"),
+    sections={ServerConfig: ServerConfig(port=0)},
+)))
 """
 
 
@@ -86,19 +101,23 @@ def test_a_server_whose_address_cannot_be_written_keeps_that_of_the_one_before(s
 
 
 WHOLE = """
+import asyncio
 import sys
 from pathlib import Path
+from robot_runtime.config import RobotConfig
 from server.platform.settings import DataFolder, Settings
-from tests.server.serving import Served, play
+from tests.server.serving import serve
 
 data = DataFolder(Path(sys.argv[1]))
 data.run.mkdir()
 
-async def look(served: Served) -> None:
-    (await served.api.get("/health")).raise_for_status()
-    print(*(name for name in ("numpy", "cv2") if name in sys.modules))
+async def look() -> None:
+    robot = RobotConfig(mode="robot")
+    async with serve(Settings(data=data, config=Path("robot.toml"), robot=robot)) as served:
+        (await served.api.get("/health")).raise_for_status()
+        print(*(name for name in ("numpy", "cv2") if name in sys.modules))
 
-play(Settings(data, Path("robot.toml"), mode="robot"), look)
+asyncio.run(look())
 """
 
 
@@ -138,10 +157,10 @@ def test_a_damaged_page_of_the_database_is_said_with_its_remedy(
         file.write(b"x" * size)
     with open_socket("127.0.0.1", 0) as listener, pytest.raises(SystemExit):
         make_server(create_app(settings)).run(sockets=[listener])
-    said = capsys.readouterr().err
-    assert "the database is damaged: " in said
-    assert "Put back a copy (`mucat restore`), or move it away to start with an empty one." in said
-    assert "Traceback" not in said
+    output = capsys.readouterr().err
+    assert "the database is damaged: " in output
+    assert "Put back a copy (`mucat restore`), or move it away to start with an empty one." in output
+    assert "Traceback" not in output
 
 
 def test_a_part_that_cannot_be_closed_keeps_nothing_else_open(

@@ -1,6 +1,5 @@
 """Texts of people are read alike: a byte order mark is skipped, other encodings and slips are named."""
 
-import asyncio
 import re
 import subprocess
 import sys
@@ -23,7 +22,7 @@ from server.features.parameters.profiles import ProfileError, read_file
 from server.features.scenarios import command as scenarios
 from server.features.vision.routes import read_document as read_vision
 from server.platform.settings import Settings, SetupError
-from tests.server.serving import serve
+from tests.server.serving import Served
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = ROOT / "robot_runtime/experiments/scenario/shipped"
@@ -90,12 +89,12 @@ def read(name: str, data: bytes, settings: Settings) -> object:
 
 def refusal(name: str, data: bytes, settings: Settings) -> str:
     try:
-        found = read(name, data, settings)
+        result = read(name, data, settings)
     except (ConfigError, SetupError, ProfileError, OutletError) as problem:
-        found = str(problem)
-    assert isinstance(found, str), found
-    assert not MISLEADING.search(found), found
-    return found
+        result = str(problem)
+    assert isinstance(result, str), result
+    assert not MISLEADING.search(result), result
+    return result
 
 
 @pytest.mark.parametrize("name", TEXTS)
@@ -107,8 +106,8 @@ def test_a_byte_order_mark_and_other_line_ends_change_nothing(name: str, setting
         "\ufeff" + text.replace("\n", "\r\n"),
         text.replace("\n", "\r\n"),
     ):
-        found = read(name, changed.encode(), settings)
-        assert repr(found).replace("\\r\\n", "\\n").replace("\\ufeff", "") == repr(plain)
+        result = read(name, changed.encode(), settings)
+        assert repr(result).replace("\\r\\n", "\\n").replace("\\ufeff", "") == repr(plain)
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
@@ -135,8 +134,8 @@ def test_a_decimal_comma_is_named(name: str, settings: Settings) -> None:
     right = number if "." in number else f"{number}.5"
     wrong = text.replace(entry, before + right.replace(".", ","), 1)
     line = text[: text.index(entry)].count("\n") + 1
-    words = f"has {right.replace('.', ',')} in line {line}; write {right} with a decimal point, not a comma"
-    assert words in refusal(name, wrong.encode(), settings)
+    message = f"has {right.replace('.', ',')} in line {line}; write {right} with a decimal point, not a comma"
+    assert message in refusal(name, wrong.encode(), settings)
 
 
 @pytest.mark.parametrize("name", TOML | JSON)
@@ -154,20 +153,20 @@ def test_a_key_that_comes_twice_is_named_with_its_line(name: str, settings: Sett
 
 @pytest.mark.parametrize("name", TOML | JSON)
 @pytest.mark.parametrize(
-    ("letter", "words"),
+    ("letter", "message"),
     [("“", 'has a typographic quotation mark “ (U+201C) in line {}; write " instead'),
      ("\u00a0", "has a space that is not the plain one (U+00A0) in line {}; write a plain space instead"),
      ("−", "has a typographic dash − (U+2212) in line {}; write - instead")],
 )  # fmt: skip
 def test_letters_of_editors_and_chats_are_named(
-    name: str, letter: str, words: str, settings: Settings
+    name: str, letter: str, message: str, settings: Settings
 ) -> None:
     _, text, entry = TEXTS[name]
     at = re.search(r"\d+(\.\d+)?$", entry)
     assert at is not None
     wrong = text.replace(entry, entry[: at.start()] + letter + at[0], 1)
     line = text[: text.index(entry)].count("\n") + 1
-    assert words.format(line) in refusal(name, wrong.encode(), settings)
+    assert message.format(line) in refusal(name, wrong.encode(), settings)
 
 
 @pytest.mark.parametrize("name", JSON)
@@ -194,7 +193,7 @@ def test_a_scenario_by_standard_input_in_another_encoding_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("body", "words"),
+    ("body", "message"),
     [
         (b'{"name": "a", "name": "b"}', "names the key 'name' twice, the second time in line 1"),
         ('{"name": "a"}'.encode("utf-16"), "is saved as UTF-16; save it as UTF-8"),
@@ -203,19 +202,15 @@ def test_a_scenario_by_standard_input_in_another_encoding_is_refused() -> None:
         (b"{", "is not JSON: Expecting property name"),
     ],
 )
-def test_bodies_of_requests_are_read_so(settings: Settings, body: bytes, words: str) -> None:
-    async def ask() -> None:
-        async with serve(settings) as served:
-            kind = {"content-type": "application/json"}
-            answer = await served.api.post("/layouts", content=body, headers=kind)
-            assert answer.status_code == 422
-            assert answer.json()["detail"].startswith("The request is not valid. Its body ")
-            assert words in answer.json()["detail"]
-            layout = b'{"name": "Calm", "document": {"format": "mucat-layout", "version": 1, "panels": []}}'
-            marked = await served.api.post("/layouts", content=b"\xef\xbb\xbf" + layout, headers=kind)
-            assert marked.status_code == 201
-
-    asyncio.run(ask())
+async def test_bodies_of_requests_are_read_so(body: bytes, message: str, served: Served) -> None:
+    kind = {"content-type": "application/json"}
+    answer = await served.api.post("/layouts", content=body, headers=kind)
+    assert answer.status_code == 422
+    assert answer.json()["detail"].startswith("The request is not valid. Its body ")
+    assert message in answer.json()["detail"]
+    layout = b'{"name": "Calm", "document": {"format": "mucat-layout", "version": 1, "panels": []}}'
+    marked = await served.api.post("/layouts", content=b"\xef\xbb\xbf" + layout, headers=kind)
+    assert marked.status_code == 201
 
 
 READERS = re.compile(r"\btomllib\.|\bjson\.load\(|\.read_text\(")
@@ -237,6 +232,7 @@ READ_THEIR_OWN = {
     "server/features/installation/installer.py",
     "server/features/installation/release.py",
     "server/features/installation/report.py",
+    "server/features/installation/units/__init__.py",
     "server/features/installation/updater.py",
     "server/features/panels/frame.py",
     "server/features/scenarios/library.py",
@@ -255,7 +251,7 @@ READ_THEIR_OWN = {
 
 def test_every_other_module_reads_texts_by_text_input() -> None:
     files = [file for room in ("robot_runtime", "server", "mucat") for file in (ROOT / room).rglob("*.py")]
-    found = {str(file.relative_to(ROOT)) for file in files if READERS.search(file.read_text())}
-    assert found == READ_THEIR_OWN, (
+    match = {str(file.relative_to(ROOT)) for file in files if READERS.search(file.read_text())}
+    assert match == READ_THEIR_OWN, (
         "read what people hand over by robot_runtime.contract.text_input; list what is read otherwise"
     )

@@ -1,4 +1,4 @@
-"""Waiting for conditions with a deadline."""
+"""Waiting in the event loop for conditions with a deadline."""
 
 import asyncio
 import time
@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 import psutil
 
-SECONDS = 60.0
-"""More than anything takes on a busy computer: only what never happens fails."""
+from tests.waiting import SECONDS as SECONDS
 
 
 async def until(condition: Callable[[], object], what: str, seconds: float = SECONDS) -> None:
@@ -19,7 +18,7 @@ async def until(condition: Callable[[], object], what: str, seconds: float = SEC
 
 
 def alive(pid: int) -> bool:
-    """True while a process runs; one that has ended and was not reaped yet does not."""
+    """Return True while a process runs; one that has ended and was not reaped yet does not."""
     try:
         return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
     except psutil.NoSuchProcess:

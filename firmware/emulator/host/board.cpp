@@ -146,6 +146,8 @@ bool beacon_left() {
   return levels[1];
 }
 
+bool leak() { return current->parts.leak; }
+
 void set_led(bool on) { current->led = on; }
 
 void set_motor_power(bool on) { devices_set_motor_power(&current->parts, on); }
@@ -161,7 +163,8 @@ void write_eeprom(uint8_t index, uint8_t byte) { current->eeprom[index] = byte; 
 
 RetainedMemory& retained_memory() { return current->retained; }
 
-uint16_t stack_free() { return 0; }
+// About what is left on the chip.
+uint16_t stack_free() { return 200; }
 
 }  // namespace board
 }  // namespace mucat

@@ -125,6 +125,7 @@ class Bench {
     }
     raw.battery = mucat::board::take_battery();
     raw.beacons = mucat::board::beacon_right() | mucat::board::beacon_left() << 1;
+    raw.leak = mucat::board::leak();
     link_.send(raw);
     link_.flush();
   }

@@ -32,7 +32,7 @@ constexpr uint8_t kTypes[] = {
     Stop::kType,      Start::kType,       Navigation::kType, Imu::kType,         Depth::kType,
     Beacon::kType,    Motor::kType,       Debug::kType,      Hello::kType,       Status::kType,
     Heartbeat::kType, Acknowledge::kType, Parameter::kType,  Calibration::kType, RequestCalibration::kType,
-    ZeroDepth::kType, Sense::kType};
+    ZeroDepth::kType, Sense::kType,       Countdown::kType};
 constexpr uint32_t kLongestMs = 3000;
 constexpr uint32_t kStepUs = 1000;
 constexpr uint16_t kBatteryFull = 818;

@@ -44,6 +44,8 @@ uint16_t take_battery();
 
 bool beacon_right();
 bool beacon_left();
+// True while there is water between the wires of the leak sensor.
+bool leak();
 void set_led(bool on);
 void set_motor_power(bool on);
 

@@ -5,7 +5,7 @@
 namespace mucat {
 
 // A motor whose leads or whose encoder are swapped turns against its drive, faster and faster. One that is
-// jammed or has no supply does not turn, and one whose encoder stands still seems not to.
+// jammed, too stiff or without supply does not turn, and one whose encoder stands still seems not to.
 class DriveWatch {
  public:
   // Drives the fin again.

@@ -19,7 +19,8 @@ void assign(uint8_t* bits, uint8_t index, bool on) {
 
 }  // namespace
 
-void Fins::start() {
+void Fins::start(const Calibration& calibration) {
+  calibration_ = &calibration;
   // An H-bridge keeps its command when this chip resets. It may not answer now: motor power feeds it.
   for (uint8_t i = 0; i < kFinCount; ++i) drive_bridge(i, 0);
 }
@@ -39,8 +40,8 @@ __attribute__((noinline)) void Fins::step(Motion motion, const Parameters& param
     power(true);
     return;  // an H-bridge needs some milliseconds of power before it answers
   }
-  if (!mixed_) mix(command_, parameters.value(kFinsAmplitude), demands_);
-  mixed_ = true;
+  if (unmixed_) mix(command_, parameters.value(kFinsAmplitude), demands_);
+  unmixed_ = false;
   phase_ += phase_per_tick(parameters.value(kFinsFrequency));
   const float turn = parameters.value(kFinsTurnRate) * kTickSeconds;
   const int16_t gain = gain_from_thousandths(parameters[kFinsGain]);
@@ -52,7 +53,7 @@ __attribute__((noinline)) void Fins::step(Motion motion, const Parameters& param
 }
 
 int8_t Fins::find_drive(uint8_t fin, int16_t gain) {
-  const FinCalibration calibration = fin_calibration(calibration_, fin);
+  const FinCalibration calibration = fin_calibration(*calibration_, fin);
   DriveWatch& watch = watches_[fin];
   const uint8_t bit = 1 << fin;
   // While its encoder or its H-bridge fails, what a fin does says nothing about its motor.
@@ -83,7 +84,7 @@ void Fins::read_encoders() {
     const bool valid = field != MagneticField::kUnusable;
     assign(&encoder_faults_, i, !valid);
     assign(&yellow_fields_, i, field == MagneticField::kYellow);
-    if (valid) angles_[i] = angle_from_counts(fin_calibration(calibration_, i), counts_[i]);
+    if (valid) angles_[i] = angle_from_counts(fin_calibration(*calibration_, i), counts_[i]);
   }
 }
 
@@ -91,7 +92,7 @@ void Fins::power(bool on) {
   silent_bridges_ = 0;
   reported_faults_ = 0;
   phase_ = 0;
-  mixed_ = true;
+  unmixed_ = false;
   for (uint8_t i = 0; i < kFinCount; ++i) {
     if (!on) drive_bridge(i, 0);
     drives_[i] = 0;

@@ -19,14 +19,14 @@ enum class Motion : uint8_t {
 
 class Fins {
  public:
-  explicit Fins(const Calibration& calibration) : calibration_(calibration) {}
-  // Sets all drives to 0; they may still run from before the start.
-  void start();
+  // Sets all drives to 0; they may still run from before the start. The calibration is used from now on, as
+  // it is then.
+  void start(const Calibration& calibration);
   // The newest command counts. It is mixed at the next tick, because mixing takes 1.5 ms. One that comes
   // before the motors have power is dropped.
   void command(const Navigation& command) {
     command_ = command;
-    mixed_ = false;
+    unmixed_ = true;
   }
   // One tick of 10 ms.
   void step(Motion motion, const Parameters& parameters);
@@ -50,13 +50,13 @@ class Fins {
   void drive(uint8_t fin, int8_t drive);
   FinDemand demand(uint8_t fin) const;
 
-  const Calibration& calibration_;
+  const Calibration* calibration_ = nullptr;
   Navigation command_ = {};
-  bool mixed_ = true;
+  bool unmixed_ = false;
   FinDemand demands_[kFinCount] = {};
-  FinLaw laws_[kFinCount];
-  PositionLoop loops_[kFinCount];
-  DriveWatch watches_[kFinCount];
+  FinLaw laws_[kFinCount] = {};
+  PositionLoop loops_[kFinCount] = {};
+  DriveWatch watches_[kFinCount] = {};
   float set_points_[kFinCount] = {};
   float angles_[kFinCount] = {};
   int16_t counts_[kFinCount] = {};

@@ -43,9 +43,9 @@ float angle_from_counts(const FinCalibration& fin, int16_t counts) {
 
 int8_t PositionLoop::step(const FinCalibration& fin, int16_t set_point, int16_t measured, int16_t gain) {
   const int16_t error = fin.drive_sign * wrap_counts(set_point - measured);
-  const int16_t change = restarted_ ? 0 : wrap_counts(error - last_error_);
+  const int16_t change = stepped_ ? wrap_counts(error - last_error_) : 0;
   last_error_ = error;
-  restarted_ = false;
+  stepped_ = true;
   if (magnitude(error) <= kDeadZone) return 0;
   const int16_t drive =
       (static_cast<int32_t>(gain) * error + static_cast<int32_t>(change) * kGainUnit) / kGainUnit;

@@ -31,13 +31,13 @@ float angle_from_counts(const FinCalibration& fin, int16_t counts);
 class PositionLoop {
  public:
   // Resets the loop. Call it if the loop was not stepped for a while.
-  void restart() { restarted_ = true; }
+  void restart() { stepped_ = false; }
   // One tick: the H-bridge command, within ±kDriveMax, for these counts. `gain` is in units of kGainUnit.
   int8_t step(const FinCalibration& fin, int16_t set_point, int16_t measured, int16_t gain);
 
  private:
   int16_t last_error_ = 0;
-  bool restarted_ = true;
+  bool stepped_ = false;  // since it was restarted
 };
 
 }  // namespace mucat

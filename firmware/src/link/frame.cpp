@@ -57,8 +57,8 @@ bool FrameDecoder::accept() {
   messages_end_ = size - kCrcBytes;
   cursor_ = kControlBytes;
   const uint32_t key = crc32(block_, messages_end_) ^ read_u32(block_ + messages_end_);
-  open_ = key == kOpen;
-  if (!open_ && key != key_) return false;
+  keyed_ = key != kOpen;
+  if (keyed_ && key != key_) return false;
   if (!reliable()) messages_end_ -= kNumberBytes;
   return cursor_ < messages_end_ && well_formed();
 }
@@ -97,22 +97,23 @@ void FrameDecoder::restore(const uint8_t* content, uint8_t size) {
 }
 
 void FramePacker::add(uint8_t type, const void* payload, uint8_t payload_size) {
-  block_[size_] = type;
-  memcpy(block_ + size_ + 1, payload, payload_size);
-  size_ += 1 + payload_size;
+  uint8_t* const at = block_ + kControlBytes + bytes_;
+  at[0] = type;
+  memcpy(at + 1, payload, payload_size);
+  bytes_ += 1 + payload_size;
 }
 
 uint8_t FramePacker::close(uint16_t number, uint8_t acknowledged, uint32_t key,
                            uint8_t (&frame)[kFrameBytesMax]) {
-  uint8_t upper = number;
+  uint8_t upper = number, size = kControlBytes + bytes_;
   if (!is_reliable(block_[kControlBytes])) {
-    block_[size_++] = number;
+    block_[size++] = number;
     upper = number >> 8;
   }
   block_[0] = static_cast<uint8_t>(upper << 4 | acknowledged);
-  const uint32_t crc = crc32(block_, size_) ^ key;
-  memcpy(block_ + size_, &crc, kCrcBytes);
-  const uint8_t size = encode_cobs(block_, size_ + kCrcBytes, frame);
+  const uint32_t crc = crc32(block_, size) ^ key;
+  memcpy(block_ + size, &crc, kCrcBytes);
+  size = encode_cobs(block_, size + kCrcBytes, frame);
   frame[size] = 0;
   clear();
   return size + 1;

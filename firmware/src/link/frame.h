@@ -76,7 +76,7 @@ class FrameDecoder {
   uint8_t acknowledged() const { return block_[0] & 15; }
   bool reliable() const { return is_reliable(block_[kControlBytes]); }
   // True if the frame belongs to no session.
-  bool open() const { return open_; }
+  bool open() const { return !keyed_; }
   // From now on frames with this key, and open ones, are valid.
   void set_key(uint32_t key) { key_ = key; }
   // Invalid frames since the start.
@@ -86,10 +86,10 @@ class FrameDecoder {
   bool accept();
   bool well_formed() const;
 
-  uint8_t block_[kFrameBytesMax - 1];
+  uint8_t block_[kFrameBytesMax - 1] = {};
   uint8_t size_ = 0;
   bool oversized_ = false;
-  bool open_ = true;
+  bool keyed_ = false;
   uint32_t key_ = kOpen;
   uint8_t cursor_ = 0;
   uint8_t messages_end_ = 0;
@@ -101,21 +101,21 @@ class FramePacker {
  public:
   bool fits(uint8_t payload_size) const {
     const bool reliable = !empty() && is_reliable(block_[kControlBytes]);
-    return size_ + payload_size < kControlBytes + (reliable ? kReliableMessagesBytesMax : kMessagesBytesMax);
+    return bytes_ + payload_size < (reliable ? kReliableMessagesBytesMax : kMessagesBytesMax);
   }
   // Call it only if the message fits.
   void add(uint8_t type, const void* payload, uint8_t payload_size);
-  bool empty() const { return size_ == kControlBytes; }
+  bool empty() const { return bytes_ == 0; }
   // Maximum bytes on the line of the frame that close() will write.
-  uint8_t line_bytes() const { return size_ + kNumberBytes + kCrcBytes + kCobsOverhead + 1; }
+  uint8_t line_bytes() const { return kControlBytes + bytes_ + kNumberBytes + kCrcBytes + kCobsOverhead + 1; }
   // Writes the whole frame, closing zero included, and starts the next; returns its size.
   uint8_t close(uint16_t number, uint8_t acknowledged, uint32_t key, uint8_t (&frame)[kFrameBytesMax]);
   // Drops the messages and starts the next frame.
-  void clear() { size_ = kControlBytes; }
+  void clear() { bytes_ = 0; }
 
  private:
-  uint8_t block_[kBlockBytesMax];
-  uint8_t size_ = kControlBytes;
+  uint8_t block_[kBlockBytesMax] = {};
+  uint8_t bytes_ = 0;  // of messages
 };
 
 }  // namespace mucat

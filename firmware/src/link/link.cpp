@@ -58,7 +58,7 @@ bool Link::next(Message* message) {
 }
 
 bool Link::next_reordered() {
-  if (!in_order_ || !ready_ || !reorder_buffer_.take(expected_, &decoder_)) return false;
+  if (!in_order_ || unready_ || !reorder_buffer_.take(expected_, &decoder_)) return false;
   restored_ = true;
   expected_ = (expected_ + 1) & kNumberMask;
   return true;
@@ -80,7 +80,7 @@ void Link::begin(uint32_t key) {
   base_ = 0;
   order_ = 0;
   newest_order_ = 0;
-  limit_ = kReliableMessagesBytesMax;
+  shortened_ = 0;
   expected_ = 0;
   reorder_buffer_.clear();
   acknowledge_ = false;
@@ -89,7 +89,7 @@ void Link::begin(uint32_t key) {
 }
 
 void Link::set_ready(bool ready) {
-  ready_ = ready;
+  unready_ = !ready;
   if (ready && refused_) {
     refused_ = false;
     announce_readiness_ = true;
@@ -99,7 +99,7 @@ void Link::set_ready(bool ready) {
 void Link::accept_reliable_frame() {
   if (!acknowledge_) received_ms_ = board::milliseconds();
   acknowledge_ = true;
-  if (!ready_) {
+  if (unready_) {
     refused_ = announce_readiness_ = true;
     return;
   }
@@ -146,7 +146,7 @@ void Link::handle_selective_acknowledgement(uint8_t received) {
 void Link::note_arrival(const Flight& flight) {
   // It is unknown which of several copies arrived: the first is the safe assumption.
   if (is_before(newest_order_, flight.first_order)) newest_order_ = flight.first_order;
-  limit_ = limit_ + kLimitGain < kReliableMessagesBytesMax ? limit_ + kLimitGain : kReliableMessagesBytesMax;
+  shortened_ = shortened_ > kLimitGain ? shortened_ - kLimitGain : 0;
   if (flight.order == flight.first_order) {
     round_trip_.measure(static_cast<uint16_t>(board::milliseconds()) - flight.sent_ms);
   }
@@ -205,6 +205,10 @@ void Link::greet(uint16_t epoch) {
   }
 }
 
+void Link::queue_event(BoardEventKind kind, uint8_t detail, uint16_t value) {
+  if (!queue(BoardEvent{board::microseconds(), static_cast<uint8_t>(kind), detail, value})) ++lines_lost_;
+}
+
 void Link::queue_line(DebugLine& line) {
   line.packet().time = board::microseconds();
   if (!queue_.push(Debug::kType, &line.packet(), debug_bytes(line.packet()))) ++lines_lost_;
@@ -255,7 +259,8 @@ bool Link::repeat(uint16_t now_ms, uint16_t timeout) {
       flight.order = ++order_;
       if (flight.lost) flight.first_order = flight.order;
       flight.lost = false;
-      limit_ = limit_ > kLimitMin + kLimitLoss ? limit_ - kLimitLoss : kLimitMin;
+      shortened_ =
+          limit() > kLimitMin + kLimitLoss ? shortened_ + kLimitLoss : kReliableMessagesBytesMax - kLimitMin;
       ++repeated_;
       write((base_ + i) & kNumberMask, key_);
       return true;
@@ -269,7 +274,7 @@ bool Link::start_flight(uint16_t now_ms) {
   if (in_flight_ == kWindow) return false;
   if (in_flight_ > 0 && bytes_in_flight() + kFrameBytesMax > credit_) return false;
   const uint8_t room = kReliableMessagesBytesMax - (reorder_buffer_.any() ? 1 + sizeof(Acknowledge) : 0);
-  const uint8_t bytes = pack(messages_bytes_, limit_ < room ? limit_ : room);
+  const uint8_t bytes = pack(messages_bytes_, limit() < room ? limit() : room);
   if (bytes == 0) return false;
   add_selective_acknowledgement();
   ++order_;

@@ -1,6 +1,6 @@
 // The board's end of the serial link: frames in, frames out. Never waits.
 //
-// Sending. Telemetry is sent once. Queued messages, such as lines of text, are reliable: they arrive exactly
+// Sending. Telemetry is sent once. Queued messages, such as events, are reliable: they arrive exactly
 // once and in order. They stay in their queue, the only store, until they are acknowledged. Up to seven
 // reliable frames, numbered modulo 16, are in flight, with no more bytes than the host has granted.
 //
@@ -62,6 +62,8 @@ class Link {
     static_assert(is_reliable(Packet::kType), "only reliable packets are queued");
     return queue_.push(Packet::kType, &packet, sizeof packet);
   }
+  // Queues an event; without room it is dropped and counted.
+  void queue_event(BoardEventKind kind, uint8_t detail = 0, uint16_t value = 0);
   // Queues a line of text; without room it is dropped and counted.
   void queue_line(DebugLine& line);
   // Sends one frame of reliable messages, or an acknowledgement, if one is due and the line has sent most of
@@ -109,26 +111,28 @@ class Link {
   bool repeat(uint16_t now_ms, uint16_t timeout);
   bool start_flight(uint16_t now_ms);
   uint8_t pack(uint8_t offset, uint8_t limit);
+  // Bytes of messages in a new frame.
+  uint8_t limit() const { return kReliableMessagesBytesMax - shortened_; }
 
   FrameDecoder decoder_;
   FramePacker packer_;
   MessageQueue queue_;
   ReorderBuffer reorder_buffer_;
   RoundTrip round_trip_;
-  Flight flights_[kWindow];
+  Flight flights_[kWindow] = {};
   uint32_t key_ = kOpen;
-  uint16_t credit_ = kFrameBytesMax;
-  uint16_t number_ = 0;                        // of the next unreliable frame
-  uint16_t repeated_ = 0;                      // reliable frames
-  uint16_t lines_lost_ = 0;                    // because the queue was full
-  uint8_t in_flight_ = 0;                      // reliable frames
-  uint8_t messages_bytes_ = 0;                 // of messages in flight
-  uint8_t base_ = 0;                           // number of the oldest in flight
-  uint8_t order_ = 0;                          // of the newest transmission
-  uint8_t newest_order_ = 0;                   // of what has arrived
-  uint8_t limit_ = kReliableMessagesBytesMax;  // bytes of messages in a new frame
-  uint8_t expected_ = 0;                       // number of the host's next reliable frame
-  bool ready_ = true;
+  uint16_t credit_ = 0;         // bytes in flight; one frame always may be
+  uint16_t number_ = 0;         // of the next unreliable frame
+  uint16_t repeated_ = 0;       // reliable frames
+  uint16_t lines_lost_ = 0;     // because the queue was full
+  uint8_t in_flight_ = 0;       // reliable frames
+  uint8_t messages_bytes_ = 0;  // of messages in flight
+  uint8_t base_ = 0;            // number of the oldest in flight
+  uint8_t order_ = 0;           // of the newest transmission
+  uint8_t newest_order_ = 0;    // of what has arrived
+  uint8_t shortened_ = 0;       // bytes that losses take from a new frame
+  uint8_t expected_ = 0;        // number of the host's next reliable frame
+  bool unready_ = false;
   bool refused_ = false;             // a reliable frame since it was last ready
   bool announce_readiness_ = false;  // with the next step
   bool in_order_ = false;            // the received frame's reliable messages are new

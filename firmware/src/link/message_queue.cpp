@@ -2,7 +2,7 @@
 
 namespace mucat {
 
-static_assert(MessageQueue::kBytes >= 4 * kReliableBytesMax, "too small for the lines of a start");
+static_assert(MessageQueue::kBytes >= 10 * (1 + sizeof(BoardEvent)), "too small for the events of a start");
 
 uint8_t MessageQueue::at(uint8_t offset) const {
   const uint16_t index = head_ + offset;

@@ -5,11 +5,17 @@
 #include "link/frame.h"
 #include "packets.gen.h"
 
+// The longest frames' worth of messages. The robot's few events need two; a sketch that is to fill the line
+// needs four: set -DMUCAT_QUEUE_FRAMES=4.
+#ifndef MUCAT_QUEUE_FRAMES
+#define MUCAT_QUEUE_FRAMES 2
+#endif
+
 namespace mucat {
 
 class MessageQueue {
  public:
-  static constexpr uint8_t kBytes = 4 * kReliableMessagesBytesMax;
+  static constexpr uint8_t kBytes = MUCAT_QUEUE_FRAMES * kReliableMessagesBytesMax;
 
   // False if there is no room; then nothing of the message is stored.
   bool push(uint8_t type, const void* payload, uint8_t payload_size);
@@ -25,7 +31,7 @@ class MessageQueue {
   uint8_t at(uint8_t offset) const;
   void put(uint8_t byte);
 
-  uint8_t bytes_[kBytes];
+  uint8_t bytes_[kBytes] = {};
   uint8_t head_ = 0;
   uint8_t used_ = 0;
 };

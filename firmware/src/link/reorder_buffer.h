@@ -24,7 +24,7 @@ class ReorderBuffer {
 
   uint8_t find(uint8_t number) const;
 
-  uint8_t bytes_[kBytes];  // each frame's size, and the frame
+  uint8_t bytes_[kBytes] = {};  // each frame's size, and the frame
   uint8_t used_ = 0;
 };
 

@@ -10,46 +10,6 @@ constexpr uint32_t kSilenceMs = 1000;
 
 }  // namespace
 
-FlashText describe(Refusal refusal) {
-  switch (refusal) {
-    case Refusal::kNoHello:
-      return FLASH_TEXT("say HELLO first");
-    case Refusal::kDefinitions:
-      return FLASH_TEXT("other definitions");
-    case Refusal::kEpoch:
-      return FLASH_TEXT("epoch of another boot");
-    case Refusal::kTraffic:
-      return FLASH_TEXT("no steady traffic yet");
-    case Refusal::kBattery:
-      return FLASH_TEXT("battery is low");
-    case Refusal::kCalibration:
-      return FLASH_TEXT("not calibrated: ");
-    case Refusal::kSurface:
-      return FLASH_TEXT("depth uncertain");
-    case Refusal::kNone:
-      break;
-  }
-  return FLASH_TEXT("");
-}
-
-FlashText describe(Disarming reason) {
-  switch (reason) {
-    case Disarming::kStop:
-      return FLASH_TEXT("STOP");
-    case Disarming::kSilence:
-      return FLASH_TEXT("host silent for 1 s");
-    case Disarming::kBattery:
-      return FLASH_TEXT("battery is low");
-    case Disarming::kDefinitions:
-      return FLASH_TEXT("other definitions");
-    case Disarming::kHost:
-      return FLASH_TEXT("another host");
-    case Disarming::kNone:
-      break;
-  }
-  return FLASH_TEXT("");
-}
-
 void Arming::note_reception(uint32_t now_ms) {
   if (!alive_ || now_ms - received_ms_ > kGapMs) steady_since_ms_ = now_ms;
   received_ms_ = now_ms;
@@ -70,6 +30,11 @@ Disarming Arming::fail_battery() {
   return disarm(Disarming::kBattery);
 }
 
+Disarming Arming::fail_leak() {
+  leaked_ = true;
+  return disarm(Disarming::kLeak);
+}
+
 Disarming Arming::tick(uint32_t now_ms) {
   if (commanded_ && now_ms - commanded_ms_ >= kCommandMs) commanded_ = false;
   if (!alive_ || now_ms - received_ms_ < kSilenceMs) return Disarming::kNone;
@@ -83,6 +48,7 @@ Refusal Arming::refusal(const Start& start, bool calibrated, bool surface_certai
   if (start.epoch != epoch_) return Refusal::kEpoch;
   if (now_ms - steady_since_ms_ < kTrafficMs) return Refusal::kTraffic;
   if (battery_failed_) return Refusal::kBattery;
+  if (leaked_) return Refusal::kLeak;
   if (!calibrated) return Refusal::kCalibration;
   if (!surface_certain) return Refusal::kSurface;
   return Refusal::kNone;

@@ -8,25 +8,9 @@
 #pragma once
 #include <stdint.h>
 
-#include "board/flash.h"
 #include "packets.gen.h"
 
 namespace mucat {
-
-enum class Refusal : uint8_t {
-  kNone,
-  kNoHello,
-  kDefinitions,
-  kEpoch,
-  kTraffic,
-  kBattery,
-  kCalibration,
-  kSurface
-};
-enum class Disarming : uint8_t { kNone, kStop, kSilence, kBattery, kDefinitions, kHost };
-
-FlashText describe(Refusal refusal);
-FlashText describe(Disarming reason);
 
 class Arming {
  public:
@@ -38,6 +22,7 @@ class Arming {
   Disarming greet(const Hello& hello);
   Disarming stop() { return disarm(Disarming::kStop); }
   Disarming fail_battery();
+  Disarming fail_leak();
   Disarming tick(uint32_t now_ms);
 
   Refusal start(const Start& start, bool calibrated, bool surface_certain, uint32_t now_ms);
@@ -68,6 +53,7 @@ class Arming {
   bool commanded_ = false;
   bool armed_ = false;
   bool battery_failed_ = false;
+  bool leaked_ = false;
 };
 
 }  // namespace mucat

@@ -9,6 +9,8 @@ namespace mucat {
 
 class Attitude {
  public:
+  // Level, heading north.
+  void start() { q_[0] = 1; }
   // Rate in rad/s, specific force in g (level and at rest: 0, 0, -1), `seconds` since the last call.
   void update(const float (&rate)[3], const float (&force)[3], float seconds);
   // Unit quaternion w, x, y, z that turns body into world.
@@ -18,8 +20,8 @@ class Attitude {
   void level(const float (&down)[3]);
   void turn(const float (&rate)[3], float seconds);
 
-  float q_[4] = {1, 0, 0, 0};
-  float bias_[3] = {0, 0, 0};
+  float q_[4] = {};
+  float bias_[3] = {};
   bool levelled_ = false;
 };
 

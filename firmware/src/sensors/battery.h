@@ -8,8 +8,9 @@ namespace mucat {
 // in ten-thousandths.
 uint16_t battery_millivolts(uint16_t counts, uint16_t factor);
 
-// Alarm after 20 s below a voltage. It stays until the next reset, because a flat battery recovers without
-// load.
+// Alarm after 20 s below a voltage, or where it is below for more than a sixth of the time: dips of strokes
+// add up where a worn pack has many, and what is past is forgotten within two minutes. It stays until the
+// next reset, because a flat battery recovers without load.
 class BatteryAlarm {
  public:
   // True once, when the alarm begins.
@@ -17,9 +18,9 @@ class BatteryAlarm {
   bool on() const { return on_; }
 
  private:
-  bool low_ = false;
   bool on_ = false;
-  uint32_t since_ms_ = 0;
+  uint16_t low_ms_ = 0;
+  uint16_t updated_ms_ = 0;
 };
 
 }  // namespace mucat

@@ -21,6 +21,7 @@ bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <=
 }  // namespace
 
 void Surface::start() {
+  next_byte_ = sizeof(Record);
   const board::RetainedMemory& retained = board::retained_memory();
   if (retained.complement == ~retained.value) restore(retained.value);
   Record record;

@@ -39,8 +39,8 @@ class Surface {
 
   int32_t pressure_ = 0;  // the sum of the readings until known
   uint8_t readings_ = 0;
-  uint8_t next_byte_ = sizeof(Record);  // of the record, to be written
-  bool recorded_ = false;               // in EEPROM, once all bytes are written
+  uint8_t next_byte_ = 0;  // of the record, to be written
+  bool recorded_ = false;  // in EEPROM, once all bytes are written
   bool uncertain_ = false;
 };
 

@@ -14,16 +14,19 @@ constexpr uint8_t kIdentityRegister = 0x75;
 // of the first that are sold under its name.
 const uint8_t kIdentities[] PROGMEM = {kMpu6050, 0x70, 0x71, 0x72, 0x98};
 
+constexpr uint8_t kRanges = 0x1B;
+constexpr uint8_t kRange = 0x08;
+
 struct Setting {
   uint8_t address;
   uint8_t value;
 };
 const Setting kSettings[] PROGMEM = {
-    {0x6B, 0x01},  // PWR_MGMT_1: awake, clock from the gyroscope, more stable than the internal one
-    {0x19, 0x00},  // SMPLRT_DIV: 1 kHz, so that a reading is at most 1 ms old
-    {0x1A, 0x03},  // CONFIG: low-pass 44 Hz, below half of the 100 Hz at which it is read
-    {0x1B, 0x08},  // GYRO_CONFIG: ±500 °/s
-    {0x1C, 0x08},  // ACCEL_CONFIG: ±4 g
+    {0x6B, 0x01},           // PWR_MGMT_1: awake, clock from the gyroscope, more stable than the internal one
+    {0x19, 0x00},           // SMPLRT_DIV: 1 kHz, so that a reading is at most 1 ms old
+    {0x1A, 0x03},           // CONFIG: low-pass 44 Hz, below half of the 100 Hz at which it is read
+    {kRanges, kRange},      // GYRO_CONFIG: ±500 °/s
+    {kRanges + 1, kRange},  // ACCEL_CONFIG: ±4 g
 };
 // The MPU-6500's family filters its accelerometer by a register of its own, which is another's threshold
 // here.
@@ -32,6 +35,7 @@ constexpr Setting kForceFilter = {0x1D, 0x03};
 // Ticks: the gyroscope needs 30 ms to start after waking; a missing chip is tried again ten times a second.
 constexpr uint8_t kSettle = 5;
 constexpr uint8_t kRetry = 10;
+constexpr uint8_t kCheck = 100;
 
 bool known(uint8_t identity) {
   for (const uint8_t& one : kIdentities) {
@@ -58,6 +62,16 @@ bool Mpu6050::set_up() {
   return identity_ == kMpu6050 || write(kForceFilter);
 }
 
+// False if the chip has lost its ranges. After a dip of its supply the MPU-6500's family is awake, with
+// others.
+bool Mpu6050::check() {
+  if (++unchecked_ < kCheck) return true;
+  unchecked_ = 0;
+  uint8_t ranges[2];
+  return board::exchange_i2c(kAddress, &kRanges, 1, ranges, sizeof ranges) && ranges[0] == kRange &&
+         ranges[1] == kRange;
+}
+
 bool Mpu6050::step(ImuReading* reading) {
   if (wait_) {
     --wait_;
@@ -71,15 +85,11 @@ bool Mpu6050::step(ImuReading* reading) {
     return false;
   }
   uint8_t bytes[14];
-  if (!board::exchange_i2c(kAddress, &kFirstReading, 1, bytes, sizeof bytes)) {
-    ready_ = false;
-    faulty_ = true;
-    return false;
-  }
+  const bool answers = board::exchange_i2c(kAddress, &kFirstReading, 1, bytes, sizeof bytes) && check();
   uint8_t any = 0;
   for (uint8_t byte : bytes) any |= byte;
-  // After a dip of its supply it sleeps, and answers zeros.
-  if (!any) {
+  // After a dip of its supply the MPU-6050 sleeps, and answers zeros.
+  if (!answers || !any) {
     ready_ = false;
     faulty_ = true;
     return false;

@@ -24,7 +24,9 @@ class Mpu6050 {
 
  private:
   bool set_up();
+  bool check();
 
+  uint8_t unchecked_ = 0;  // ticks
   bool ready_ = false;
   bool faulty_ = false;
   uint8_t wait_ = 0;

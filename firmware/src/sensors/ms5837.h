@@ -10,6 +10,9 @@ struct PressureReading {
 };
 
 constexpr uint8_t kPromWords = 7;
+// A conversion takes 4.54 ms, and is spoiled if it is read before. A step takes up to 3 ms until it starts
+// one.
+constexpr uint16_t kPressureStepUs = 7600;
 
 // True if the PROM's checksum is right.
 bool prom_valid(const uint16_t (&prom)[kPromWords]);
@@ -19,7 +22,8 @@ PressureReading compensate(const uint16_t (&prom)[kPromWords], uint32_t d1, uint
 // Steps through reset, PROM and conversions, one each tick; never waits for one.
 class Ms5837 {
  public:
-  // Call every tick of 10 ms. True, every other tick, if `reading` is new.
+  // Call every tick of 10 ms, but not sooner after the last one than kPressureStepUs. True, every other tick,
+  // if `reading` is new.
   bool step(PressureReading* reading);
   bool faulty() const { return faulty_; }
 

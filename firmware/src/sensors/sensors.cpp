@@ -38,8 +38,8 @@ void Sensors::read_imu(uint8_t ticks) {
   float rate[3];
   float force[3];
   for (uint8_t axis = 0; axis < 3; ++axis) {
-    const int8_t from = calibration_.axes[axis];
-    imu_reading_.rate[axis] = limited(along(from, chip.rate) - calibration_.gyro_bias[axis]);
+    const int8_t from = calibration_->axes[axis];
+    imu_reading_.rate[axis] = limited(along(from, chip.rate) - calibration_->gyro_bias[axis]);
     imu_reading_.force[axis] = limited(along(from, chip.force));
     rate[axis] = imu_reading_.rate[axis] * kRadiansPerSecondPerCount;
     force[axis] = imu_reading_.force[axis] * kGPerCount;
@@ -49,7 +49,10 @@ void Sensors::read_imu(uint8_t ticks) {
 
 void Sensors::read_pressure(bool armed) {
   const uint32_t now = board::microseconds();
-  if (pressure_.step(&pressure_reading_)) {
+  // The tick after a long one comes early.
+  const bool due = static_cast<uint16_t>(now - pressure_stepped_us_) >= kPressureStepUs;
+  if (due) pressure_stepped_us_ = now;
+  if (due && pressure_.step(&pressure_reading_)) {
     pressure_time_ = now;
     if (!armed) surface_.add(pressure_reading_.pressure);
     depth_fresh_ = surface_.known();
@@ -61,7 +64,7 @@ void Sensors::read_pressure(bool armed) {
 void Sensors::read_battery() {
   if (battery_tick_ == 0) board::start_battery();
   if (battery_tick_ == 1) {
-    battery_millivolts_ = mucat::battery_millivolts(board::take_battery(), calibration_.battery_factor);
+    battery_millivolts_ = mucat::battery_millivolts(board::take_battery(), calibration_->battery_factor);
   }
   battery_tick_ = (battery_tick_ + 1) % kBatteryTicks;
 }
@@ -83,15 +86,15 @@ bool Sensors::take(Depth* packet, uint16_t density) {
   depth_fresh_ = false;
   packet->time = pressure_time_;
   packet->depth = surface_.depth(pressure_reading_.pressure, density);
-  packet->pressure = pressure_reading_.pressure - calibration_.pressure_offset;
+  packet->pressure = pressure_reading_.pressure - calibration_->pressure_offset;
   packet->temperature = pressure_reading_.temperature;
   return true;
 }
 
 void Sensors::read(Beacon* packet) const {
   packet->time = board::microseconds();
-  packet->right = board::beacon_right() != calibration_.beacons_inverted;
-  packet->left = board::beacon_left() != calibration_.beacons_inverted;
+  packet->right = board::beacon_right() != calibration_->beacons_inverted;
+  packet->left = board::beacon_left() != calibration_->beacons_inverted;
 }
 
 uint16_t Sensors::faults() const {

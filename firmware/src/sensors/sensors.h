@@ -13,8 +13,12 @@ namespace mucat {
 
 class Sensors {
  public:
-  explicit Sensors(const Calibration& calibration) : calibration_(calibration) {}
-  void start() { surface_.start(); }
+  // The calibration is used from now on, as it is then.
+  void start(const Calibration& calibration) {
+    calibration_ = &calibration;
+    attitude_.start();
+    surface_.start();
+  }
   // Call every tick; `ticks` have passed since the last call. The surface is measured only while disarmed.
   void step(uint8_t ticks, bool armed);
 
@@ -36,7 +40,7 @@ class Sensors {
   void read_pressure(bool armed);
   void read_battery();
 
-  const Calibration& calibration_;
+  const Calibration* calibration_ = nullptr;
   Mpu6050 imu_;
   Attitude attitude_;
   ImuReading imu_reading_ = {};
@@ -46,6 +50,7 @@ class Sensors {
   Ms5837 pressure_;
   Surface surface_;
   PressureReading pressure_reading_ = {};
+  uint16_t pressure_stepped_us_ = 0;
   uint32_t pressure_time_ = 0;
   bool depth_fresh_ = false;
 

@@ -4,7 +4,7 @@ import { canvasFont, token } from '../theme.svelte';
 import type { Range } from './range';
 import { ageLabel, agesBefore, momentLabel, momentsBefore, timeStep } from './ticks';
 
-export interface FrameOptions {
+interface FrameOptions {
   readonly unit: string;
   /** values grow downwards */
   readonly downwards: boolean;

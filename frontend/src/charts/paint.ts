@@ -142,7 +142,7 @@ function newest(columns: Columns, first: number, many: number): number {
 }
 
 /** An instant to be marked with a flag. */
-export interface Flag {
+interface Flag {
   readonly x: number;
   readonly colour: string;
 }

@@ -17,7 +17,7 @@ export interface Mark {
   readonly severity: 'info' | 'caution' | 'alarm';
 }
 
-export interface Shown {
+interface Shown {
   readonly view: View;
   /** whether time stands still */
   readonly held: boolean;

@@ -78,7 +78,7 @@ export const SIGNALS: readonly Signal[] = TOPICS.flatMap((topic) =>
 const BY_NAME = new Map(SIGNALS.map((signal) => [signal.name, signal]));
 
 /** The signal of this name; null where this version has none. */
-export function findSignal(name: string): Signal | null {
+function findSignal(name: string): Signal | null {
   return BY_NAME.get(name) ?? null;
 }
 

@@ -8,7 +8,7 @@ export interface Strip {
   readonly traces: readonly Trace[];
 }
 
-export interface Trace {
+interface Trace {
   readonly signal: Signal;
   /** name of a colour in styles/tokens.css; each strip begins anew */
   readonly colour: string;

@@ -54,7 +54,7 @@ const HOLDS: Readonly<Record<string, Holdable>> = { KeyG: 'depth', KeyH: 'headin
 /** Where arrow keys choose or move something themselves. */
 const TURNED = 'input, [role="tablist"], [role="slider"], [role="radiogroup"]';
 
-export type Action =
+type Action =
   | { readonly do: 'push'; readonly push: Push }
   | { readonly do: 'speed'; readonly speed: number }
   | { readonly do: 'hold'; readonly loop: Holdable };

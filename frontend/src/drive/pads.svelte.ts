@@ -1,11 +1,7 @@
-import { BUTTONS, pressed, pushesOf, type Button } from './gamepad';
+import type { Button, PadProfile } from './gamepad';
 import type { Pilot } from './pilot.svelte';
+import { vibrate, type Vibration } from './vibration';
 import { drive as texts } from '../texts/drive';
-
-/** ms between two looks */
-const LOOK = 20;
-const SOURCE = 'gamepad';
-const NAMES = Object.keys(BUTTONS) as Button[];
 
 /** A gamepad at the pilot's hands. It has to be seen with all sticks in the middle before it drives. */
 export class Pads {
@@ -15,9 +11,10 @@ export class Pads {
   notice = $state('');
   /** whether a stick is to be let go before it counts */
   waits = $state(false);
-  #index: number | null = null;
-  #down: readonly Button[] = [];
-  #looking: ReturnType<typeof setInterval> | undefined;
+  /** its assignments */
+  profile = $state.raw<PadProfile | null>(null);
+  /** its number in the browser's list */
+  index: number | null = null;
 
   /** @param press a button went down; one that is down when the gamepad is first seen did not */
   constructor(
@@ -27,67 +24,31 @@ export class Pads {
 
   /** Look for gamepads. Returns what ends it. */
   readonly start = (): (() => void) => {
-    if (gamepads() === null) this.notice = texts.gamepad.insecure;
-    this.#joinAny();
-    const join = ({ gamepad }: GamepadEvent) => this.#join(gamepad);
-    window.addEventListener('gamepadconnected', join);
-    window.addEventListener('gamepaddisconnected', this.#look);
+    let watching: 'idle' | 'loading' | 'over' | (() => void) = 'idle';
+    const load = async () => {
+      const { watchPads } = await import('./padWatch');
+      if (watching === 'loading') watching = watchPads(this.pilot, this.press, (news) => Object.assign(this, news));
+    };
+    const begin = () => {
+      if (watching !== 'idle') return;
+      watching = 'loading';
+      load().catch(() => {
+        this.notice = texts.gamepad.notLoaded;
+      });
+    };
+    if (!('getGamepads' in navigator)) this.notice = texts.gamepad.insecure;
+    else if (navigator.getGamepads().some((pad) => pad?.connected)) begin();
+    window.addEventListener('gamepadconnected', begin);
     return () => {
-      window.removeEventListener('gamepadconnected', join);
-      window.removeEventListener('gamepaddisconnected', this.#look);
-      this.#leave();
+      window.removeEventListener('gamepadconnected', begin);
+      if (typeof watching === 'function') watching();
+      watching = 'over';
+      this.name = this.index = null;
     };
   };
 
-  #joinAny(): void {
-    for (const pad of gamepads() ?? []) this.#join(pad);
+  /** Let the gamepad in use be felt, where it can. */
+  vibrate(how: Vibration): void {
+    if (this.index !== null) vibrate(navigator.getGamepads()[this.index], how);
   }
-
-  #join(pad: Gamepad | null): void {
-    if (!pad?.connected || this.#index !== null) return;
-    if (pad.mapping !== 'standard') {
-      this.notice = texts.gamepad.unsupported(shortName(pad.id));
-      return;
-    }
-    this.#index = pad.index;
-    this.name = shortName(pad.id);
-    this.notice = '';
-    this.waits = true;
-    this.#down = NAMES.filter((name) => pressed(pad, name));
-    this.#looking = setInterval(this.#look, LOOK);
-    // At once, so that sticks in the middle count from the moment that the gamepad is shown.
-    this.#look();
-  }
-
-  #leave(): void {
-    clearInterval(this.#looking);
-    this.pilot.hold(SOURCE, []);
-    this.#index = null;
-    this.name = null;
-  }
-
-  readonly #look = (): void => {
-    if (this.#index === null) return;
-    const pad = gamepads()?.[this.#index];
-    if (!pad?.connected) {
-      const gone = this.name ?? texts.gamepad.unnamed;
-      this.#leave();
-      this.#joinAny();
-      this.notice = texts.gamepad.disconnected(gone);
-      return;
-    }
-    const pushes = pushesOf(pad);
-    // Nobody meant a stick that was out of the middle before it counted: a new gamepad's, or one of another window.
-    this.waits = pushes.length > 0 && (this.waits || !this.pilot.steers);
-    this.pilot.hold(SOURCE, this.waits ? [] : pushes);
-    const before = this.#down;
-    this.#down = NAMES.filter((name) => pressed(pad, name));
-    for (const name of this.#down) if (!before.includes(name)) this.press(name);
-  };
 }
-
-/** The gamepads by their numbers; null where the browser has none for this page: Firefox has them in secure contexts only. */
-const gamepads = () => ('getGamepads' in navigator ? navigator.getGamepads() : null);
-
-/** Without the numbers that browsers add for programs. */
-const shortName = (id: string): string => id.replace(/\s*\(.*$/, '').trim() || 'Gamepad';

@@ -18,7 +18,7 @@ export interface Said {
   readonly axes: Axes;
 }
 
-export interface PilotPlace {
+interface PilotPlace {
   /** Send; an old command is worth nothing, so what cannot go now never goes. */
   say(said: Said): void;
   /** s, the robot's steady clock; NaN while unknown */

@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = 'e47854fa';
+export const DEFINITIONS_HASH = '718dde94';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -58,6 +58,7 @@ export const DeviceFault = {
   TRACKING_FRONT_LEFT: 8192,
   MAGNET: 16384,
   SURFACE: 32768,
+  LEAK: 65536,
 } as const;
 
 export const ResetCause = {
@@ -76,6 +77,38 @@ export const CalibrationStep = {
   PRESSURE: 16,
   BATTERY: 32,
   BEACONS: 64,
+} as const;
+
+export const BoardEventKind = {
+  BOOT: 0,
+  ARMED: 1,
+  REFUSED: 2,
+  DISARMED: 3,
+  BATTERY: 4,
+  FAULT: 5,
+  FAULT_OVER: 6,
+} as const;
+
+export const Refusal = {
+  NONE: 0,
+  NO_HELLO: 1,
+  DEFINITIONS: 2,
+  EPOCH: 3,
+  TRAFFIC: 4,
+  BATTERY: 5,
+  CALIBRATION: 6,
+  SURFACE: 7,
+  LEAK: 8,
+} as const;
+
+export const Disarming = {
+  NONE: 0,
+  STOP: 1,
+  SILENCE: 2,
+  BATTERY: 3,
+  DEFINITIONS: 4,
+  HOST: 5,
+  LEAK: 6,
 } as const;
 
 export const ROW_TOPICS = {
@@ -129,21 +162,21 @@ export const ROW_TOPICS = {
   status: {
     id: 5,
     name: 'status',
-    rowBytes: 32,
+    rowBytes: 34,
     meaning: 'the board\'s state and health',
     fields: [
       { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
       { name: 'epoch', code: 'H', offset: 12, count: 1, scale: 1, unit: '', meaning: 'epoch of the board\'s boot' },
       { name: 'flags', code: 'B', offset: 14, count: 1, scale: 1, unit: '', meaning: 'see StatusFlag' },
-      { name: 'faults', code: 'H', offset: 15, count: 1, scale: 1, unit: '', meaning: 'see DeviceFault' },
-      { name: 'reset_cause', code: 'B', offset: 17, count: 1, scale: 1, unit: '', meaning: 'see ResetCause' },
-      { name: 'battery', code: 'H', offset: 18, count: 1, scale: 0.001, unit: 'V', meaning: 'battery voltage' },
-      { name: 'loop_worst', code: 'H', offset: 20, count: 1, scale: 1, unit: 'µs', meaning: 'longest pass of the main loop since the last status' },
-      { name: 'missed_ticks', code: 'H', offset: 22, count: 1, scale: 1, unit: '', meaning: 'passes of the main loop missed since the start' },
-      { name: 'frames_invalid', code: 'H', offset: 24, count: 1, scale: 1, unit: '', meaning: 'invalid frames dropped since the start' },
-      { name: 'bytes_lost', code: 'H', offset: 26, count: 1, scale: 1, unit: '', meaning: 'received bytes lost to a full buffer since the start' },
-      { name: 'debug_lost', code: 'H', offset: 28, count: 1, scale: 1, unit: '', meaning: 'debug lines lost to a full buffer since the start' },
-      { name: 'stack_free', code: 'H', offset: 30, count: 1, scale: 1, unit: 'B', meaning: 'memory that the stack has never used' },
+      { name: 'faults', code: 'I', offset: 15, count: 1, scale: 1, unit: '', meaning: 'see DeviceFault' },
+      { name: 'reset_cause', code: 'B', offset: 19, count: 1, scale: 1, unit: '', meaning: 'see ResetCause' },
+      { name: 'battery', code: 'H', offset: 20, count: 1, scale: 0.001, unit: 'V', meaning: 'battery voltage' },
+      { name: 'loop_worst', code: 'H', offset: 22, count: 1, scale: 1, unit: 'µs', meaning: 'longest pass of the main loop since the last status' },
+      { name: 'missed_ticks', code: 'H', offset: 24, count: 1, scale: 1, unit: '', meaning: 'passes of the main loop missed since the start' },
+      { name: 'frames_invalid', code: 'H', offset: 26, count: 1, scale: 1, unit: '', meaning: 'invalid frames dropped since the start' },
+      { name: 'bytes_lost', code: 'H', offset: 28, count: 1, scale: 1, unit: '', meaning: 'received bytes lost to a full buffer since the start' },
+      { name: 'debug_lost', code: 'H', offset: 30, count: 1, scale: 1, unit: '', meaning: 'events and lines lost to a full buffer since the start' },
+      { name: 'stack_free', code: 'H', offset: 32, count: 1, scale: 1, unit: 'B', meaning: 'memory that the stack has never used' },
     ],
   },
   navigation: {
@@ -222,6 +255,18 @@ export const ROW_TOPICS = {
       { name: 'output', code: 'f', offset: 32, count: 3, scale: 1, unit: '', meaning: 'commands yaw, pitch, roll, -1 to 1; NaN while not controlled' },
     ],
   },
+  track: {
+    id: 11,
+    name: 'track',
+    rowBytes: 24,
+    meaning: 'the way by dead reckoning, with its uncertainty',
+    fields: [
+      { name: 'x', code: 'f', offset: 8, count: 1, scale: 1, unit: 'm', meaning: 'along heading 0' },
+      { name: 'y', code: 'f', offset: 12, count: 1, scale: 1, unit: 'm', meaning: 'along heading 90°' },
+      { name: 'deviation_x', code: 'f', offset: 16, count: 1, scale: 1, unit: 'm', meaning: 'standard deviation of x' },
+      { name: 'deviation_y', code: 'f', offset: 20, count: 1, scale: 1, unit: 'm', meaning: 'standard deviation of y' },
+    ],
+  },
 } as const;
 
 export interface ImuRow {
@@ -297,7 +342,7 @@ export interface StatusRow {
   frames_invalid: number;
   /** received bytes lost to a full buffer since the start */
   bytes_lost: number;
-  /** debug lines lost to a full buffer since the start */
+  /** events and lines lost to a full buffer since the start */
   debug_lost: number;
   /** B, memory that the stack has never used */
   stack_free: number;
@@ -400,6 +445,19 @@ export interface TurningRow {
   output: number[];
 }
 
+export interface TrackRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** m, along heading 0 */
+  x: number;
+  /** m, along heading 90° */
+  y: number;
+  /** m, standard deviation of x */
+  deviation_x: number;
+  /** m, standard deviation of y */
+  deviation_y: number;
+}
+
 export interface Rows {
   imu: ImuRow;
   depth: DepthRow;
@@ -411,9 +469,10 @@ export interface Rows {
   link: LinkRow;
   truth: TruthRow;
   turning: TurningRow;
+  track: TrackRow;
 }
 
-export const OTHER_TOPICS = {
+export const DOCUMENT_TOPICS = {
   state: 16,
   detection: 17,
   debug: 18,
@@ -425,11 +484,16 @@ export const OTHER_TOPICS = {
   calibration: 24,
   mission: 25,
   craft: 26,
+} as const;
+
+export const PICTURE_TOPICS = {
   picture: 32,
   observer: 33,
   thumbnail: 34,
   mask: 35,
   balanced: 36,
+  camera: 37,
+  snapshot: 38,
 } as const;
 
 /** A fault that is active, or not acknowledged yet. */
@@ -495,6 +559,10 @@ export interface State {
   epoch: number | null;
   set_point_default: number;
   set_point_detected: number;
+  unwatched: number;
+  deepest: number;
+  battery_left: number | null;
+  buoyancy_known: boolean;
   steering: 'none' | 'beacons';
   control_rate: number;
   profile: 'full' | 'lean';
@@ -504,6 +572,7 @@ export interface State {
   card: string | null;
   cards: string[];
   camera: string;
+  stream_rate: number;
   loops: Loop[];
   pilot_dropped: number;
 }
@@ -548,7 +617,7 @@ export interface Detection {
   latency: number | null;
 }
 
-/** A line of text that the firmware wrote; level as in DebugLevel. */
+/** An event of the board in words, or a line of text of its sketch; level as in DebugLevel. */
 export interface DebugLine {
   time: number;
   level: number;
@@ -616,7 +685,9 @@ export interface ColourRange {
     of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
     perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary
     counts. `actions` are set points (m) while a colour or `marker 7` is seen. With `confirmation` (2, 3) it
-    is seen while at least 2 of the last 3 pictures show it. Raises ConfigError on settings that contradict
+    is seen while at least 2 of the last 3 pictures show it. The picture is turned clockwise by `turn` °,
+    then mirrored left to right. `exposure` (ms), `gain` and `colour_temperature` (K) fix what a Pi or USB
+    camera else chooses by itself; 0 leaves it to the camera. Raises ConfigError on settings that contradict
     each other.
      */
 export interface VisionSettings {
@@ -634,6 +705,11 @@ export interface VisionSettings {
   markers: 'none' | '4x4_50' | '5x5_100' | '6x6_250' | '7x7_1000' | 'original' | 'april_36h11';
   marker_numbers: number[];
   actions: Record<string, number>;
+  turn: 0 | 90 | 180 | 270;
+  mirror: boolean;
+  exposure: number;
+  gain: number;
+  colour_temperature: number;
 }
 
 /** The vision settings in force; sent at every change and every ten seconds. */
@@ -655,7 +731,7 @@ export interface CalibrationValues {
   beacons_inverted: boolean;
 }
 
-/** The calibration that the board keeps; sent at every change and every ten seconds. */
+/** The calibration that the board stores; sent at every change and every ten seconds. */
 export interface CalibrationKept {
   time: number;
   values: CalibrationValues | null;
@@ -695,6 +771,7 @@ export interface Mission {
   deepest: number;
   steps: MissionStepState[];
   document: string;
+  surfaced: number | null;
 }
 
 /** The error model of a sensor, in the units of its reading. Raises ValueError below 0. */

@@ -1,5 +1,5 @@
 import { createContext } from 'svelte';
-import { api, type SavedLayout } from '../api';
+import { api, type LayoutDocument, type SavedLayout } from '../api';
 import { Arranger, type Arranged } from './arrange';
 import type { ShownChart } from '../parts/panelKind';
 import { FORMAT, readLayout, VERSION, type Layout, type Placed } from './layout';
@@ -131,7 +131,7 @@ export class Arrangement {
   async save(name: string, over = false): Promise<Refusal | null> {
     const same = this.saved.find((one) => one.name === name);
     const opened = same && savedChoice(same.id) === this.choice ? this.#now.version : (same?.version ?? 0);
-    const answer = await api.saveLayout(name, this.document, over ? null : opened);
+    const answer = await api.saveLayout(name, this.document as LayoutDocument, over ? null : opened);
     if ('problem' in answer) return answer;
     const { id, version } = answer.value;
     this.#now = { ...this.#now, choice: savedChoice(id), title: answer.value.name, changed: false, version };

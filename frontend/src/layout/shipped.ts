@@ -3,7 +3,7 @@ import type { ShownChart } from '../parts/panelKind';
 import { layout as texts } from '../texts/layout';
 import { FORMAT, VERSION, type Layout, type Placed, type Rect } from './layout';
 
-export interface Shipped {
+interface Shipped {
   readonly name: string;
   readonly title: string;
   readonly layout: () => Layout;

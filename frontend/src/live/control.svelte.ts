@@ -1,5 +1,6 @@
 import { connection } from '../texts/connection';
-import type { ControlMessage, You } from './messages';
+import type { ControlState } from '../api';
+import type { You } from './messages';
 
 const texts = connection.barred;
 
@@ -13,7 +14,7 @@ export class Control {
   /** who this page is to the robot; null until it is connected */
   you = $state.raw<You | null>(null);
   /** null until the robot has said who has the control */
-  now = $state.raw<ControlMessage | null>(null);
+  now = $state.raw<ControlState | null>(null);
   /** what went wrong with the last thing that was asked */
   problem = $state('');
   /** who took control over from this page, until it is closed or this page has control again */
@@ -46,7 +47,7 @@ export class Control {
     this.#eager = !this.#released;
   }
 
-  hear(message: ControlMessage): void {
+  hear(message: ControlState): void {
     if (this.mine && message.holder !== null && message.holder.client !== this.you?.client) this.lostTo = message.holder.name;
     this.now = message;
     if (this.mine) this.lostTo = null;
@@ -94,7 +95,7 @@ export class Control {
 }
 
 /** Requests about control; each answers what went wrong, or null. */
-export interface ControlCalls {
+interface ControlCalls {
   take(): Promise<string | null>;
   release(): Promise<string | null>;
   takeOver(): Promise<string | null>;

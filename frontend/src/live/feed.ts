@@ -8,7 +8,7 @@ import { nameClient } from '../http';
 import { readBlocks, type Block } from './blocks';
 import { SteadyClock } from './clock';
 import { Live } from './live.svelte';
-import { readMessage, type Hello, type ServerMessage } from './messages';
+import { deliver, type Hello, type Listeners, type Messages } from './messages';
 import { Past } from './past';
 import { LiveSocket } from './socket';
 import { Stop } from './stop.svelte';
@@ -37,6 +37,18 @@ export class LiveFeed {
   #pageVersion: string | null = null;
   #wasOpen = false;
   #refusals = 0;
+  readonly #listeners: Listeners = {
+    hello: (hello) => this.#greet(hello),
+    pong: (pong) => this.#hearPong(pong),
+    control: (state) => this.#control.hear(state),
+    health: ({ parts }) => (this.live.parts = parts),
+    session: ({ recording }) => (this.live.recording = recording),
+    scenario: (state) => (this.live.scenario = state),
+    tuning: (state) => (this.live.tuning = state),
+    comm_test: ({ active, cell }) => this.live.commTest.take(active, cell),
+    alarms: ({ alarms }) => (this.live.serverAlarms = alarms),
+    error: ({ text }) => (this.live.serverError = text),
+  };
 
   /** @param access whoever uses this page; told where the server does not know them any more */
   constructor(
@@ -47,7 +59,7 @@ export class LiveFeed {
     this.#socket = new LiveSocket(url, {
       opened: () => this.#opened(),
       closed: (reason, refused) => this.#closed(reason, refused),
-      text: (text) => this.#read(text),
+      text: (text) => deliver(text, this.#listeners),
       bytes: (buffer) => this.#take(buffer),
       roundTrip: (milliseconds) => (this.live.roundTrip = milliseconds),
     });
@@ -136,23 +148,7 @@ export class LiveFeed {
     live.untrusted = answers && reason === '' && this.encrypted && !this.#wasOpen && this.#refusals >= REFUSALS && live.connection === 'lost';
   }
 
-  #read(text: string): void {
-    const { live } = this;
-    const message = readMessage(text);
-    if (message === null) return;
-    if (message.op === 'hello') this.#greet(message);
-    else if (message.op === 'health') live.parts = message.parts;
-    else if (message.op === 'session') live.recording = message.recording;
-    else if (message.op === 'scenario') live.scenario = message;
-    else if (message.op === 'tuning') live.tuning = message;
-    else if (message.op === 'comm_test') live.commTest.take(message.active, message.cell);
-    else if (message.op === 'control') this.#control.hear(message);
-    else if (message.op === 'alarms') live.serverAlarms = message.alarms;
-    else if (message.op === 'error') live.serverError = message.text;
-    else this.#hearPong(message);
-  }
-
-  #hearPong({ id, steady, utc }: Extract<ServerMessage, { op: 'pong' }>): void {
+  #hearPong({ id, steady, utc }: Messages['pong']): void {
     this.#socket.answered(id);
     const { instant } = this.live;
     // Only where the robot's calendar was set: all times that the page shows are computed anew.

@@ -1,4 +1,4 @@
-import type { Part } from '../api';
+import type { PartHealth } from '../api';
 import { connection as connectionTexts } from '../texts/connection';
 
 const texts = connectionTexts.hops;
@@ -25,7 +25,7 @@ export interface Heard {
   readonly farewell: string;
   /** whether the server answers by HTTPS, and the live connection never opened */
   readonly untrusted: boolean;
-  readonly parts: readonly Part[];
+  readonly parts: readonly PartHealth[];
   /** whether the runtime's state has not come to this page for a while */
   readonly silent: boolean;
   /** what it says of the serial link */

@@ -1,18 +1,5 @@
 import { createContext } from 'svelte';
-import {
-  OTHER_TOPICS,
-  type Alarm,
-  type CalibrationKept,
-  type DebugLine,
-  type Detection,
-  type Mission,
-  type TunableParameter,
-  type Parameters,
-  type RobotEvent,
-  type Rows,
-  type State,
-  type VisionInForce,
-} from '../generated/topics';
+import { DOCUMENT_TOPICS, PICTURE_TOPICS, type Alarm, type DebugLine, type Detection, type Documents, type RobotEvent, type Rows, type State } from '../generated/topics';
 import { readDocuments, readPicture, type Block } from './blocks';
 import { calendar, type Instant } from './clock';
 import { groupAlarms, membersOf, type AlarmGroup } from './alarms';
@@ -20,8 +7,9 @@ import type { Control } from './control.svelte';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
-import type { Part, ScenarioState, Session, TuningState } from '../api';
+import type { PartHealth, ScenarioState, Session, TuningState } from '../api';
 import type { Hello } from './messages';
+import { createNewest } from './newest.svelte';
 import { Pace } from './pace';
 import { OBSERVER_PERIOD, PERIODS, THUMBNAIL_PERIOD, type Timed } from './periods';
 import type { Stop } from './stop.svelte';
@@ -36,13 +24,21 @@ const EVENT_LINES = 500;
 /** how many detections a rate is counted over */
 const RATE_OVER = 12;
 
-const WATCHED = ['observer', 'mask', 'balanced'] as const;
-type WatchedPicture = (typeof WATCHED)[number];
-
 export interface Picture {
   readonly time: number;
   readonly jpeg: Blob;
 }
+
+type PictureTopic = keyof typeof PICTURE_TOPICS;
+/** pictures that are made only while somebody asked for them with `watch` */
+type WatchedPicture = Exclude<PictureTopic, 'picture' | 'thumbnail' | 'snapshot'>;
+
+const isUnasked = (topic: PictureTopic): topic is Exclude<PictureTopic, WatchedPicture> => topic === 'picture' || topic === 'thumbnail' || topic === 'snapshot';
+
+const namesOf = <Name extends string>(topics: Record<Name, number>) => Object.keys(topics) as Name[];
+const byNumber = <Name extends string>(topics: Record<Name, number>) => new Map(namesOf(topics).map((name) => [topics[name], name]));
+const DOCUMENT_NAMES = byNumber(DOCUMENT_TOPICS);
+const PICTURE_NAMES = byNumber(PICTURE_TOPICS);
 
 /** Everything the page shows of the robot. It comes from the live socket (feed.ts) or from a replay. */
 export class Live {
@@ -59,32 +55,26 @@ export class Live {
   /** a moment that is known on both the steady clock and the calendar */
   instant = $state.raw<Instant | null>(null);
   outdated = $state(false);
-  parts = $state.raw<readonly Part[]>([]);
+  parts = $state.raw<readonly PartHealth[]>([]);
   recording = $state.raw<Session | null>(null);
-  state = $state.raw<State | null>(null);
-  /** everything that may be tuned; null until the runtime has told of it */
-  parameters = $state.raw<readonly TunableParameter[] | null>(null);
-  /** null until the runtime has told what it knows of the board's */
-  calibration = $state.raw<CalibrationKept | null>(null);
-  detection = $state.raw<Detection | null>(null);
-  /** Hz, as detections really come; null while there are fewer than two */
-  detectionRate = $state<number | null>(null);
-  picture = $state.raw<Picture | null>(null);
-  /** what a bystander in the simulated water sees; comes only while somebody asked for it with `watch` */
-  observer = $state.raw<Picture | null>(null);
-  /** the mask of the wanted colour, and the picture after the white balance; while somebody asked for them */
-  mask = $state.raw<Picture | null>(null);
-  balanced = $state.raw<Picture | null>(null);
-  /** the running mission, or the last one; null where none is known */
-  mission = $state.raw<Mission | null>(null);
-  /** how the vision node looks */
-  vision = $state.raw<VisionInForce | null>(null);
+  /** the newest document of each topic */
+  readonly documents = createNewest<Documents>(namesOf(DOCUMENT_TOPICS));
+  /** the newest picture of each topic: of the camera, and of what somebody asked for with `watch` */
+  readonly pictures = createNewest<Record<PictureTopic, Picture>>(namesOf(PICTURE_TOPICS));
   serverError = $state('');
   /** alarms of the server, which sees what the runtime cannot: that it is silent, for one */
   serverAlarms = $state.raw<readonly Alarm[]>([]);
   readonly rings = createRings();
   readonly debug = new Lines<DebugLine>(CONSOLE_LINES);
   readonly events = new Lines<RobotEvent>(EVENT_LINES, (one, other) => one.time - other.time);
+  readonly #detections = new Lines<Detection>(RATE_OVER);
+  /** where every document counts, not the newest alone */
+  readonly #lists: { readonly [Name in keyof Documents]?: Pick<Lines<Documents[Name]>, 'append' | 'clear'> } = {
+    debug: this.debug,
+    event: this.events,
+    notice: this.events,
+    detection: this.#detections,
+  };
   readonly gaps = new Gaps();
   readonly commTest = new CommTestWatch();
   /** null until the server has said whether a scenario runs */
@@ -93,14 +83,14 @@ export class Live {
   tuning = $state.raw<TuningState | null>(null);
 
   /** counts frames in which something new is to be drawn, and the slower beat at which digits are read */
-  #detected: number[] = [];
   #frame = $state(0);
   #tick = $state(0);
   readonly #pace = new Pace();
   #awaited = false;
   /** whether the board's samples came since the last frame: it is drawn with them */
   #sampled = false;
-  readonly #watching: Record<WatchedPicture, number> = { observer: 0, mask: 0, balanced: 0 };
+  /** the pictures that are looked at, each as often as somebody does */
+  readonly #watching: WatchedPicture[] = [];
   /** called where `watched` changes; a recording has no such pictures */
   onWatch: (() => void) | null = null;
   /** somebody looks at a topic before its ring begins */
@@ -115,6 +105,22 @@ export class Live {
     readonly stop: Stop,
     readonly control: Control | null,
   ) {}
+
+  /** whether a simulator on this computer gives the robot its water */
+  get simulated(): boolean {
+    return this.parts.some(({ name, state }) => name === 'simulator' && state !== 'absent');
+  }
+
+  get state(): State | null {
+    return this.documents.state.value;
+  }
+
+  /** Hz, as detections really come; null while there are fewer than two */
+  get detectionRate(): number | null {
+    const times = this.#detections.entries.map(({ time }) => time);
+    const span = (times.at(-1) ?? 0) - (times[0] ?? 0);
+    return span > 0 ? (times.length - 1) / span : null;
+  }
 
   /** whether this shows the past */
   get replayed(): boolean {
@@ -155,19 +161,19 @@ export class Live {
 
   /** Look at pictures that are made only for whoever does. Returns what ends that. */
   watch(topic: WatchedPicture): () => void {
-    this.#watching[topic] += 1;
-    if (this.#watching[topic] === 1) this.onWatch?.();
+    this.#watching.push(topic);
+    if (this.#watching.indexOf(topic) === this.#watching.length - 1) this.onWatch?.();
     return () => {
-      this.#watching[topic] -= 1;
-      if (this.#watching[topic] > 0) return;
-      this[topic] = null;
+      this.#watching.splice(this.#watching.indexOf(topic), 1);
+      if (this.#watching.includes(topic)) return;
+      this.pictures[topic].value = null;
       this.onWatch?.();
     };
   }
 
   /** the pictures that somebody looks at beside the camera's */
   get watched(): WatchedPicture[] {
-    return WATCHED.filter((topic) => this.#watching[topic] > 0);
+    return this.#watching.filter((topic, at) => this.#watching.indexOf(topic) === at);
   }
 
   /** The robot's steady clock, s; NaN while unknown. Whoever reads it in an effect runs again with every tick. */
@@ -216,38 +222,26 @@ export class Live {
   }
 
   #newest(topic: Timed): number | null {
-    if (topic === 'state') return this.state?.time ?? null;
-    if (topic === 'detection') return this.detection?.time ?? null;
-    if (topic === 'picture') return this.picture?.time ?? null;
-    if (topic === 'observer') return this.observer?.time ?? null;
-    if (topic === 'mask') return this.mask?.time ?? null;
-    return this.rings[topic].newest;
+    if (topic in this.rings) return this.rings[topic as keyof Rows].newest;
+    const { value } = topic in this.pictures ? this.pictures[topic as PictureTopic] : this.documents[topic as keyof Documents];
+    return value?.time ?? null;
   }
 
   /** s between two samples of a topic as things are */
   period(topic: Timed): number {
     if (topic === 'picture' && this.replayed) return THUMBNAIL_PERIOD;
     if (topic === 'detection' || topic === 'picture' || topic === 'mask') return 1 / (this.state?.vision_rate ?? 1);
+    if (topic === 'camera') return 1 / (this.state?.stream_rate ?? 1);
     if (topic === 'observer') return OBSERVER_PERIOD;
-    if (topic === 'control' || topic === 'turning' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
+    if (topic === 'control' || topic === 'turning' || topic === 'track' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
     return this.state?.paces.find((pace) => pace.topic === topic)?.period ?? PERIODS[topic];
   }
 
   /** Forget what was shown; times from before mean nothing any more. */
   clear(): void {
     for (const ring of Object.values(this.rings)) ring.clear();
-    this.debug.clear();
-    this.events.clear();
-    this.state = null;
-    this.parameters = null;
-    this.calibration = null;
-    this.detection = null;
-    this.detectionRate = null;
-    this.#detected = [];
-    this.picture = null;
-    for (const name of WATCHED) this[name] = null;
-    this.vision = null;
-    this.mission = null;
+    for (const list of Object.values(this.#lists)) list.clear();
+    for (const newest of [...Object.values(this.documents), ...Object.values(this.pictures)]) newest.value = null;
   }
 
   /** Take in what of a block is later than `after`. Returns the time up to which its topic is known (s), if any. */
@@ -258,48 +252,29 @@ export class Live {
       this.#sampled ||= ring === this.rings.imu;
       return ring.newest;
     }
-    if (block.topic === OTHER_TOPICS.picture) {
-      const picture = readPicture(block);
-      if (picture.time > after) this.picture = picture;
-      return picture.time;
-    }
-    for (const name of WATCHED) {
-      if (block.topic !== OTHER_TOPICS[name]) continue;
-      const picture = readPicture(block);
-      // One that was on its way when the last viewer left would be an old one for the next.
-      if (this.#watching[name] > 0) this[name] = picture;
-      return picture.time;
-    }
+    const picture = PICTURE_NAMES.get(block.topic);
+    if (picture !== undefined) return this.#takePicture(picture, readPicture(block));
     const documents = (readDocuments(block) as { time: number }[]).filter((document) => document.time > after);
     return this.takeDocuments(block.topic, documents);
   }
 
+  #takePicture(topic: PictureTopic, picture: Picture): number {
+    // One that was on its way when the last viewer left would be an old one for the next.
+    if (isUnasked(topic) || this.#watching.includes(topic)) this.pictures[topic].value = picture;
+    return picture.time;
+  }
+
   /** Take in documents of one topic, in order of time. Returns the time of the last, if there is one. */
   takeDocuments(topic: number, documents: { time: number }[]): number | null {
-    const last = documents.at(-1);
+    const [name, last] = [DOCUMENT_NAMES.get(topic), documents.at(-1)];
     if (last === undefined) return null;
-    this.#keep(topic, documents, last);
+    if (name !== undefined) this.#keep(name, documents as Documents[typeof name][]);
     return last.time;
   }
 
-  #keep(topic: number, documents: { time: number }[], last: { time: number }): void {
-    if (topic === OTHER_TOPICS.state) this.state = last as State;
-    else if (topic === OTHER_TOPICS.parameters) this.parameters = (last as Parameters).parameters;
-    else if (topic === OTHER_TOPICS.calibration) this.calibration = last as CalibrationKept;
-    else if (topic === OTHER_TOPICS.detection) this.#detect(documents, last as Detection);
-    else if (topic === OTHER_TOPICS.vision) this.vision = last as VisionInForce;
-    else if (topic === OTHER_TOPICS.mission) this.mission = last as Mission;
-    else if (topic === OTHER_TOPICS.debug) this.debug.append(documents as DebugLine[]);
-    else if (topic === OTHER_TOPICS.event || topic === OTHER_TOPICS.notice) {
-      this.events.append(documents as RobotEvent[]);
-    }
-  }
-
-  #detect(all: { time: number }[], last: Detection): void {
-    this.detection = last;
-    this.#detected = [...this.#detected, ...all.map(({ time }) => time)].slice(-RATE_OVER);
-    const [first = last.time] = this.#detected;
-    this.detectionRate = last.time > first ? (this.#detected.length - 1) / (last.time - first) : null;
+  #keep<Name extends keyof Documents>(name: Name, documents: Documents[Name][]): void {
+    this.documents[name].value = documents.at(-1) ?? null;
+    this.#lists[name]?.append(documents);
   }
 
   /** Show at once what has become another, digits too. */

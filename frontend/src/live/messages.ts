@@ -1,6 +1,5 @@
 /** The text messages of the live socket. */
-import type { Cell, Part, Role, ScenarioState, Session, TuningState } from '../api';
-import type { components } from '../generated/api';
+import type { Cell, ControlState, PartHealth, Role, ScenarioState, Session, TuningState } from '../api';
 import type { Alarm } from '../generated/topics';
 import type { Instant } from './clock';
 
@@ -11,11 +10,7 @@ export interface You {
   readonly client: number;
 }
 
-/** `epoch` grows whenever control goes to another client: what was meant for an earlier one is dropped. */
-export type ControlMessage = { readonly op: 'control' } & Readonly<components['schemas']['ControlState']>;
-
 export interface Hello {
-  op: 'hello';
   definitions: string;
   robot: string;
   /** s, the robot's steady clock */
@@ -48,34 +43,24 @@ export interface CommTestActive {
   phase: Readonly<Record<string, 'compile' | 'upload' | 'run'>>;
 }
 
-export type ServerMessage =
-  | Hello
-  | { op: 'health'; parts: Part[] }
-  | { op: 'session'; recording: Session | null }
-  | { op: 'comm_test'; active: CommTestActive | null; cell: (Cell & { run: number }) | null }
-  | ({ op: 'scenario' } & ScenarioState)
-  | ({ op: 'tuning' } & TuningState)
-  | ControlMessage
-  | { op: 'alarms'; alarms: Alarm[] }
-  | { op: 'error'; text: string }
-  | ({ op: 'pong'; id: number } & Instant);
+/** What the server sends, by the operation `op` of the message. */
+export interface Messages {
+  readonly hello: Hello;
+  readonly health: { readonly parts: PartHealth[] };
+  readonly session: { readonly recording: Session | null };
+  readonly comm_test: { readonly active: CommTestActive | null; readonly cell: (Cell & { readonly run: number }) | null };
+  readonly scenario: ScenarioState;
+  readonly tuning: TuningState;
+  readonly control: ControlState;
+  readonly alarms: { readonly alarms: Alarm[] };
+  readonly error: { readonly text: string };
+  readonly pong: Instant & { readonly id: number };
+}
 
-const OPERATIONS: ReadonlySet<unknown> = new Set<ServerMessage['op']>([
-  'hello',
-  'health',
-  'session',
-  'comm_test',
-  'scenario',
-  'tuning',
-  'control',
-  'alarms',
-  'error',
-  'pong',
-]);
+export type Listeners = { readonly [Operation in keyof Messages]: (message: Messages[Operation]) => void };
 
-/** The message in `text`; null where this page does not know its operation. */
-export function readMessage(text: string): ServerMessage | null {
-  const message: unknown = JSON.parse(text);
-  const known = typeof message === 'object' && message !== null && 'op' in message && OPERATIONS.has(message.op);
-  return known ? (message as ServerMessage) : null;
+/** Give the message in `text` to the listener of its operation. One that this page does not know is ignored. */
+export function deliver(text: string, listeners: Listeners): void {
+  const message = Object(JSON.parse(text)) as { readonly op?: keyof Messages };
+  if (message.op !== undefined && Object.hasOwn(listeners, message.op)) (listeners[message.op] as (message: unknown) => void)(message);
 }

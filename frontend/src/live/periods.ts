@@ -1,6 +1,6 @@
 import type { Rows } from '../generated/topics';
 
-export type Timed = keyof Rows | 'state' | 'detection' | 'picture' | 'observer' | 'mask';
+export type Timed = keyof Rows | 'state' | 'detection' | 'picture' | 'camera' | 'observer' | 'mask';
 
 /** s between two samples of each topic on a fast line; `state.paces` says what a slow one carries. */
 export const PERIODS: Record<keyof Rows | 'state', number> = {
@@ -12,6 +12,7 @@ export const PERIODS: Record<keyof Rows | 'state', number> = {
   navigation: 0.1,
   control: 0.1,
   turning: 0.1,
+  track: 0.1,
   link: 1,
   truth: 0.05,
   state: 1,
@@ -21,7 +22,7 @@ export const PERIODS: Record<keyof Rows | 'state', number> = {
  * Most rows a second where that is more than a row each period: control.rate is at most 50 Hz, and by hand each of the
  * pilot's 20 inputs a second is a row beside the ticks.
  */
-export const RATES_MOST: Partial<Record<keyof Rows, number>> = { control: 50, turning: 50, navigation: 70 };
+export const RATES_MOST: Partial<Record<keyof Rows, number>> = { control: 50, turning: 50, track: 50, navigation: 70 };
 
 /** s between two pictures of the bystander (robot_runtime/simulation/scene/process.py) */
 export const OBSERVER_PERIOD = 1 / 12;

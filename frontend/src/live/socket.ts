@@ -11,7 +11,7 @@ const RETRY_MOST = 3000;
 /** close code of a server that will not serve this page (RFC 6455, 7.4.1) */
 const POLICY_VIOLATION = 1008;
 
-export interface SocketEvents {
+interface SocketEvents {
   opened(): void;
   /**
    * The connection is gone; the next attempt comes by itself. `reason` is the server's, where it gave one; `refused`

@@ -3,7 +3,7 @@ import { api } from '../api';
 const RETRY_EVERY = 250;
 const CONFIRMED_SHOWN = 2000;
 
-export type StopState = 'idle' | 'sending' | 'confirmed';
+type StopState = 'idle' | 'sending' | 'confirmed';
 
 /**
  * STOP, sent by every way there is and again until the server says that it was taken.

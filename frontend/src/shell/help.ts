@@ -1,8 +1,9 @@
 import type { PageName } from '../router.svelte';
 
 /** The chapter of the help for each page. A key with a slash is a view within the page. */
-export const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Record<PageName, string>> = {
+const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Record<PageName, string>> = {
   operate: 'use/operate/',
+  flight: 'use/fly/',
   tune: 'use/tune/',
   'tune/parameters': 'use/tune/#change-parameters',
   'tune/craft': 'use/identify/',
@@ -12,6 +13,7 @@ export const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Reco
   'comm-tests': 'use/comm-tests/',
   sessions: 'use/sessions/',
   'sessions/compare': 'use/compare/',
+  gamepads: 'use/operate/#gamepads',
   replay: 'use/sessions/#replay',
   system: 'run/troubleshoot/',
   people: 'run/access/',

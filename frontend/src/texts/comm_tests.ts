@@ -3,7 +3,7 @@ export const commTests = {
   title: 'Comm tests',
   about:
     'Sends numbers over the serial line at each baud rate and pair of delays. The grid shows the share that arrives and the causes of loss, as in the thesis.',
-  back: '← All comm tests',
+  back: 'All comm tests',
   compareWithThesis: 'Compare with the thesis',
   runs: 'Runs',
   cells: (count: number) => (count === 1 ? 'cell' : 'cells'),
@@ -182,9 +182,9 @@ export const commTests = {
   },
   cell: {
     baud: 'Baud',
-    arduinoDelay: 'Arduino delay',
-    piDelay: 'Pi delay',
+    delay: 'delay, s',
     rate: 'Rate',
+    label: 'Rates of all cells and causes of loss',
     causes: 'Causes of loss',
     explanation: 'Explanation',
     noCause: 'none',
@@ -207,8 +207,8 @@ export const commTests = {
     },
   },
   table: {
+    label: 'Runs and tables of the thesis',
     selectTwo: 'Select two or more to compare. The first one is the reference.',
-    compare: 'Compare',
     compareRun: (name: string, id: number) => `Compare ${name}, run ${id}`,
     name: 'Name',
     state: 'State',
@@ -231,7 +231,6 @@ export const commTests = {
     columns: 'Compared runs',
     column: 'Run or table',
     meanDifference: 'Mean difference',
-    difference: 'Difference',
     better: 'Better',
     worse: 'Worse',
     change: 'Change',

@@ -3,7 +3,7 @@
 export const compare = {
   title: 'Compare sessions',
   titleOfOne: 'Session figures',
-  back: '← All sessions',
+  back: 'All sessions',
   empty: { title: 'No session selected', text: 'Select two or more sessions in the list to compare.', toList: 'Open the list' },
   presets: {
     label: 'Signals',

@@ -1,12 +1,14 @@
 /** Names of the pages: in the tabs, in headings and in the title of the window. */
 export const pages = {
   operate: 'Operate',
+  flight: 'Flight view',
   tune: 'Tune',
   missions: 'Missions',
   scenarios: 'Scenarios',
   'comm-tests': 'Comm tests',
   sessions: 'Sessions',
   system: 'System',
+  gamepads: 'Gamepads',
   replay: 'Replay',
   people: 'People',
   'bring-up': 'Bring-up',

@@ -61,6 +61,7 @@ export const panels = {
     noneText: 'The state of the two light detectors appears with their first sample.',
   },
   camera: {
+    flyHint: 'The picture fills the window (key F, or a double press on the picture)',
     view: 'View',
     robot: 'robot',
     bystander: 'bystander',
@@ -113,7 +114,7 @@ export const panels = {
     none: 'The debug output of the firmware appears here.',
     noMatch: 'No matching lines.',
     lines: 'Firmware output',
-    newest: 'Newest ↓',
+    newest: 'Newest',
   },
   depth: { chart: 'Depth and set point over time, 0 m on top, with events as flags' },
   events: {

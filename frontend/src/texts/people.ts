@@ -8,7 +8,7 @@ type Role = keyof typeof ROLES;
 export const people = {
   title: pages.people,
   about: 'Browsers and programs that can use this robot.',
-  back: '← System',
+  back: 'System',
   roles: ROLES,
   roleChoice: {
     legend: 'Role',

@@ -21,6 +21,20 @@ export const sessions = {
     text: 'Recorded sessions are listed here. You can search, tag, replay, compare and export them.',
     recordFirst: 'Record the first session',
   },
+  album: {
+    title: 'Snapshots',
+    one: 'Snapshot',
+    alt: (time: string) => `The camera’s picture at ${time}`,
+    more: (count: number) => (count === 1 ? 'Show 1 more' : `Show ${count} more`),
+    time: 'Time',
+    depth: 'Depth',
+    heading: 'Heading',
+    pitch: 'Pitch',
+    roll: 'Roll',
+    position: 'Position',
+    at: (x: string, y: string, deviation: string) => `x ${x} m, y ${y} m, ± ${deviation} m`,
+    positionMeaning: 'An estimate from the strokes of the fins since the robot was armed; its error grows.',
+  },
   noMatch: {
     title: 'No matching sessions',
     text: 'The search covers names, notes, tags and scenarios.',
@@ -32,6 +46,7 @@ export const sessions = {
     tags: 'Filter by tag',
   },
   table: {
+    label: 'Recorded sessions',
     actions: 'Replay or delete',
     bookmarks: (count: number) => (count === 1 ? '1 bookmark' : `${count} bookmarks`),
     origin: (origin: string, scenario: string, bookmarks: string) =>
@@ -77,7 +92,7 @@ export const sessions = {
     stopping: 'Stopping…',
   },
   session: {
-    all: '← All sessions',
+    all: 'All sessions',
     interrupted: 'The server stopped during this recording. Data up to then is stored; the last second may be missing.',
     camera: 'Camera',
     recordedFrom: (origin: string) => `recorded ${origin}`,

@@ -4,7 +4,8 @@ export const shell = {
   titleOf: (page: string) => `${page} · µ-CAT`,
   pages: 'Pages',
   help: 'Help for this page',
-  clock: 'Robot’s clock',
+  helpDrawer: { title: 'Help', tab: 'Open in a tab', frame: 'Chapter of the help' },
+  clock: (moment: string) => `Robot’s clock, in this device’s zone: ${moment}`,
   bookmark: 'Bookmark',
   lookingOn: {
     title: 'View only.',
@@ -40,7 +41,12 @@ export const shell = {
     title: 'Control of the robot',
     hint: 'Who has control of the robot',
     label: (who: string) => `Control: ${who}`,
-    who: { unknown: 'unknown', thisPage: 'this page', nobody: 'nobody' },
+    who: {
+      unknown: { full: 'control unknown', short: 'unknown' },
+      thisPage: { full: 'you have control', short: 'you' },
+      nobody: { full: 'nobody has control', short: 'nobody' },
+      other: (name: string) => ({ full: `${name} has control`, short: name }),
+    },
     isMine: 'This page has control.',
     isOf: (name: string) => `${name} has control.`,
     isFree: 'Nobody has control.',
@@ -63,11 +69,12 @@ export const shell = {
   },
   settings: {
     title: 'Page settings',
-    hint: 'Page settings: theme and shortcuts',
+    hint: 'Page settings: theme, sound and shortcuts',
     theme: 'Theme',
     themes: { device: 'Same as device', dark: 'Dark', sunlight: 'Sunlight' },
     shortcuts: 'Single-key shortcuts',
-    shortcutsHint: 'Key M adds a bookmark. Letters, digits and arrows drive. Esc is always STOP.',
+    shortcutsHint: 'Key M adds a bookmark, P takes a snapshot, F opens the flight view. Letters, digits and arrows drive. Esc is always STOP.',
+    flight: 'Flight view while armed in manual',
   },
   stop: {
     idle: 'STOP',

@@ -141,7 +141,7 @@ export const system = {
     freeStackCaution: 'Little memory is left.',
     framesInvalid: 'Frames invalid',
     bytesLost: 'Bytes lost',
-    debugLost: 'Debug lines lost',
+    debugLost: 'Events and lines lost',
     noFlags: 'none',
     causes: {
       unknown: 'unknown',
@@ -159,6 +159,7 @@ export const system = {
       tracking: (fin: string) => `motor ${fin}`,
       magnet: 'an encoder’s magnet out of place',
       surface: 'depth uncertain since the supply failed',
+      leak: 'water in the hull',
     },
     fins: { frontRight: 'front right', backRight: 'back right', backLeft: 'back left', frontLeft: 'front left' },
     flags: {

@@ -7,7 +7,7 @@ the front fins, outwards and forward for the back fins) and grows as the tip goe
 """
 
 from collections.abc import Callable
-from enum import IntEnum, IntFlag
+from enum import IntEnum, IntFlag, unique
 from hashlib import sha256
 from typing import Annotated, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
@@ -27,6 +27,7 @@ Fins = tuple[float, float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
+@unique
 class DebugLevel(IntEnum):
     """The severity of a line of debug text."""
 
@@ -36,6 +37,7 @@ class DebugLevel(IntEnum):
     ERROR = 3
 
 
+@unique
 class StatusFlag(IntFlag):
     """Flags of the board's state, one bit each."""
 
@@ -48,13 +50,15 @@ class StatusFlag(IntFlag):
     HIL = 64
 
 
+@unique
 class DeviceFault(IntFlag):
     """Faults of the board's devices; one bit each.
 
     The last reading of an IMU, a pressure sensor or an encoder failed or was invalid; a powered H-bridge does
     not answer or reports a fault; a fin turned against its drive or not at all, and is not driven until the
     next arming; the magnet of an encoder is too near or too far, and the fin's angle is less exact; the depth
-    is that below the surface before the supply failed under water, and the board does not arm.
+    is that below the surface before the supply failed under water, and the board does not arm; there is water
+    in the hull, and the board does not arm before its next start.
     """
 
     IMU = 1
@@ -73,8 +77,10 @@ class DeviceFault(IntFlag):
     TRACKING_FRONT_LEFT = 8192
     MAGNET = 16384
     SURFACE = 32768
+    LEAK = 65536
 
 
+@unique
 class ResetCause(IntEnum):
     """Cause of the board's last start."""
 
@@ -85,6 +91,7 @@ class ResetCause(IntEnum):
     WATCHDOG = 4
 
 
+@unique
 class CalibrationStep(IntFlag):
     """The steps of a board's calibration, one bit each."""
 
@@ -97,12 +104,61 @@ class CalibrationStep(IntFlag):
     BEACONS = 64
 
 
+@unique
+class BoardEventKind(IntEnum):
+    """The board's events, with their details and values.
+
+    BOOT: the ResetCause, and the epoch. REFUSED (a START): the Refusal, and the missing steps of the
+    calibration. DISARMED: the Disarming. BATTERY: 1 if the robot was armed, and mV. FAULT and FAULT_OVER: the
+    number of the bit in DeviceFault, and the IMU's WHO_AM_I.
+    """
+
+    BOOT = 0
+    ARMED = 1
+    REFUSED = 2
+    DISARMED = 3
+    BATTERY = 4
+    FAULT = 5
+    FAULT_OVER = 6
+
+
+@unique
+class Refusal(IntEnum):
+    """The board's reason to refuse a START."""
+
+    NONE = 0
+    NO_HELLO = 1
+    DEFINITIONS = 2
+    EPOCH = 3
+    TRAFFIC = 4
+    BATTERY = 5
+    CALIBRATION = 6
+    SURFACE = 7
+    LEAK = 8
+
+
+@unique
+class Disarming(IntEnum):
+    """The board's reason to disarm."""
+
+    NONE = 0
+    STOP = 1
+    SILENCE = 2
+    BATTERY = 3
+    DEFINITIONS = 4
+    HOST = 5
+    LEAK = 6
+
+
 ENUMERATIONS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     DebugLevel,
     StatusFlag,
     DeviceFault,
     ResetCause,
     CalibrationStep,
+    BoardEventKind,
+    Refusal,
+    Disarming,
 )
 
 
@@ -218,7 +274,7 @@ class Motor(Packet):
 
 @_packet(0x09, reliable=True)
 class Debug(Packet):
-    """Board to host: a line of text."""
+    """Board to host: a line of text, from a sketch of one's own."""
 
     time: Micros
     level: Annotated[int, Wire("B", meaning="see DebugLevel")]
@@ -241,7 +297,7 @@ class Status(Packet):
     time: Micros
     epoch: Annotated[int, Wire("H", meaning="epoch of the board's boot")]
     flags: Annotated[int, Wire("B", meaning="see StatusFlag")]
-    faults: Annotated[int, Wire("H", meaning="see DeviceFault")]
+    faults: Annotated[int, Wire("I", meaning="see DeviceFault")]
     reset_cause: Annotated[int, Wire("B", meaning="see ResetCause")]
     battery: Annotated[float, Wire("H", scale=0.001, unit="V", meaning="battery voltage")]
     loop_worst: Annotated[
@@ -250,7 +306,7 @@ class Status(Packet):
     missed_ticks: Annotated[int, Wire("H", meaning="passes of the main loop missed since the start")]
     frames_invalid: Annotated[int, Wire("H", meaning="invalid frames dropped since the start")]
     bytes_lost: Annotated[int, Wire("H", meaning="received bytes lost to a full buffer since the start")]
-    debug_lost: Annotated[int, Wire("H", meaning="debug lines lost to a full buffer since the start")]
+    debug_lost: Annotated[int, Wire("H", meaning="events and lines lost to a full buffer since the start")]
     stack_free: Annotated[int, Wire("H", unit="B", meaning="memory that the stack has never used")]
 
 
@@ -394,7 +450,7 @@ class Jog(Packet):
 
 @_packet(0x19)
 class Raw(Packet):
-    """Board to host, only in the bring-up, 20 Hz: what the devices say, as they say it."""
+    """Board to host, only in the bring-up, 20 Hz: the devices' raw readings."""
 
     time: Micros
     encoders: Annotated[
@@ -413,15 +469,33 @@ class Raw(Packet):
     temperature: Annotated[float, Wire("h", scale=0.01, unit="°C", meaning="temperature of the water")]
     battery: Annotated[int, Wire("H", meaning="the converter's counts, 1023 for twice 5 V")]
     beacons: Annotated[int, Wire("B", meaning="levels of the detectors' pins; bit 0: right, bit 1: left")]
+    leak: Annotated[int, Wire("B", meaning="1 while the leak sensor is wet")]
+
+
+@_packet(0x1A, reliable=True)
+class BoardEvent(Packet):
+    """Board to host: an event, which the host puts into words (`robot_runtime/contract/board_events.py`)."""
+
+    time: Micros
+    kind: Annotated[int, Wire("B", meaning="see BoardEventKind")]
+    detail: Annotated[int, Wire("B", meaning="as the kind says")]
+    value: Annotated[int, Wire("H", meaning="as the kind says")]
+
+
+@_packet(0x1B)
+class Countdown(Packet):
+    """Host to board: the LED of an armed robot counts down. Expires after 300 ms."""
+
+    remaining: Annotated[float, Wire("B", scale=0.1, unit="s", meaning="time until the end of the countdown")]
 
 
 def encode(packet: Packet) -> bytes:
-    """Type byte and payload. Raises LayoutError where a value cannot be written."""
+    """Return type byte and payload. Raise LayoutError where a value cannot be written."""
     return bytes([packet.type]) + packet.to_bytes()
 
 
 def decode(type_: int, payload: bytes | memoryview) -> Packet:
-    """The packet of this type. Raises LayoutError on an unknown type or a wrong length."""
+    """Return the packet of this type. Raise LayoutError on an unknown type or a wrong length."""
     cls = PACKETS.get(type_)
     if cls is None:
         raise LayoutError(f"unknown packet type 0x{type_:02x}")
@@ -429,20 +503,21 @@ def decode(type_: int, payload: bytes | memoryview) -> Packet:
 
 
 def describe_packet(cls: type[Packet]) -> str:
-    """A packet's type number and layout as a line of text."""
+    """Return a packet's type number and layout as a line of text."""
     fields = [f"{name}:{wire.count}{wire.code}*{wire.scale!r}{wire.unit}" for name, wire in cls.wires.items()]
     fields += [f"{cls.tail[0]}:text{cls.tail[1].max_bytes}"] if cls.tail else []
     return f"{cls.type:02x} {cls.__name__} reliable={cls.reliable:d} " + " ".join(fields)
 
 
 def canonical() -> str:
-    """The definitions that both ends must share, as text; they compare its hash."""
+    """Return the definitions that both ends must share, as text; the ends compare its hash."""
     lines = [f"fins {FIN_COUNT} frame {FRAME_BYTES_MAX} not_ready {NOT_READY}"]
     lines += [describe_packet(cls) for _, cls in sorted(PACKETS.items())]
     lines += [
-        f"{enum.__name__} " + " ".join(f"{one.name}={one.value}" for one in enum) for enum in ENUMERATIONS
+        f"{enum.__name__} " + " ".join(f"{member.name}={member.value}" for member in enum)
+        for enum in ENUMERATIONS
     ]
-    lines += [str(one) for one in CHIP_PARAMETERS]
+    lines += [str(parameter) for parameter in CHIP_PARAMETERS]
     return "\n".join(lines)
 
 

@@ -10,16 +10,14 @@ from dataclasses import dataclass
 from operator import mul
 from struct import Struct, error
 from typing import (
-    Annotated,
     Any,
     ClassVar,
     Self,
     TypeVar,
     dataclass_transform,
-    get_args,
-    get_origin,
-    get_type_hints,
 )
+
+from robot_runtime.contract.hints import read_fields
 
 C_TYPES = {
     "b": "int8_t",
@@ -50,7 +48,7 @@ class Wire:
 
     @property
     def size(self) -> int:
-        """Bytes of the whole field."""
+        """The size of the whole field in bytes."""
         return Struct("<" + self.code).size * self.count
 
     @property
@@ -59,7 +57,7 @@ class Wire:
         return self.scale == 1 and self.code not in "fd"
 
     def counter(self) -> Callable[[float], float]:
-        """The function that rounds a value to the nearest count of this type; a float it leaves as it is."""
+        """Return the function that rounds a value to this type's nearest count; floats stay as they are."""
         if self.code in "fd":
             return _unchanged
         scale, bits = self.scale, _BITS[self.code]
@@ -96,7 +94,10 @@ class Record:
     _scales: ClassVar[tuple[float, ...]]
 
     def to_bytes(self) -> bytes:
-        """The record's bytes; numbers out of range are clamped. Raises LayoutError on NaN or infinity."""
+        """Return the record's bytes; number out of range are clamped.
+
+        Raise LayoutError on NaN or infinity.
+        """
         counts: list[float] = []
         try:
             for name, count, is_array in self._writers:
@@ -112,19 +113,19 @@ class Record:
 
     @classmethod
     def from_bytes(cls, data: bytes | memoryview) -> Self:
-        """The record that `data` holds, exactly. Raises LayoutError where the length or the text is wrong."""
+        """Return the record in `data`, exactly. Raise LayoutError where the length or the text is wrong."""
         size = cls.layout.size
         if len(data) != size if cls.tail is None else len(data) <= size or len(data) != size + 1 + data[size]:
             raise LayoutError(f"{cls.__name__} of {len(data)} bytes; expected {cls.describe_size()}")
         numbers = tuple(map(mul, cls.layout.unpack_from(data), cls._scales))
-        values: dict[str, Any] = {name: numbers[place] for name, place in cls._places}
+        values: dict[str, Any] = {name: numbers[position] for name, position in cls._places}
         if cls.tail:
             values[cls.tail[0]] = bytes(data[size + 1 :]).decode("utf-8", "replace")
         return cls(**values)
 
     @classmethod
     def describe_size(cls) -> str:
-        """The lengths that `from_bytes` accepts, in words."""
+        """Return the lengths that `from_bytes` accepts, as text."""
         size = cls.layout.size
         return f"{size}" if cls.tail is None else f"{size + 1} to {size + 1 + cls.tail[1].max_bytes}"
 
@@ -147,16 +148,12 @@ def record() -> Callable[[type[R]], type[R]]:
 def _lay_out(cls: type[Record]) -> None:
     wires: dict[str, Wire] = {}
     text: tuple[str, Text] | None = None
-    for name, hint in get_type_hints(cls, include_extras=True).items():
-        if get_origin(hint) is not Annotated:
-            continue
+    for name, hint in read_fields(cls).items():
         if text is not None:
             raise TypeError(f"{cls.__name__}.{name} follows a text, which must be the last field")
-        for extra in get_args(hint)[1:]:
-            if isinstance(extra, Wire):
-                wires[name] = extra
-            elif isinstance(extra, Text):
-                text = (name, extra)
+        for wire in hint.annotations(Wire):
+            wires[name] = wire
+        text = next(((name, annotation) for annotation in hint.annotations(Text)), None)
     cls.wires = wires
     cls.tail = text
     cls.layout = Struct(

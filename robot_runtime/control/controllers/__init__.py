@@ -20,8 +20,8 @@ CONTROLLERS: dict[str, tuple[type[Controller], ...]] = {
 
 
 def check_controller(loop: str, name: str, gains: Mapping[str, Mapping[str, float]]) -> None:
-    """Raises ValueError where the loop has no such controller, or gains are unknown or out of range."""
-    controllers = {one.name: one for one in CONTROLLERS[loop]}
+    """Raise ValueError where the loop has no such controller, or gains are unknown or out of range."""
+    controllers = {controller.name: controller for controller in CONTROLLERS[loop]}
     for required in (name, *gains):
         if required not in controllers:
             raise ValueError(f"there is no controller {required!r}; there are {', '.join(controllers)}")
@@ -30,7 +30,7 @@ def check_controller(loop: str, name: str, gains: Mapping[str, Mapping[str, floa
 
 
 def check_control(config: ControlConfig) -> None:
-    """Raises ConfigError where the depth loop has no such controller, or not such gains."""
+    """Raise ConfigError where the depth loop has no such controller, or not such gains."""
     try:
         check_controller("depth", config.controller, config.gains)
     except ValueError as problem:

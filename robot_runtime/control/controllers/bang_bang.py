@@ -17,7 +17,7 @@ class BangBang(Controller):
     limits: ClassVar[Mapping[str, GainLimits]] = {"output": _OUTPUT}
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:  # noqa: ARG002
-        """Returns the full command with the sign of the error."""
+        """Return the full command with the sign of the error."""
         error = set_point - measured
         return math.copysign(self.gains["output"], error) if error else 0.0
 
@@ -33,7 +33,7 @@ class BangBangDeadZone(Controller):
     }
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:  # noqa: ARG002
-        """Returns the full command with the sign of the error outside the dead zone, 0 inside."""
+        """Return the full command with the sign of the error outside the dead zone, 0 inside."""
         error = set_point - measured
         return math.copysign(self.gains["output"], error) if abs(error) > self.gains["dead_zone"] else 0.0
 

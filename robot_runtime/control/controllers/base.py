@@ -43,7 +43,7 @@ class Controller(ABC):
 
     @classmethod
     def check(cls, gains: Mapping[str, float]) -> None:
-        """Raises ValueError on unknown names and values out of range."""
+        """Raise ValueError on unknown names and values out of range."""
         for name, value in gains.items():
             limits = cls.limits.get(name)
             if limits is None:
@@ -54,16 +54,16 @@ class Controller(ABC):
                 raise ValueError(f"{name} is {value!r}; it must be a number between {span}")
 
     def tune(self, gains: Mapping[str, float]) -> None:
-        """Sets some gains, all or none. Raises ValueError on unknown names and values out of range."""
+        """Set some gains, all or none. Raise ValueError on unknown names and values out of range."""
         self.check(gains)
         self.gains |= {name: float(value) for name, value in gains.items()}
 
     def start(self) -> None:  # noqa: B027 - most controllers have no state
-        """Resets the state; called whenever the controller takes over."""
+        """Reset the state; called whenever the controller takes over."""
 
     @abstractmethod
     def step(self, set_point: float, measured: float, seconds: float) -> float:
-        """Returns the command, -1 to 1; `seconds` is the time since the last step, 0 at the first."""
+        """Return the command, -1 to 1; `seconds` is the time since the last step, 0 at the first."""
 
 
 class Rate:
@@ -75,7 +75,7 @@ class Rate:
         self._last: float | None = None
 
     def update(self, measured: float, seconds: float) -> None:
-        """Takes the value measured `seconds` after the previous one."""
+        """Take the value measured `seconds` after the previous one."""
         if self._last is not None and seconds > 0:
             rate = (measured - self._last) / seconds
             self.value += (rate - self.value) * seconds / (self._time_constant + seconds)
@@ -83,7 +83,7 @@ class Rate:
 
 
 def braking_speed(distance: float, deceleration: float, slope: float) -> float:
-    """Returns the speed from which this deceleration stops within the distance: √(2·a·distance).
+    """Return the speed from which this deceleration stops within the distance: √(2·a·distance).
 
     Near 0 it is `slope`·distance: a boundary layer, J.-J. Slotine and W. Li, Applied Nonlinear Control,
     1991, 7.2.

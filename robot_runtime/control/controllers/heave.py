@@ -38,7 +38,7 @@ class Motion(NamedTuple):
     amplitude: float = 0.0
 
     def pointing(self, side: float) -> bool:
-        """True if the fins point to this side, 1 down and -1 up."""
+        """Return True if the fins point to this side, 1 down and -1 up."""
         return self.direction * side > DOWN - 1e-6
 
 
@@ -68,7 +68,7 @@ class Heave:
     """Derivatives of the speed after the last `advance` by strength, blades, hull and the speed before."""
 
     def advance(self, motion: Motion, command: float, seconds: float, step: float) -> Motion:
-        """Returns the motion after `seconds` under this command, computed in steps of about `step` s."""
+        """Return the motion after `seconds` under this command, computed in steps of about `step` s."""
         depth, speed, direction, amplitude = motion
         count = max(round(seconds / step), 1)
         step = seconds / count
@@ -103,11 +103,11 @@ class Heave:
         return Motion(depth, speed, direction, amplitude)
 
     def resistance(self, speed: float) -> float:
-        """Returns the hull's deceleration by drag at this speed, m/s², with resting fins."""
+        """Return the hull's deceleration by drag at this speed, m/s², with resting fins."""
         return self.hull * (self.linear + self.drag * abs(speed)) * speed
 
     def coast(self, speed: float, drift: float) -> float:
-        """Returns the distance, m, of coasting for 3 s from this speed (m/s, above 0), fins at rest."""
+        """Return the distance, m, of coasting for 3 s from this speed (m/s, above 0), fins at rest."""
         way = 0.0
         for _ in range(30):
             speed += (drift - self.resistance(speed)) * 0.1
@@ -117,7 +117,7 @@ class Heave:
         return way
 
     def command(self, push: float) -> float:
-        """Returns the command, 0 to 1, for this push of the fins (m/s²); 0 for a negative one."""
+        """Return the command, 0 to 1, for this push of the fins (m/s²); 0 for a negative one."""
         share = min(max(push, 0.0) / (self.thrust * self.strength), 1.0)
         return acos(1 - share * _FULL) / _AMPLITUDE
 

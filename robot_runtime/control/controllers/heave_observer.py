@@ -36,22 +36,22 @@ _NOISE, _WANDER = 0.012, 0.0005
 """m/s²: noise of the mean acceleration of a step; change of the offset in a step."""
 
 
-def dot(one: Sequence[float], other: Sequence[float]) -> float:
-    """The scalar product of two vectors of the same length."""
-    return sum(map(mul, one, other), start=0.0)
+def dot(vector: Sequence[float], other: Sequence[float]) -> float:
+    """Return the scalar product of two vectors of the same length."""
+    return sum(map(mul, vector, other), start=0.0)
 
 
 def update(covariance: Matrix, row: Sequence[float], variance: float) -> tuple[list[float], Matrix]:
-    """Returns the gains for a scalar measurement of `row` times the state, and the covariance after it.
+    """Return the gains for a scalar measurement of `row` times the state, and the covariance after it.
 
     The caller adds to each state its gain times the innovation (A. Gelb, Applied Optimal Estimation, 1974,
     table 4.2-1).
     """
     towards = [dot(line, row) for line in covariance]
     total = dot(towards, row) + variance
-    gains = [one / total for one in towards]
+    gains = [value / total for value in towards]
     after = [
-        [old - gain * one for old, one in zip(line, towards, strict=True)]
+        [old - gain * value for old, value in zip(line, towards, strict=True)]
         for line, gain in zip(covariance, gains, strict=True)
     ]
     return gains, after
@@ -86,7 +86,7 @@ class HeaveObserver:
     def observe(
         self, motion: Motion, command: float, measured: float, noise: float, seconds: float
     ) -> Motion:
-        """Returns the motion now from that `seconds` ago, and from command and mean measured depth since.
+        """Return the motion now from the motion `seconds` ago, the command and the mean measured depth since.
 
         `noise` is the standard deviation of that mean, m.
         """
@@ -118,24 +118,24 @@ class HeaveObserver:
             retained *= share
         while self._pending and self._pending[0][0] <= seconds:
             self._acting = self._pending.popleft()[1]
-        self._pending = deque((until - seconds, one) for until, one in self._pending)
+        self._pending = deque((until - seconds, command) for until, command in self._pending)
         to_speed = [0.0, retained, pushed, paddled, resisted, seconds]
         to_depth = [1.0, seconds * (1 + retained) / 2, *(seconds / 2 * slope for slope in to_speed[2:])]
         speed_noise = _CALM + _PUSHED * abs(pushed) / seconds + _PADDLED * abs(paddled)
         rows = [self._propagate(to_depth), self._propagate(to_speed), *self._covariance[2:]]
         self._covariance = [[dot(to_depth, row), dot(to_speed, row), *row[2:]] for row in rows]
-        for place, deviation in enumerate((0.0, speed_noise, *_CHANGE)):
-            self._covariance[place][place] += deviation**2
+        for index, deviation in enumerate((0.0, speed_noise, *_CHANGE)):
+            self._covariance[index][index] += deviation**2
         return motion
 
     def lead(self, motion: Motion, step: float) -> Motion:
-        """Returns the motion at which a command of now will act; `motion` is that of now, `step` in s."""
+        """Return the motion at which a command of now will act; `motion` is that of now, `step` is in s."""
         for acting, duration in self._acting_for(self.lag):
             motion = self.heave.advance(motion, acting, duration, step)
         return motion
 
     def _acting_for(self, seconds: float) -> Iterator[tuple[float, float]]:
-        """The commands that act during the next `seconds`, and for how long."""
+        """Yield each command that acts during the next `seconds`, and its duration (s)."""
         acting, since = self._acting, 0.0
         for until, command in self._pending:
             if until >= seconds:
@@ -170,7 +170,7 @@ class InertialHeave:
     def observe(
         self, acceleration: float, measured: float, noise: float, seconds: float
     ) -> tuple[float, float]:
-        """Returns depth and speed now from the mean acceleration (m/s²) and depth (m) since the last call.
+        """Return depth and speed now from the mean acceleration (m/s²) and depth (m) since the last call.
 
         `noise` is the standard deviation of that depth, m.
         """
@@ -192,5 +192,5 @@ class InertialHeave:
         change = [1.0, seconds, -(seconds**2) / 2], [0.0, 1.0, -seconds], [0.0, 0.0, 1.0]
         half = [[dot(row, column) for column in zip(*self._covariance, strict=True)] for row in change]
         self._covariance = [[dot(line, row) for row in change] for line in half]
-        for place, deviation in enumerate((0.0, _NOISE * seconds, _WANDER)):
-            self._covariance[place][place] += deviation**2
+        for index, deviation in enumerate((0.0, _NOISE * seconds, _WANDER)):
+            self._covariance[index][index] += deviation**2

@@ -27,12 +27,12 @@ class Pid(Controller):
         self.start()
 
     def start(self) -> None:
-        """Resets integral and speed."""
+        """Reset integral and speed."""
         self._integral = 0.0
         self._speed = Rate(self._filter)
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
-        """Returns kp e + ki ∫e dt - kd dy/dt, limited to ±1."""
+        """Return kp e + ki ∫e dt - kd dy/dt, limited to ±1."""
         error = set_point - measured
         self._speed.update(measured, seconds)
         command = self.gains["kp"] * error + self._integral - self.gains["kd"] * self._speed.value

@@ -46,7 +46,7 @@ _BRAKING = 0.3
 
 
 class Predictive(Controller):
-    """Predicts the heave with a model of hull and fins, and turns the fins round only where that pays.
+    """Control of the depth by a model of hull and fins that turns the fins round only where that pays.
 
     `HeaveObserver` learns the model, `InertialHeave` estimates the motion. Turning the fins round takes
     0.64 s and disturbs the hull. So at rest they stay on the side that holds against the drift (*home*), and
@@ -68,9 +68,9 @@ class Predictive(Controller):
     averages = True
     needs_heave_acceleration = True
     limits: ClassVar[Mapping[str, GainLimits]] = {
-        "noise": GainLimits(0.0022, 0.0005, 0.05, "m", "standard deviation of the depth that a step gets"),
         "response": GainLimits(2.4, 0.5, 10.0, "1/s", "how fast the speed approaches its goal"),
         "approach": GainLimits(2.3, 0.2, 10.0, "1/s", "goal speed for each metre against the drift"),
+        "noise": GainLimits(0.0022, 0.0005, 0.05, "m", "standard deviation of the depth that a step gets"),
         "overshoot": GainLimits(4.0, 1.0, 20.0, "", "weight of a metre past the set point"),
         "thrust": GainLimits(0.268, 0.05, 2.0, "m/s²", "acceleration by all fins at full command"),
         "drag": GainLimits(5.65, 0.5, 50.0, "1/m", "deceleration by drag for each (m/s)²"),
@@ -90,7 +90,7 @@ class Predictive(Controller):
         self.start()
 
     def start(self) -> None:
-        """Resets the motion and the learnt model."""
+        """Reset the motion and the learnt model."""
         self._heave = Heave(self.gains["thrust"], self.gains["drag"], drift=self.gains["drift"])
         self._observer = HeaveObserver(self._heave)
         self._motion: Motion | None = None
@@ -105,7 +105,7 @@ class Predictive(Controller):
         self._aim_past = 0.0
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
-        """Estimates the motion and decides; `measured` is the mean since the last step."""
+        """Estimate the motion and decides; `measured` is the mean since the last step."""
         self._take_gains()
         if self._motion is None or seconds > _LOST:
             self._motion, self._side, self._inertial = Motion(measured, 0.0), 0.0, None
@@ -124,7 +124,7 @@ class Predictive(Controller):
         observer.lag, observer.age = gains["lag"], gains["depth_age"]
 
     def _refine(self, measured: float, seconds: float) -> Motion:
-        """Returns the motion, corrected by the measured acceleration if there is one."""
+        """Return the motion, corrected by the measured acceleration if there is one."""
         assert self._motion is not None
         gains = self.gains
         if self.heave_acceleration is None or seconds <= 0:
@@ -172,13 +172,13 @@ class Predictive(Controller):
         return self._swim(goal, motion, self._side)
 
     def _overshoots(self, error: float, motion: Motion, at_home: bool) -> bool:
-        """True if a fast hull would overshoot unless the fins turn; `error`, m, is positive towards home."""
+        """Return True if a fast hull overshoots unless the fins turn; `error` (m) counts towards home."""
         if not at_home:
             return -error > _NEAR
         return self._heave.coast(motion.speed * self._home, self._heave.drift * self._home) > error + _OVER
 
     def _brake(self, error: float, motion: Motion) -> float:
-        """Returns the command to turn on or to pause for a step, whichever stops the hull nearer."""
+        """Return the command to turn on or to pause for a step: the one that stops the hull nearer."""
         error *= -self._side
         paused = self._heave.advance(motion, 0.0, _TICK, _FINE)
         later = abs(paused.depth - motion.depth) + self._stopping_distance(paused, self._side)
@@ -188,11 +188,11 @@ class Predictive(Controller):
         return 0.0 if pause else self._side * TINY
 
     def _penalty(self, error: float) -> float:
-        """Returns the penalty of this distance to the set point, m; below 0 it is past it."""
+        """Return the penalty of this distance to the set point, m; below 0 the hull is past it."""
         return error if error >= 0 else -error * self.gains["overshoot"]
 
     def _stopping_distance(self, motion: Motion, side: float) -> float:
-        """Returns the m until fins that turn to this side, and then push fully, have stopped the hull."""
+        """Return the stopping distance, m, of a hull whose fins turn to this side and then push fully."""
         start = motion.depth
         for _ in range(_HORIZON):
             if motion.speed * side >= 0:
@@ -202,7 +202,7 @@ class Predictive(Controller):
         return _LONGER * abs(motion.depth - start)
 
     def _leaving_home_pays(self, goal: float, motion: Motion, at_home: bool) -> bool:
-        """True if the best plan keeps the fins away from home now."""
+        """Return True if the best plan keeps the fins away from home now."""
         stay, before = self._cost(goal, motion, 0), inf
         for ticks in _AWAY_FROM_HOME if at_home else _AWAY_MORE:
             cost = self._cost(goal, motion, ticks)
@@ -214,7 +214,7 @@ class Predictive(Controller):
         return False
 
     def _cost(self, goal: float, motion: Motion, away: int) -> float:
-        """Returns the cost of a plan, the sum of its penalties: `away` ticks away from home, then at home."""
+        """Return the cost of a plan, the sum of its penalties: `away` ticks away from home, then at home."""
         total = 0.0
         for tick in range(_HORIZON):
             side = -self._home if tick < away else self._home
@@ -226,7 +226,7 @@ class Predictive(Controller):
         return total
 
     def _swim(self, goal: float, motion: Motion, side: float) -> float:
-        """Returns the command on this side: turn there, then full thrust, or at home that of `_push`."""
+        """Return the command on this side: turn there, then full thrust, or at home that of `_push`."""
         if not motion.pointing(side):
             return side * TINY
         if side != self._home:
@@ -235,7 +235,7 @@ class Predictive(Controller):
         return side * max(command, TINY) if command else 0.0
 
     def _push(self, goal: float, motion: Motion) -> float:
-        """Returns the push towards home (m/s²) that gives the goal speed."""
+        """Return the push towards home (m/s²) that gives the goal speed."""
         heave, home = self._heave, self._home
         error, speed, drift = (goal - motion.depth) * home, motion.speed * home, heave.drift * home
         if error >= 0:

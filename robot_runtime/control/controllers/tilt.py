@@ -43,12 +43,12 @@ class Tilt(Controller):
         self.start()
 
     def start(self) -> None:
-        """Resets tilt and turn rate."""
+        """Reset tilt and turn rate."""
         self._tilt = 0.0
         self._rate = Rate(_FILTER)
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
-        """Returns the yaw command that gives the fins their goal tilt."""
+        """Return the yaw command that gives the fins their goal tilt."""
         self._rate.update(measured, seconds)
         if abs(self.heave_command) < _POINTING:
             if self.heave_command:

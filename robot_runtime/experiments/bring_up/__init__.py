@@ -1,1 +1,1 @@
-"""The bring-up: a robot's parts checked one after the other, and its calibration measured on the way."""
+"""The bring-up: a robot's parts checked one after the other, and its calibration measured meanwhile."""

@@ -27,25 +27,25 @@ class Bench(Protocol):
     """A board with the bring-up's sketch. Its methods raise BenchError where the board is silent."""
 
     def newest(self) -> Raw | None:
-        """The newest reading, if it is fresh."""
+        """Return the newest reading, if it is fresh."""
 
     def readings(self, seconds: float) -> list[Raw]:
-        """The readings of the next seconds, some at least."""
+        """Return the readings of the next seconds, at least a few."""
 
     def mark(self) -> None:
-        """Forgets the readings until now."""
+        """Forget all readings until now."""
 
     def since_mark(self) -> list[Raw]:
-        """The readings since the mark."""
+        """Return the readings since the mark."""
 
     def scan(self) -> set[int]:
-        """The I2C addresses that answer."""
+        """Return the I2C addresses that answer."""
 
     def jog(self, fin: int, drive: int) -> None:
-        """Drives a motor for 250 ms; 0 stops it."""
+        """Drive a motor for 250 ms; 0 stops it."""
 
     def store(self, calibration: Calibration) -> Calibration:
-        """Stores a calibration; returns the one that the board keeps then."""
+        """Store a calibration; return the board's calibration after that."""
 
 
 class SerialBench:
@@ -143,5 +143,5 @@ class SerialBench:
 
 
 def addresses(scan: Scan) -> set[int]:
-    """The addresses of a scan's answer."""
+    """Return the addresses of a scan's answer."""
     return {address for address in range(128) if scan.answered[address // 8] >> address % 8 & 1}

@@ -1,4 +1,4 @@
-"""The checks of the bring-up: readings in, results in words out."""
+"""The checks of the bring-up: readings in, results as text out."""
 
 from collections.abc import Collection, Sequence
 from math import degrees
@@ -22,7 +22,7 @@ from robot_runtime.experiments.bring_up.results import Result
 DEVICES = {
     IMU_ADDRESS: "IMU",
     PRESSURE_ADDRESS: "pressure sensor",
-    **{fin.address: f"H-bridge of the {fin.place} fin" for fin in WIRED_FINS},
+    **{fin.address: f"H-bridge of the {fin.position} fin" for fin in WIRED_FINS},
 }
 _BRIDGE_RANGE = range(0x60, 0x69)
 """The addresses that the two straps of a DRV8830 can choose."""
@@ -53,11 +53,11 @@ DEPTH_TOLERANCE = 0.02
 PRESSURE_PER_METRE = 9_810
 
 
-def check_devices(found: Collection[int]) -> list[Result]:
-    """The devices that answer on I2C. An address that should be silent hints at a strap."""
-    strangers = sorted(set(found) - set(DEVICES))
+def check_devices(answering: Collection[int]) -> list[Result]:
+    """Check the devices that answer on I2C. An answer from an unused address hints at a wrong strap."""
+    strangers = sorted(set(answering) - set(DEVICES))
     return [
-        *(_check_device(address, name, found, strangers) for address, name in DEVICES.items()),
+        *(_check_device(address, name, answering, strangers) for address, name in DEVICES.items()),
         *(
             Result(
                 what=f"0x{address:02X}",
@@ -71,19 +71,19 @@ def check_devices(found: Collection[int]) -> list[Result]:
     ]
 
 
-def _check_device(address: int, name: str, found: Collection[int], strangers: Sequence[int]) -> Result:
-    there = address in found
+def _check_device(address: int, name: str, answering: Collection[int], strangers: Sequence[int]) -> Result:
+    there = address in answering
     return Result(
         what=f"{name} at 0x{address:02X}",
         expected="answers",
         measured="answers" if there else "silent",
         verdict="good" if there else "wrong",
-        advice="" if there else _missing(address, strangers, found),
+        advice="" if there else _missing(address, strangers, answering),
     )
 
 
-def _missing(address: int, strangers: Sequence[int], found: Collection[int]) -> str:
-    if not found:
+def _missing(address: int, strangers: Sequence[int], answering: Collection[int]) -> str:
+    if not answering:
         return (
             "Nothing answers: check SDA (A4), SCL (A5), their pull-ups, and that no device holds them down."
         )
@@ -95,9 +95,9 @@ def _missing(address: int, strangers: Sequence[int], found: Collection[int]) -> 
         if 0x77 in strangers:
             return "Another sensor answers at 0x77, such as an MS5611. The robot needs an MS5837-30BA."
         return "Check the pressure sensor's supply and its two wires."
-    bridges = [one for one in strangers if one in _BRIDGE_RANGE]
+    bridges = [address for address in strangers if address in _BRIDGE_RANGE]
     if bridges:
-        places = ", ".join(f"0x{one:02X}" for one in bridges)
+        places = ", ".join(f"0x{address:02X}" for address in bridges)
         return f"A bridge answers at {places} instead: compare its straps A0 and A1 with the wiring table."
     return "Check this bridge's supply and straps: two bridges with the same straps answer as one."
 
@@ -111,7 +111,7 @@ def _stranger(address: int) -> str:
 
 
 def check_identity(raw: Raw) -> Result:
-    """The kind of the IMU."""
+    """Check the kind of the IMU."""
     known = IDENTITIES.get(raw.identity)
     return Result(
         what="kind of IMU",
@@ -123,7 +123,7 @@ def check_identity(raw: Raw) -> Result:
 
 
 def check_fields(raw: Raw) -> list[Result]:
-    """The magnet that each encoder sees."""
+    """Check the magnet that each encoder sees."""
     advice = {
         "green": "",
         "yellow": "The magnet is a little too near or too far: usable, but the angle is less exact.",
@@ -144,9 +144,9 @@ def check_fields(raw: Raw) -> list[Result]:
 
 
 def check_turn(fin: int, before: Raw, after: Raw) -> tuple[Result, bool | None]:
-    """A fin's tip was turned a quarter down by hand; whether its counts fall by that, if it can be said."""
+    """Check a fin whose tip was turned a quarter down by hand; return also True if its counts fell."""
     turned = movements([before, after])
-    moved = [one for one in range(FIN_COUNT) if abs(turned[one]) >= MOVED]
+    moved = [index for index in range(FIN_COUNT) if abs(turned[index]) >= MOVED]
     what, expected = f"{FINS[fin]} fin turned by hand", "its own encoder turns by a quarter"
     if moved == [fin] and abs(abs(turned[fin]) - QUARTER) <= _QUARTER_TOLERANCE:
         falls = turned[fin] < 0
@@ -165,19 +165,22 @@ def check_turn(fin: int, before: Raw, after: Raw) -> tuple[Result, bool | None]:
             "turned the other fin. Swap them and measure both again."
         )
     else:
-        measured = f"the encoders of {' and '.join(FINS[one] for one in moved)} turned"
+        measured = f"the encoders of {' and '.join(FINS[index] for index in moved)} turned"
         advice = "Turn one fin alone; else two encoders are selected at once."
     return Result(what=what, expected=expected, measured=measured, verdict="wrong", advice=advice), None
 
 
 def check_jog(fin: int, raws: Sequence[Raw], seen: int | None) -> tuple[Result, bool | None]:
-    """A motor was driven forwards and a person saw a fin turn; whether the counts fell, if it can be said."""
+    """Check a motor that was driven forwards; `seen` is the fin that a person saw turn.
+
+    Return also True if the counts fell, None where that is not clear.
+    """
     turned = movements(raws)
-    moved = [one for one in range(FIN_COUNT) if abs(turned[one]) >= MOVED]
+    moved = [index for index in range(FIN_COUNT) if abs(turned[index]) >= MOVED]
     what = f"motor of the {FINS[fin]} fin"
     expected = "this fin turns, and its encoder with it"
     eyes = "no fin turned" if seen is None else f"the {FINS[seen]} fin turned"
-    encoders = " and ".join(FINS[one] for one in moved)
+    encoders = " and ".join(FINS[index] for index in moved)
     measured = f"{eyes}; {f'encoder: {encoders}' if moved else 'no encoder'}"
     if moved == [fin] and seen == fin:
         return Result(what=what, expected=expected, measured=measured), turned[fin] < 0
@@ -195,10 +198,13 @@ def check_jog(fin: int, raws: Sequence[Raw], seen: int | None) -> tuple[Result, 
 
 def _explain_jog(fin: int, moved: Sequence[int], seen: int | None) -> str:
     if len(moved) > 1:
-        both = " and ".join(FINS[one] for one in moved)
+        both = " and ".join(FINS[index] for index in moved)
         return f"Two motors turn: the H-bridges of {both} have the same straps."
     if seen is None and not moved:
-        return "Is the motors' supply on, and the motor at its bridge? A bridge that has tripped rests."
+        return (
+            "Is the motors' supply on, and the motor at its bridge? A bridge that has tripped rests. "
+            "If the fin is too stiff for half the drive, loosen its shaft's seal: by hand it turns easily."
+        )
     if not moved:
         return "The fin turns but no encoder sees it: check this encoder's magnet and select line."
     (encoder,) = moved
@@ -217,13 +223,13 @@ def _explain_jog(fin: int, moved: Sequence[int], seen: int | None) -> str:
 
 
 def find_axis(force: Three, sign: int, least: float) -> Axis | None:
-    """The chip's axis along which gravity is felt most, with this sign; None where it lies askew."""
-    axis = max(range(3), key=lambda one: abs(force[one]))
+    """Return the chip's axis along gravity, with this sign; None where the chip lies askew."""
+    axis = max(range(3), key=lambda index: abs(force[index]))
     return _name(axis, (force[axis] > 0) == (sign > 0)) if abs(force[axis]) >= least else None
 
 
 def check_pose(what: str, raws: Sequence[Raw], sign: int, level: bool) -> tuple[Result, Axis | None]:
-    """The hull was laid down in a pose, in which one axis of the body lies along gravity.
+    """Check the hull in a pose in which one axis of the body lies along gravity.
 
     `sign`: -1 where the body's axis points down, 1 where it points up (specific force points up at rest).
     """
@@ -245,7 +251,7 @@ def check_pose(what: str, raws: Sequence[Raw], sign: int, level: bool) -> tuple[
 
 
 def complete_axes(forward: Axis, down: Axis) -> tuple[Axis, Axis, Axis] | None:
-    """The chip's axes forward, right and down; None where forward and down are the same axis."""
+    """Return the chip's axes forward, right and down; None where forward and down are the same axis."""
     first, last = "xyz".index(forward[-1]), "xyz".index(down[-1])
     if first == last:
         return None
@@ -261,7 +267,7 @@ def _name(axis: int, positive: bool) -> Axis:
 
 
 def check_air(raws: Sequence[Raw], barometer: float | None) -> Result:
-    """The pressure in air, in Pa, beside that of a barometer at the same height, if there is one."""
+    """Compare the pressure in air, Pa, with that of a barometer at the same height, if there is one."""
     pressure = mean_pressure(raws)
     expected = f"{barometer / 100:.1f} hPa" if barometer else f"{AIR[0] / 100:.0f} to {AIR[1] / 100:.0f} hPa"
     good = (
@@ -282,7 +288,7 @@ def check_air(raws: Sequence[Raw], barometer: float | None) -> Result:
 
 
 def check_bucket(air: float, raws: Sequence[Raw], depth: float) -> Result:
-    """The pressure at a known depth (m) of fresh water."""
+    """Check the pressure at a known depth (m) of fresh water."""
     measured = (mean_pressure(raws) - air) / PRESSURE_PER_METRE
     good = abs(measured - depth) <= max(DEPTH_TOLERANCE, depth / 20)
     return Result(
@@ -295,7 +301,7 @@ def check_bucket(air: float, raws: Sequence[Raw], depth: float) -> Result:
 
 
 def check_battery(raws: Sequence[Raw], multimeter: float) -> tuple[Result, float | None]:
-    """The battery's voltage beside a multimeter's; the true one over the measured one, if it can be."""
+    """Compare the battery's voltage with a multimeter's; return also the factor that corrects it."""
     volts = mean_volts(raws)
     factor = multimeter / volts if volts > 1 else 0.0
     good = 0.8 <= factor <= 1.25
@@ -316,7 +322,7 @@ def check_battery(raws: Sequence[Raw], multimeter: float) -> tuple[Result, float
 
 
 def check_lamp(side: int, dark: Raw, lit: Raw) -> tuple[Result, bool | None]:
-    """A lamp was held before one detector (0: right, 1: left); whether its pin is low in the light."""
+    """Check one detector (0: right, 1: left) with a lamp; return also True if its pin is low in the light."""
     names = ("right", "left")
     changed = dark.beacons ^ lit.beacons
     what, expected = f"{names[side]} detector", "its own pin changes in the light"
@@ -336,8 +342,29 @@ def check_lamp(side: int, dark: Raw, lit: Raw) -> tuple[Result, bool | None]:
     return Result(what=what, expected=expected, measured=measured, verdict="wrong", advice=advice), None
 
 
+def check_leak(raws: Sequence[Raw], *, wet: bool) -> Result:
+    """Check the leak sensor with its ends in water, or dry."""
+    shares = [bool(raw.leak) for raw in raws]
+    steady = all(shares) or not any(shares)
+    measured = ("wet" if shares[-1] else "dry") if steady else "wet and dry by turns"
+    advice = (
+        "Is one wire at D2 and the other at GND, and are their ends bare? Pure water does not conduct: take "
+        "tap water, or add a little salt."
+        if wet
+        else "Dry the ends well and keep them apart. If it stays wet, D2 touches GND somewhere."
+    )
+    good = steady and shares[-1] == wet
+    return Result(
+        what=f"leak sensor {'in water' if wet else 'dried'}",
+        expected="wet" if wet else "dry",
+        measured=measured,
+        verdict="good" if good else "wrong",
+        advice="" if good else advice,
+    )
+
+
 def check_rest(raws: Sequence[Raw]) -> tuple[Result, Three | None]:
-    """The turn rate of a hull at rest; its mean about the chip's axes (rad/s) where it can be trusted."""
+    """Check the turn rate of a hull at rest; return also its mean about the chip's axes (rad/s)."""
     rest = judge_rest([raw.rate for raw in raws])
     shown = ", ".join(f"{degrees(part):+.2f}" for part in rest.rate)
     what, expected, measured = "turn rate at rest", "below 20 °/s, and steady", f"{shown} °/s"

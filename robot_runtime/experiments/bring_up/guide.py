@@ -1,4 +1,4 @@
-"""The bring-up's steps, and what each asks of a person."""
+"""The bring-up's steps, and each step's questions to a person."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -25,7 +25,7 @@ class Question:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Action:
-    """Something that a person does on the page: a press, or a hold that moves a motor meanwhile."""
+    """An action of a person on the page: a press, or a hold that moves a motor meanwhile."""
 
     name: str
     label: str
@@ -35,7 +35,7 @@ class Action:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """One step: what to do and why, and what should come of it."""
+    """One step: the task, its reason, and the expected result."""
 
     name: str
     title: str
@@ -136,6 +136,17 @@ _BEACONS = Step(
         _KEEP,
     ),
 )
+_LEAK = Step(
+    name="leak",
+    title="Leak sensor",
+    about="Put the bare ends of its two wires into a glass of tap water, then dry them with a cloth. Skip "
+    "this step if there is no leak sensor: then water in the hull is not detected.",
+    expected="Wet in the water, dry again afterwards.",
+    actions=(
+        Action(name="wet", label="The ends are in water"),
+        Action(name="dry", label="They are dry again"),
+    ),
+)
 _STORE = Step(
     name="store",
     title="Keep it",
@@ -185,5 +196,6 @@ STEPS: tuple[Step, ...] = (
     *map(_fin, range(len(FINS))),
     *map(_motor, range(len(FINS))),
     _BEACONS,
+    _LEAK,
     _STORE,
 )

@@ -1,4 +1,4 @@
-"""The bring-up of one robot: performs a person's actions, and keeps what they showed."""
+"""The bring-up of one robot: performs a person's actions, and stores their results."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -21,8 +21,11 @@ StepState = Literal["open", "done", "wrong", "skipped"]
 V = TypeVar("V")
 Given = Mapping[str, float | str]
 
-JOG_DRIVE = 12
-"""H-bridge command: a fin turns by 200 ° a second, and a hand holds it."""
+JOG_DRIVE = 20
+"""H-bridge command: the one at which the robot's firmware expects the stiffest fin to turn. One without a
+seal turns by 300 ° a second, and a hand holds it."""
+LEAK_CHECKS = 2
+"""Wet, and dry: a sensor that is always dry, or not there, has not shown that it finds water."""
 _LOOK = 0.4
 """s over which a reading is averaged."""
 
@@ -68,6 +71,8 @@ class BringUp:
             ("beacons", "right"): partial(self._lamp, 0),
             ("beacons", "left"): partial(self._lamp, 1),
             ("beacons", "keep"): self._keep_beacons,
+            ("leak", "wet"): partial(self._check_leak, True),
+            ("leak", "dry"): partial(self._check_leak, False),
             ("store", "store"): self._store,
         }
         for fin in range(FIN_COUNT):
@@ -77,9 +82,9 @@ class BringUp:
             self._do[f"motor_{fin}", "seen"] = partial(self._see, fin)
 
     def perform(self, step: str, action: str, given: Given) -> None:
-        """Performs an action with what the person gave. `SKIP` leaves the step out until another.
+        """Perform an action with the person's answers. `SKIP` leaves the step out until its next action.
 
-        Raises RefusedError where that is not possible or out of range, and BenchError.
+        Raise RefusedError where that is not possible or out of range, and BenchError.
         """
         if action == SKIP and step in self._results:
             self._skipped.add(step)
@@ -89,7 +94,7 @@ class BringUp:
         self._do[step, action]({**given, **_read(guide, given)})
 
     def stop(self) -> None:
-        """Stops the motor that turns, until a motor's button is pressed anew. Raises BenchError.
+        """Stop the turning motor until a motor's button is pressed again. Raise BenchError.
 
         May be called while another thread performs an action.
         """
@@ -98,19 +103,19 @@ class BringUp:
             self._bench.jog(0, 0)
 
     def results(self, step: str) -> list[Result]:
-        """The findings of a step, the newest of each check."""
+        """Return the findings of a step, the newest of each check."""
         return list(self._results[step].values())
 
     def state(self, step: str) -> StepState:
-        """The state of a step: wrong where any of its newest findings is."""
-        if any(one.verdict == "wrong" for one in self._results[step].values()):
+        """Return the state of a step: wrong where any of its newest findings is."""
+        if any(result.verdict == "wrong" for result in self._results[step].values()):
             return "wrong"
         if self._is_done(step):
             return "done"
         return "skipped" if step in self._skipped else "open"
 
     def calibration(self) -> CalibrationValues:
-        """The measurements until now; a step that was not measured is not done."""
+        """Return the calibration measured until now; a step without a measurement is not done."""
         fins = len(self._encoders) == FIN_COUNT
         motors = fins and len(self._motors) == FIN_COUNT
         parts: dict[StepName, bool] = {
@@ -144,6 +149,7 @@ class BringUp:
             "gyro": self._bias is not None,
             "pressure": self._offset is not None,
             "beacons": self._beacons is not None,
+            "leak": len(self._results["leak"]) == LEAK_CHECKS,
             "store": self._stored is not None and self._stored == self.calibration(),
         }
         if name == "fin":
@@ -177,8 +183,8 @@ class BringUp:
         self._note("battery", _unmeasured("battery voltage", "factor 1"))
 
     def _pose(self, pose: str, sign: int, _: Given) -> None:
-        words = {"level": "level", "nose_up": "nose up", "right_down": "right side down"}[pose]
-        result, axis = checks.check_pose(words, self._readings(), sign, pose == "level")
+        description = {"level": "level", "nose_up": "nose up", "right_down": "right side down"}[pose]
+        result, axis = checks.check_pose(description, self._readings(), sign, pose == "level")
         self._note("axes", result)
         self._poses.pop(pose, None)
         if axis is not None:
@@ -316,6 +322,9 @@ class BringUp:
         self._results["beacons"] = {}
         self._note("beacons", _unmeasured("polarity", "high in the light"))
 
+    def _check_leak(self, wet: bool, _: Given) -> None:
+        self._note("leak", checks.check_leak(self._readings(), wet=wet))
+
     def _store(self, _: Given) -> None:
         measured = self.calibration()
         answer = self._bench.store(measured.packet())
@@ -339,8 +348,8 @@ class BringUp:
 
 
 def _of_fins(known: Mapping[int, V], default: V) -> tuple[V, V, V, V]:
-    one, two, three, four = (known.get(fin, default) for fin in range(FIN_COUNT))
-    return one, two, three, four
+    front_right, back_right, back_left, front_left = (known.get(fin, default) for fin in range(FIN_COUNT))
+    return front_right, back_right, back_left, front_left
 
 
 def _unmeasured(what: str, default: str) -> Result:
@@ -355,31 +364,35 @@ def _along(axis: Axis, rate: tuple[float, float, float]) -> float:
 
 
 def _find(step: str, action: str) -> Action:
-    for one in STEPS:
-        for known in one.actions:
-            if (one.name, known.name) == (step, action):
+    for candidate in STEPS:
+        for known in candidate.actions:
+            if (candidate.name, known.name) == (step, action):
                 return known
     raise RefusedError(f"The bring-up has no step {step!r} with the action {action!r}.")
 
 
 def _read(action: Action, given: Mapping[str, Any]) -> dict[str, float | str]:
     read: dict[str, float | str] = {}
-    for one in action.inputs:
-        value = given.get(one.name)
-        if value is None and one.optional:
+    for question in action.inputs:
+        value = given.get(question.name)
+        if value is None and question.optional:
             continue
-        read[one.name] = _read_choice(one, value) if one.choices else _read_number(one, value)
+        read[question.name] = (
+            _read_choice(question, value) if question.choices else _read_number(question, value)
+        )
     return read
 
 
-def _read_choice(one: Question, value: object) -> str:
-    if value not in one.choices:
-        raise RefusedError(f"{one.label} must be one of {', '.join(one.choices)}.")
+def _read_choice(question: Question, value: object) -> str:
+    if value not in question.choices:
+        raise RefusedError(f"{question.label} must be one of {', '.join(question.choices)}.")
     return str(value)
 
 
-def _read_number(one: Question, value: object) -> float:
+def _read_number(question: Question, value: object) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not one.minimum <= value <= one.maximum:  # type: ignore[operator]
-        raise RefusedError(f"{one.label} must be between {one.minimum:g} and {one.maximum:g} {one.unit}.")
+    if not number or not question.minimum <= value <= question.maximum:  # type: ignore[operator]
+        raise RefusedError(
+            f"{question.label} must be between {question.minimum:g} and {question.maximum:g} {question.unit}."
+        )
     return float(value)  # type: ignore[arg-type]

@@ -22,12 +22,12 @@ _OFFSET_DONE, _OVERFLOW, _LINEARITY, _BOTH_MAG = 1 << 5, 1 << 4, 1 << 3, 3 << 1
 
 
 def counts(word: int) -> int:
-    """The angle of an encoder, 0 to 1023."""
+    """Return the angle of an encoder, 0 to 1023."""
     return word >> 6
 
 
 def field(word: int) -> Field:
-    """The state of an encoder's magnet in the data sheet's colours; silent where no encoder answers."""
+    """Return the state of an encoder's magnet in the data sheet's colours, or silent without an answer."""
     # Without an encoder the pull-up of its line reads as ones.
     if word == _NOTHING or word.bit_count() % 2 or not word & _OFFSET_DONE:
         return "silent"
@@ -37,7 +37,7 @@ def field(word: int) -> Field:
 
 
 def movements(raws: Sequence[Raw]) -> list[int]:
-    """The counts by which each encoder turned from the first to the last reading, whole turns included."""
+    """Return the counts that each encoder turned between first and last reading, whole turns included."""
     moved = [0] * FIN_COUNT
     for before, after in pairwise(raws):
         for fin in range(FIN_COUNT):
@@ -46,22 +46,22 @@ def movements(raws: Sequence[Raw]) -> list[int]:
 
 
 def wrap(difference: int) -> int:
-    """A difference of counts, the shortest way round: -512 to 511."""
+    """Return a difference of counts, the shortest way round: -512 to 511."""
     return (difference + COUNTS_PER_TURN // 2) % COUNTS_PER_TURN - COUNTS_PER_TURN // 2
 
 
 def mean_force(raws: Sequence[Raw]) -> Three:
-    """The mean specific force along the chip's axes, in g."""
+    """Return the mean specific force along the chip's axes, in g."""
     x, y, z = (fmean(raw.force[axis] for raw in raws) / GRAVITY for axis in range(3))
     return x, y, z
 
 
 def mean_pressure(raws: Sequence[Raw]) -> float:
-    """The mean pressure, in Pa, of the readings that the sensor gave; 0 where it gave none."""
+    """Return the mean pressure, Pa, of the sensor's readings; 0 without a reading."""
     given = [raw.pressure for raw in raws if raw.pressure]
     return fmean(given) if given else 0.0
 
 
 def mean_volts(raws: Sequence[Raw]) -> float:
-    """The battery's mean voltage as the board would show it without a calibration, in V."""
+    """Return the battery's mean voltage as the board would show it without a calibration, in V."""
     return fmean(raw.battery for raw in raws) * BATTERY_VOLTS

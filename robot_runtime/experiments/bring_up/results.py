@@ -1,4 +1,4 @@
-"""The bring-up's findings, in words."""
+"""The bring-up's findings, as text."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -1,4 +1,4 @@
-"""The lab as a process: runs the tests of a document from its standard input, and tells how it goes.
+"""The lab as a process: runs the tests of a document from its standard input, and reports progress.
 
 On the robot's own board the last sketch stays; `--restore` uploads the robot's firmware again, and
 `--read-out` reads what is on the board.

@@ -33,9 +33,9 @@ class BootLoader:
 
 
 def identify(port: str, pull: Pull) -> BootLoader | None:
-    """The boot loader of the board at this port; None if none answers.
+    """Return the boot loader of the board at this port; None if none answers.
 
-    Raises PortError, and the errors of `pull`.
+    Raise PortError, and the errors of `pull`.
     """
     for baud in (BOOT_BAUD, OLD_BAUD):
         pull()
@@ -53,11 +53,11 @@ def identify(port: str, pull: Pull) -> BootLoader | None:
 
 
 def refuse_endless_resets(port: str, pull: Pull) -> None:
-    """Raises UploadError where the boot loader does not survive the watchdog of the robot's firmware."""
-    found = identify(port, pull)
-    if found is not None and found.major < OPTIBOOT_MAJOR:
+    """Raise UploadError where the boot loader does not survive the watchdog of the robot's firmware."""
+    loader = identify(port, pull)
+    if loader is not None and loader.major < OPTIBOOT_MAJOR:
         raise UploadError(
-            f"the board has the boot loader ATmegaBOOT {found.major}.{found.minor} ({found.baud} bit/s), "
+            f"the board has the boot loader ATmegaBOOT {loader.major}.{loader.minor} ({loader.baud} bit/s), "
             "which leaves the watchdog on: after the first hang of the robot's firmware it would reset for "
             "ever, until the power is cut. Nothing was written. Burn optiboot with a programmer: in the "
             "Arduino IDE choose the board “Arduino Uno”, then Tools, Burn Bootloader"
@@ -66,17 +66,17 @@ def refuse_endless_resets(port: str, pull: Pull) -> None:
 
 def _greet(line: serial.Serial) -> bool:
     end = time.monotonic() + PATIENCE
-    said = b""
+    received = b""
     while time.monotonic() < end:
         line.write(_GREETING)
-        said += line.read(len(_GREETED))
-        if _GREETED in said:
+        received += line.read(len(_GREETED))
+        if _GREETED in received:
             return _falls_silent(line)
     return False
 
 
 def _falls_silent(line: serial.Serial) -> bool:
-    """True after the answers to earlier greetings; a program that sends by itself is no boot loader."""
+    """Return True if the line falls silent in time; a program that sends by itself is no boot loader."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         if not line.read(1):
@@ -86,10 +86,10 @@ def _falls_silent(line: serial.Serial) -> bool:
 
 def _ask(line: serial.Serial, question: bytes) -> int | None:
     end = time.monotonic() + PATIENCE
-    said = b""
+    received = b""
     line.write(question)
     while time.monotonic() < end:
-        said += line.read(1)
-        if answer := _VALUE.search(said):
+        received += line.read(1)
+        if answer := _VALUE.search(received):
             return answer[1][0]
     return None

@@ -37,6 +37,8 @@ COMMON = (
 CXX = (*COMMON, "-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
 CORE = (*CXX, "-fpermissive", "-DDECIMAL_DIG=__DECIMAL_DIG__", "-w")
 OWN = ("-Wall", "-Wextra", "-Werror")
+QUEUE = "-DMUCAT_QUEUE_FRAMES=4"
+"""The link's queue: a test fills the line, which the robot's few events do not."""
 LINK = (*MCU, "-Os", "-g", "-flto", "-fuse-linker-plugin", "-Wl,--gc-sections")
 DIRECTIONS = {"to_board": "COMM_TEST_TO_BOARD", "to_host": "COMM_TEST_TO_HOST", "both": "COMM_TEST_BOTH"}
 
@@ -47,7 +49,7 @@ class SketchBuildError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Product:
-    """A compiled sketch; `inputs` is the hash of all that went into it."""
+    """A compiled sketch; `inputs` is the hash of everything it was made from."""
 
     elf: Path
     hex: Path
@@ -55,7 +57,7 @@ class Product:
 
 
 def hash_file(path: Path) -> str:
-    """The hash of a file's content, as short as those of products. Raises OSError."""
+    """Return the hash of a file's content, as short as those of products. Raise OSError."""
     return hashlib.sha256(path.read_bytes()).hexdigest()[:HASH_CHARACTERS]
 
 
@@ -76,19 +78,19 @@ class Builder:
         self._core_hash = self._hash(self._core_files(), CORE)
         library_files = [*_library_sources(), *sorted(LIBRARY.rglob("*.h"))]
         self._library_hash = self._hash(library_files, [*CXX, *OWN])
-        words = [self._core_hash, self._library_hash, *CXX, *OWN, *LINK]
-        self.firmware_hash = self._hash(self._sketch_files(), words)
+        texts = [self._core_hash, self._library_hash, *CXX, *OWN, *LINK]
+        self.firmware_hash = self._hash(self._sketch_files(), texts)
         """Hash of all inputs but the parameters."""
 
     def build(self, test: CommTest, baud: int, arduino_delay: float) -> Product:
-        """The sketch with these parameters, compiled now or before. Raises SketchBuildError."""
+        """Return the sketch with these parameters, compiled now or before. Raise SketchBuildError."""
         parameters = _macros(test, baud, arduino_delay)
         inputs = self._hash([], [self.firmware_hash, *parameters])
-        place = self._folder / inputs
-        if not place.exists():
+        path = self._folder / inputs
+        if not path.exists():
             library = baud if FRAMINGS[test.framing].library else None
-            self._make(place, lambda unfinished: self._compile_sketch(unfinished, parameters, library))
-        return Product(place / "comm_test.elf", place / "comm_test.hex", inputs)
+            self._make(path, lambda unfinished: self._compile_sketch(unfinished, parameters, library))
+        return Product(path / "comm_test.elf", path / "comm_test.hex", inputs)
 
     def _compile_sketch(self, folder: Path, parameters: Sequence[str], library: int | None) -> None:
         objects, elf = folder / "comm_test.o", folder / "comm_test.elf"
@@ -100,20 +102,20 @@ class Builder:
         objects.unlink()
 
     def _library(self, baud: int) -> Path:
-        place = self._folder / f"library-{self._hash([], [self._library_hash, str(baud)])}"
-        if not place.exists():
-            self._make(place, lambda unfinished: self._compile_library(unfinished, baud))
-        return place / "library.a"
+        path = self._folder / f"library-{self._hash([], [self._library_hash, str(baud)])}"
+        if not path.exists():
+            self._make(path, lambda unfinished: self._compile_library(unfinished, baud))
+        return path / "library.a"
 
     def _compile_library(self, folder: Path, baud: int) -> None:
-        command = ["avr-g++", *CXX, *OWN, f"-I{LIBRARY}", f"-DMUCAT_BAUD={baud}"]
+        command = ["avr-g++", *CXX, *OWN, f"-I{LIBRARY}", f"-DMUCAT_BAUD={baud}", QUEUE]
         _archive(folder / "library.a", dict.fromkeys(_library_sources(), command))
 
     def _core(self) -> Path:
-        place = self._folder / f"core-{self._core_hash}"
-        if not place.exists():
-            self._make(place, self._compile_core)
-        return place / "core.a"
+        path = self._folder / f"core-{self._core_hash}"
+        if not path.exists():
+            self._make(path, self._compile_core)
+        return path / "core.a"
 
     def _compile_core(self, folder: Path) -> None:
         commands = {
@@ -123,16 +125,16 @@ class Builder:
         }
         _archive(folder / "core.a", {source: commands[source.suffix] for source in self._core_sources})
 
-    def _make(self, place: Path, compile_into: Callable[[Path], None]) -> None:
+    def _make(self, path: Path, compile_into: Callable[[Path], None]) -> None:
         # Under another name until it is whole, so that nobody finds half of it.
         self._folder.mkdir(parents=True, exist_ok=True)
         unfinished = Path(tempfile.mkdtemp(prefix="unfinished-", dir=self._folder))
         try:
             compile_into(unfinished)
-            unfinished.replace(place)
+            unfinished.replace(path)
         except OSError as problem:
-            if not place.exists():
-                raise SketchBuildError(f"{place} cannot be written: {problem.strerror}") from problem
+            if not path.exists():
+                raise SketchBuildError(f"{path} cannot be written: {problem.strerror}") from problem
         finally:
             shutil.rmtree(unfinished, ignore_errors=True)
 
@@ -143,9 +145,9 @@ class Builder:
     def _sketch_files(self) -> list[Path]:
         return sorted(path for path in self._sketch.parent.iterdir() if path.is_file())
 
-    def _hash(self, files: Iterable[Path], words: Iterable[str]) -> str:
+    def _hash(self, files: Iterable[Path], texts: Iterable[str]) -> str:
         made = hashlib.sha256(self.compiler.encode())
-        for word in words:
+        for word in texts:
             made.update(b"\0" + word.encode())
         for path in files:
             content = path.read_bytes()
@@ -158,7 +160,7 @@ def _library_sources() -> list[Path]:
 
 
 def _archive(archive: Path, commands: Mapping[Path, Sequence[str]]) -> None:
-    """Compile each source by its command, and put what comes of it together."""
+    """Compile each source by its command, and put the object files into an archive."""
     objects = []
     for source, command in commands.items():
         made = archive.parent / f"{source.name}.o"
@@ -170,7 +172,7 @@ def _archive(archive: Path, commands: Mapping[Path, Sequence[str]]) -> None:
 def _macros(test: CommTest, baud: int, arduino_delay: float) -> list[str]:
     framing = FRAMINGS[test.framing]
     return [
-        *([f"-DMUCAT_BAUD={baud}"] if framing.library else []),
+        *([f"-DMUCAT_BAUD={baud}", QUEUE] if framing.library else []),
         f"-DCOMM_TEST_BAUD={baud}",
         f"-DCOMM_TEST_ARDUINO_DELAY={arduino_delay:.6f}",
         f"-DCOMM_TEST_FRAMING={framing.code}",

@@ -74,7 +74,7 @@ _STAND_IN: dict[str, Any] = {
 
 
 def read_document(text: str) -> list[CommTest]:
-    """The tests of a document. Raises ConfigError with all problems."""
+    """Return the tests of a document. Raise ConfigError with all problems."""
     if len(text) > DOCUMENT_BYTES_MAX:
         raise ConfigError(f"the document is larger than {DOCUMENT_BYTES_MAX} bytes")
     try:
@@ -96,11 +96,11 @@ def read_document(text: str) -> list[CommTest]:
             continue
         try:
             tests.append(test := parse(CommTest, entry, where))
-            found = [*_field_problems(test), *_number_problems(test)]
+            test_problems = [*_field_problems(test), *_number_problems(test)]
         except ConfigError as problem:
             problems += problem.problems
-            found = [*_field_problems(_with_stand_ins(entry))]
-        problems += [one.within(where) for one in found]
+            test_problems = [*_field_problems(_with_stand_ins(entry))]
+        problems += [problem.within(where) for problem in test_problems]
     cells = sum(len(test.baud_rate) * len(test.arduinodelay) * len(test.delay) for test in tests)
     if not problems and cells > CELLS_MAX:
         problems.append(f"the document has {cells} cells; at most {CELLS_MAX} can be run at once")
@@ -110,7 +110,7 @@ def read_document(text: str) -> list[CommTest]:
 
 
 def chip_baud(baud: int) -> float:
-    """Returns the speed, bit/s, of the chip's UART for a baud rate by the Arduino core; 0 for none."""
+    """Return the speed, bit/s, of the chip's UART for a baud rate by the Arduino core; 0 for none."""
     divisor = (CHIP_CLOCK // 4 // baud - 1) // 2
     step = 8
     if divisor > SLOWEST_DIVISOR or baud == 57600:
@@ -120,7 +120,7 @@ def chip_baud(baud: int) -> float:
 
 
 def _with_stand_ins(entry: dict[str, Any]) -> CommTest:
-    """The test with stand-ins for fields that are missing or wrong, so that the others can be checked."""
+    """Return the test with stand-ins for missing and wrong fields, so that the others can be checked."""
     sound = dict(_STAND_IN)
     for name, value in entry.items():
         with suppress(ConfigError):
@@ -130,7 +130,7 @@ def _with_stand_ins(entry: dict[str, Any]) -> CommTest:
 
 
 def _field_problems(test: CommTest) -> Iterator[EntryProblem]:
-    """Yields what the types and limits of single fields leave open."""
+    """Yield the problems that types and limits of single fields do not find."""
     if not test.name.strip() or len(test.name) > NAME_CHARACTERS_MAX:
         yield TOP.field("name").problem(f"must be a text of 1 to {NAME_CHARACTERS_MAX} characters")
     path = test.ino_path.lstrip("/")
@@ -148,8 +148,8 @@ def _field_problems(test: CommTest) -> Iterator[EntryProblem]:
 def _number_problems(test: CommTest) -> Iterator[EntryProblem]:
     count = test.to_val - test.from_val
     if test.to_val > (highest := FRAMINGS[test.framing].number_max + 1):
-        words = f"is {test.to_val}; with the framing {test.framing} it must be at most {highest}"
-        yield TOP.field("to_val").problem(words)
+        text = f"is {test.to_val}; with the framing {test.framing} it must be at most {highest}"
+        yield TOP.field("to_val").problem(text)
     elif not 1 <= count <= NUMBERS_MAX:
         yield TOP.field("to_val").problem(
             f"is {test.to_val}; it must be above from_val, {test.from_val}, by 1 to {NUMBERS_MAX}, "

@@ -19,7 +19,7 @@ READ_STEP_BYTES = 1024
 class EmulatedLine(CommTestLine):
     """The port at `tty` of a paused board, whose power is switched off and on once the port is open.
 
-    So what the board did before makes no difference, but for its memories. Raises BoardError and PortError.
+    So the board's past makes no difference, except for its memories. Raises BoardError and PortError.
     """
 
     start_time = 0.02
@@ -35,7 +35,7 @@ class EmulatedLine(CommTestLine):
         self._port.close()
 
     def errors(self) -> LineErrors:
-        """Returns the errors that both UARTs counted since the start, and the injected faults."""
+        """Return the errors that both UARTs counted since the start, and the injected faults."""
         stats = {name: int(value) for name, value in self._board.stats().items()}
         return LineErrors(
             framing_board=stats["framing_errors_board"],
@@ -57,7 +57,7 @@ class EmulatedLine(CommTestLine):
     def _pass(self, seconds: float) -> None:
         end = self.now + seconds
         step = READ_STEP_BYTES * self.byte_time
-        while (left := end - self.now) > TIME_MIN:
+        while (remaining := end - self.now) > TIME_MIN:
             check(self._stop)
-            self.now = self._board.run(min(left, step))
+            self.now = self._board.run(min(remaining, step))
             self.heard += self._port.receive()

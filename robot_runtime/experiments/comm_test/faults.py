@@ -39,15 +39,15 @@ class Faults:
         problems = [
             DocumentEntry(name, (name,))
             .item(1)
-            .problem(f"is {one[1]:g}; it must be above 0 and below the period, {one[0]:g} s")
-            for name, one in (("stall", self.stall), ("cut", self.cut))
-            if one is not None and not 0 < one[1] < one[0]
+            .problem(f"is {times[1]:g}; it must be above 0 and below the period, {times[0]:g} s")
+            for name, times in (("stall", self.stall), ("cut", self.cut))
+            if times is not None and not 0 < times[1] < times[0]
         ]
         if problems:
             raise ConfigError(*problems)
 
     def begin(self, order: Order) -> None:
-        """Starts the faults that have rates; `timed` gives the others."""
+        """Start the faults that have rates; `timed` gives the others."""
         order(f"seed {self.seed}")
         for kind in KINDS:
             if rate := getattr(self, kind):
@@ -56,7 +56,7 @@ class Faults:
             order_both(order, f"burst {self.burst[0]!r} {self.burst[1]}")
 
     def timed(self, start: float) -> Iterator[TimedFault]:
-        """Yields the timed faults in order, without end; `start` is when the faults began (s of the test)."""
+        """Yield the timed faults in order, without end; `start` is when the faults began (s of the test)."""
         streams = []
         if self.stall:
             streams.append(_repeat(start, *self.stall, "stall"))
@@ -66,7 +66,7 @@ class Faults:
 
 
 def order_both(order: Order, fault: str) -> None:
-    """Gives the command `line` with this fault for both directions."""
+    """Give the command `line` with this fault for both directions."""
     for direction in DIRECTIONS:
         order(f"line {direction} {fault}")
 

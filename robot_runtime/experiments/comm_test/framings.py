@@ -29,7 +29,7 @@ MESSAGE_CONTENT = 1 + 2 + CHECKSUM_BYTES
 
 
 class Sequence:
-    """Judges numbers as they arrive: right are those of the test that are above all right ones before."""
+    """Judge of arriving numbers: right is a number of the test that is above all earlier right numbers."""
 
     def __init__(self, start: int, end: int) -> None:
         self._next = start
@@ -38,7 +38,7 @@ class Sequence:
         self.out_of_sequence = 0
 
     def take(self, number: int) -> None:
-        """One number that arrived."""
+        """Count an arrived number."""
         if self._next <= number < self._end:
             self.right += 1
             self._next = number + 1
@@ -48,7 +48,7 @@ class Sequence:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Framing:
-    """A framing of the sketch: `code` is its macro, `library` tells if it needs the robot's own.
+    """A framing of the sketch: `code` is its macro; `library`: it needs the robot's own library.
 
     `number_max` is the largest number that can be sent, `bauds` are the lowest and the highest that it runs
     at, in bit/s.
@@ -70,13 +70,13 @@ class StreamFraming(Framing):
 
 
 def make_packet(kind: int, data: bytes = b"") -> bytes:
-    """A packet of Figure 9."""
+    """Return a packet of Figure 9."""
     content = bytes([kind]) + data
     return bytes([PACKET_START]) + content + _checksum(content) + bytes([PACKET_END])
 
 
 def find_answer(stream: bytes) -> tuple[Counts, int] | None:
-    """The chip's first answer in what it sent, and where it begins; None where there is none."""
+    """Return the chip's first answer in these bytes, and its position; None where there is none."""
     mark = bytes([PACKET_START, REQUEST_RESULT])
     at = stream.find(mark)
     while at >= 0:

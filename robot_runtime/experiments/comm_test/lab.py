@@ -40,14 +40,14 @@ ATTEMPTS = 3
 
 
 class EventWriter:
-    """Writes events, one JSON object to a line, at once. May be used by several threads."""
+    """Writer of events, one JSON object to a line, at once. May be used by several threads."""
 
     def __init__(self, output: UnbufferedOutput) -> None:
         self._output = output
         self._lock = Lock()
 
     def tell(self, event: str, **values: Any) -> None:
-        """Writes one event."""
+        """Write one event."""
         line = json.dumps({"event": event, **values}, ensure_ascii=False)
         with self._lock:
             self._output.write(line.encode() + b"\n")
@@ -57,10 +57,10 @@ class CommTestLab(Protocol):
     """The boards that tests run on. All methods raise the errors in TEST_ERRORS."""
 
     def prepare(self) -> tuple[str, dict[str, str], str]:
-        """The hash of the sketch's sources, the versions of the tools by name, and the place in words."""
+        """Return the hash of the sketch's sources, the tools' versions by name, and the boards as text."""
 
     def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
-        """The cells of a test, in order. Raises StoppedError too."""
+        """Return the cells of a test, in order. Raise StoppedError too."""
 
 
 class EmulatedLab:
@@ -133,31 +133,31 @@ class RobotLab:
 
 
 def upload_to(port: str, pull: Pull, program: Path, stop: Cancellation, progress: Path | None = None) -> None:
-    """Uploads to the board at a port, whose reset pin `pull` pulls. Raises the errors in TEST_ERRORS."""
+    """Upload to the board at a port, whose reset pin `pull` pulls. Raise the errors in TEST_ERRORS."""
     _try_with(port, pull, lambda: upload(program, port, BOOT_BAUD, stop, progress=progress))
 
 
 def read_from(port: str, pull: Pull, program: Path, stop: Cancellation, progress: Path | None) -> None:
-    """Reads the firmware of the board at a port into a file. Raises the errors in TEST_ERRORS."""
+    """Read the firmware of the board at a port into a file. Raise the errors in TEST_ERRORS."""
     _try_with(port, pull, lambda: read_out(program, port, BOOT_BAUD, stop, progress))
 
 
 def _try_with(port: str, pull: Pull, work: Callable[[], None]) -> None:
     # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
-    for left in reversed(range(ATTEMPTS)):
+    for remaining in reversed(range(ATTEMPTS)):
         refuse_endless_resets(port, pull)
         pull()
         try:
             work()
             return
         except UploadError as problem:
-            if not left:
+            if not remaining:
                 raise
             print(f"{problem}; trying again", file=sys.stderr, flush=True)  # noqa: T201
 
 
 def run_tests(tests: Sequence[CommTest], lab: CommTestLab, writer: EventWriter, stop: Cancellation) -> bool:
-    """Runs tests one after the other up to the first that does not come to its end; True if all did."""
+    """Run tests one after the other until one is not completed; return True if all were."""
     return all(_run_test(number, test, lab, writer, stop) for number, test in enumerate(tests))
 
 

@@ -28,16 +28,16 @@ class Cancellation:
         self._set = False
 
     def set(self) -> None:
-        """Requests cancellation."""
+        """Request cancellation."""
         self._set = True
 
     def is_set(self) -> bool:
-        """True if cancellation was requested."""
+        """Return True if cancellation was requested."""
         return self._set
 
 
 def check(stop: Cancellation) -> None:
-    """Raises StoppedError once `stop` is set."""
+    """Raise StoppedError once `stop` is set."""
     if stop.is_set():
         raise StoppedError("it was cancelled")
 
@@ -65,23 +65,23 @@ class CommTestLine(ABC):
 
     @abstractmethod
     def errors(self) -> LineErrors:
-        """Returns the errors on the wire since the start, as far as they are known."""
+        """Return the known errors on the wire since the start."""
 
     @abstractmethod
     def close(self) -> None:
-        """Closes port and board."""
+        """Close port and board."""
 
     @abstractmethod
     def _order(self, command: str) -> None:
-        """Gives the line a command for its faults."""
+        """Give the line a command for its faults."""
 
     @abstractmethod
     def _hand_over(self, data: bytes) -> None:
-        """Writes bytes to the port."""
+        """Write bytes to the port."""
 
     @abstractmethod
     def _pass(self, seconds: float) -> None:
-        """Advances the time: sets `now`, and adds received bytes to `heard`. Raises StoppedError."""
+        """Advance the time: set `now`, and add received bytes to `heard`. Raise StoppedError."""
 
     def __enter__(self) -> Self:
         return self
@@ -91,11 +91,11 @@ class CommTestLine(ABC):
 
     @property
     def busy(self) -> float:
-        """s until everything that was written is through the line."""
+        """The time (s) until the line has sent everything that was written."""
         return max(self._line_free - self.now, 0.0)
 
     def inject_faults(self, faults: Faults) -> None:
-        """Injects these faults from now on."""
+        """Inject these faults from now on."""
         if faults == Faults(seed=faults.seed):
             return
         self._disturbed = True
@@ -105,19 +105,19 @@ class CommTestLine(ABC):
         self._next_fault = next(self._timed_faults, None)
 
     def clear_faults(self) -> None:
-        """Removes all faults from the line."""
+        """Remove all faults from the line."""
         if self._disturbed:
             order_both(self._order, "clean")
         self._next_fault = None
         self._airtime_factor = 1.0
 
     def drain(self) -> None:
-        """Waits until all written bytes have passed the line, which a stall may delay."""
+        """Wait until all written bytes have passed the line, which a stall may delay."""
         while self.busy > TIME_MIN:
             self.wait(self.busy)
 
     def write(self, data: bytes) -> None:
-        """Writes bytes to the port; waits for the line while its buffer is full."""
+        """Write bytes to the port; wait for the line while its buffer is full."""
         room = WRITE_BUFFER_BYTES * self.byte_time
         airtime = len(data) * self.byte_time * self._airtime_factor
         while self.busy + airtime > room + TIME_MIN:
@@ -126,7 +126,7 @@ class CommTestLine(ABC):
         self._line_free = self.now + self.busy + airtime
 
     def wait(self, seconds: float) -> None:
-        """Waits in test time and adds received bytes to `heard`. Raises StoppedError."""
+        """Wait in test time and add received bytes to `heard`. Raise StoppedError."""
         end = self.now + seconds
         while end - self.now > TIME_MIN:
             pause = end if self._next_fault is None else min(end, self._next_fault[0])

@@ -30,12 +30,12 @@ PATIENCE_FACTOR = 5
 
 
 def run_link_cell(test: CommTest, cell: GridCell, line: CommTestLine) -> CellResult:
-    """One cell on a board that has just been started with its sketch. Raises BoardError and PortError."""
+    """Run one cell on a board that has just been started with its sketch. Raise BoardError and PortError."""
     return _LinkCell(test, cell, line).run()
 
 
 def estimate_link_seconds(test: CommTest, cell: GridCell) -> float:
-    """About how long a cell takes over the robot's own link, s of test time."""
+    """Return the estimated duration of a cell over the robot's own link, s of test time."""
     alone = cell.arduino_delay > 0 or cell.pi_delay > 0
     airtime = test.expected * (NUMBER_BYTES_ALONE if alone else NUMBER_BYTES) * BITS_PER_BYTE / cell.baud
     # The sketch takes or sends every number, so every delay counts.
@@ -107,7 +107,7 @@ class _LinkCell:
         return packets
 
     def _pause(self) -> float:
-        """s until something is to be done; while something is awaited, no longer than a reaction takes."""
+        """Return the time (s) until the next work; while an answer is awaited, at most a reaction's time."""
         now = self._line.now
         due = self._session.due()
         if self._established and not self._requested:
@@ -161,14 +161,14 @@ class _LinkCell:
 
     def _failures(self) -> tuple[Finding, ...]:
         if self._session.board is None:
-            words = f"the chip did not answer within {GREETING_PATIENCE:g} s"
-            return (("no link", f"{words}: it does not run the sketch, or runs it at another baud"),)
+            text = f"the chip did not answer within {GREETING_PATIENCE:g} s"
+            return (("no link", f"{text}: it does not run the sketch, or runs it at another baud"),)
         if self._session.stage is SessionStage.REFUSED:
             return (("other definitions", "the sketch was compiled with other packet definitions"),)
         if self._restarted:
             lost = self._session.counters.messages_discarded
-            words = f"the chip restarted after {self._line.now:.1f} s; {lost} messages to it were lost"
-            return (("restart", words),)
+            text = f"the chip restarted after {self._line.now:.1f} s; {lost} messages to it were lost"
+            return (("restart", text),)
         if self._answer is None:
             return (("out of time", f"no result after {self._line.now:.0f} s of test time"),)
         return ()

@@ -14,7 +14,7 @@ LOOK = 0.1
 
 
 class PortLine(CommTestLine):
-    """The port at `path`, opened `boot_time` s before the test's time begins; what came before is forgotten.
+    """The port at `path`, opened `boot_time` s before the test's time begins; earlier bytes are dropped.
 
     With `folder`, a place for its link, a line with faults is put before the port. Raises PortError and
     StoppedError.
@@ -45,7 +45,7 @@ class PortLine(CommTestLine):
         self._files.close()
 
     def errors(self) -> LineErrors:
-        """Returns the injected faults; the errors that the UARTs saw are not known."""
+        """Return the injected faults; the errors that the UARTs saw are not known."""
         if self._faulty is None:
             return LineErrors()
         return LineErrors(faults=FaultCounts.add_up(self._faulty.stats()))
@@ -60,8 +60,8 @@ class PortLine(CommTestLine):
 
     def _pass(self, seconds: float) -> None:
         end = time.monotonic() + seconds
-        while (left := end - time.monotonic()) > 0:
+        while (remaining := end - time.monotonic()) > 0:
             check(self._stop)
-            if self._port.wait(min(left, LOOK)):
+            if self._port.wait(min(remaining, LOOK)):
                 self.heard += self._port.read()
         self.now = time.monotonic() - self._began

@@ -18,9 +18,9 @@ Pull = Callable[[], None]
 
 
 def find_reset(spec: str) -> Pull:
-    """Returns the function that pulls the reset pin: `gpio:CHIP:LINE`, `board:SOCKET` or `dtr` (by avrdude).
+    """Return the function that pulls the reset pin: `gpio:CHIP:LINE`, `board:SOCKET` or `dtr` (by avrdude).
 
-    Raises ResetError where `spec` is none of these; what it returns raises ResetError and BoardError.
+    Raise ResetError where `spec` is none of these; the returned function raises ResetError and BoardError.
     """
     kind, _, where = spec.partition(":")
     chip, _, line = where.rpartition(":")

@@ -44,7 +44,7 @@ class FaultCounts:
 
     @classmethod
     def add_up(cls, counts: Mapping[str, int]) -> "FaultCounts":
-        """Adds the emulated board's counters, whose names begin with the direction."""
+        """Add the emulated board's counters, whose names begin with the direction."""
         return cls(
             **{
                 field.name: counts[f"to_board_{field.name}"] + counts[f"from_board_{field.name}"]
@@ -53,9 +53,9 @@ class FaultCounts:
         )
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The faults as text; empty if there were none."""
-        words = (
+        counts = (
             (self.bit_errors, "wrong bits"),
             (self.bursts, "bursts of errors"),
             (self.drops, "dropped bytes"),
@@ -64,7 +64,7 @@ class FaultCounts:
             (self.cuts, "bytes lost while the line was cut"),
             (self.stalls, "stalls"),
         )
-        return ", ".join(f"{count} {what}" for count, what in words if count)
+        return ", ".join(f"{count} {what}" for count, what in counts if count)
 
 
 NO_FAULT_COUNTS = FaultCounts()
@@ -134,7 +134,7 @@ class CellResult:
     @property
     def explanation(self) -> str:
         """The explanation of the rate, for a person: a reason on each line, which begins with its cause."""
-        findings = [f"{cause}: {words}" for cause, words in self._findings()]
+        findings = [f"{cause}: {reason}" for cause, reason in self._findings()]
         return "\n".join([*(findings or ["every number arrived"]), *self._remarks()])
 
     @property
@@ -155,7 +155,7 @@ class CellResult:
         }
 
     def _remarks(self) -> list[str]:
-        faults = self.line.faults.words
+        faults = self.line.faults.text
         return [f"injected faults: {faults}"] if faults else []
 
     @property
@@ -175,8 +175,8 @@ class CellResult:
             where = f"{self.line.framing_board} at the chip, {self.line.framing_host} at the host"
             findings.append(("line", f"wrong stop bits: {where}"))
         if self.line.overruns:
-            words = f"{self.line.overruns} bytes arrived before the chip had read the byte before"
-            findings.append(("UART overrun", words))
+            reason = f"{self.line.overruns} bytes arrived before the chip had read the byte before"
+            findings.append(("UART overrun", reason))
         return findings
 
 
@@ -198,8 +198,8 @@ class LinkCellResult(CellResult):
             if counts and counts.right < self.expected:
                 findings.append(("lost numbers", _missing(counts, self.expected, who)))
             if counts and counts.out_of_sequence:
-                words = f"repeated or reordered numbers at {who}: {counts.out_of_sequence}"
-                findings.append(("out of sequence", words))
+                reason = f"repeated or reordered numbers at {who}: {counts.out_of_sequence}"
+                findings.append(("out of sequence", reason))
         return findings
 
     def _remarks(self) -> list[str]:
@@ -218,15 +218,15 @@ def _explain(counts: Counts, expected: int, lost: int, who: str, harmed: bool) -
     findings = []
     missing = _missing(counts, expected, who)
     if lost > 0 and counts.ring_full:
-        words = f"the sketch read too slowly: its receive buffer of {RING_BYTES} bytes was full"
-        findings.append(("ring overrun", f"{words} and {lost} bytes were lost; {missing}"))
+        reason = f"the sketch read too slowly: its receive buffer of {RING_BYTES} bytes was full"
+        findings.append(("ring overrun", f"{reason} and {lost} bytes were lost; {missing}"))
     elif lost > 0:
         findings.append(("lost bytes", f"{lost} bytes did not reach {who}; {missing}"))
     if counts.framing_errors:
         why = "some of their bytes were lost" if lost > 0 else "a byte within was the end mark \\n"
         why = "damaged on the line, or a byte within was the end mark \\n" if harmed else why
-        words = f"messages of the wrong length at {who}: {counts.framing_errors}; {why}"
-        findings.append(("framing error", words))
+        reason = f"messages of the wrong length at {who}: {counts.framing_errors}; {why}"
+        findings.append(("framing error", reason))
     if counts.checksum_errors:
         findings.append(("checksum", f"packets with a wrong checksum: {counts.checksum_errors}"))
     if counts.out_of_sequence:

@@ -38,7 +38,7 @@ QUESTIONS = 3
 
 
 class Runner:
-    """Runs tests on `program`, the emulated board in the folder of all that is built, with sketches that
+    """Runner of tests on `program`, the emulated board in the folder of all that is built, with sketches that
     `builder` makes, until `stop` is set.
 
     `computing` cells are computed at the same time, each on a board of its own; others upload meanwhile,
@@ -57,9 +57,9 @@ class Runner:
         self._computing = Semaphore(computing)
 
     def run(self, test: CommTest, tell: Tell = lambda _number, _phase: None) -> Iterator[CellResult]:
-        """The cells of the grid, in its order; `tell` is called by several threads.
+        """Yield the cells of the grid, in its order; `tell` is called by several threads.
 
-        Closing the iterator cancels. Raises SketchBuildError, BoardError, UploadError, PortError, and
+        Closing the iterator cancels. Raise SketchBuildError, BoardError, UploadError, PortError, and
         StoppedError.
         """
 
@@ -94,7 +94,7 @@ class Runner:
 
 
 def run_cell(test: CommTest, cell: GridCell, line: CommTestLine) -> CellResult:
-    """One cell on a board that has just been started with its sketch. Raises BoardError and PortError."""
+    """Run one cell on a board that has just been started with its sketch. Raise BoardError and PortError."""
     if test.framing not in STREAM_FRAMINGS:
         return run_link_cell(test, cell, line)
     framing = STREAM_FRAMINGS[test.framing]
@@ -124,7 +124,7 @@ def run_cell(test: CommTest, cell: GridCell, line: CommTestLine) -> CellResult:
 
 
 def estimate_seconds(test: CommTest, cell: GridCell) -> float:
-    """About how long a cell takes in emulated time, s."""
+    """Return the estimated duration of a cell in emulated time, s."""
     if test.framing not in STREAM_FRAMINGS:
         return estimate_link_seconds(test, cell)
     message_bytes = len(STREAM_FRAMINGS[test.framing].message(test.from_val))
@@ -153,7 +153,7 @@ def _request_result(request: bytes, cell: GridCell, line: CommTestLine) -> tuple
     for _ in range(QUESTIONS):
         line.write(request)
         line.wait(line.busy + cell.arduino_delay + ANSWER_BYTES * line.byte_time + PATIENCE)
-        if found := find_answer(line.heard[before:]):
-            counts, at = found
+        if answer := find_answer(line.heard[before:]):
+            counts, at = answer
             return counts, before + at
     return None, len(line.heard)

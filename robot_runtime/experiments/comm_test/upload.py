@@ -33,9 +33,9 @@ class UploadError(Exception):
 
 
 def avrdude_version() -> str:
-    """The version of avrdude, in its own words. Raises UploadError where avrdude is missing."""
-    said = _run_briefly(["avrdude", "-?"])
-    version = [line.partition(",")[0] for line in said.splitlines() if line.startswith("avrdude version")]
+    """Return the version of avrdude, in its own words. Raise UploadError where avrdude is missing."""
+    output = _run_briefly(["avrdude", "-?"])
+    version = [line.partition(",")[0] for line in output.splitlines() if line.startswith("avrdude version")]
     return version[0] if version else "avrdude"
 
 
@@ -49,7 +49,7 @@ def upload(
 ) -> None:
     """Write an Intel HEX file into the flash memory of a chip whose boot loader listens, and verify it.
 
-    `attend` is called again and again meanwhile; avrdude's own output grows in the file `progress`. Raises
+    `attend` is called again and again meanwhile; avrdude's own output grows in the file `progress`. Raise
     UploadError, and StoppedError.
     """
     failure = f"could not upload {program.name}"
@@ -57,9 +57,9 @@ def upload(
 
 
 def read_out(program: Path, port: str, baud: int, stop: Cancellation, progress: Path | None) -> None:
-    """Writes the flash memory of a chip whose boot loader listens to an Intel HEX file, the boot loader too.
+    """Write the flash memory of a chip whose boot loader listens to an Intel HEX file, the boot loader too.
 
-    Raises UploadError, and StoppedError.
+    Raise UploadError, and StoppedError.
     """
     _run_avrdude(
         f"flash:r:{program}:i", "could not read the firmware", port, baud, stop, lambda: None, progress
@@ -79,10 +79,10 @@ def _run_avrdude(
     command = ["setpriv", "--pdeathsig", "KILL", "avrdude", "-c", "arduino", "-p", "m328p"]
     command += ["-b", str(baud), "-P", port, "-D", "-U", operation]
     command += [] if progress else ["-q", "-q"]
-    with _open_output(progress) as said:
+    with _open_output(progress) as output:
         try:
             avrdude = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True
+                command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True
             )
         except OSError as problem:
             raise UploadError(
@@ -94,12 +94,12 @@ def _run_avrdude(
             if avrdude.poll() is None:
                 avrdude.kill()
                 avrdude.wait()
-        said.seek(0)
-        words = _shorten(said.read().decode(errors="replace"))
+        output.seek(0)
+        text = _shorten(output.read().decode(errors="replace"))
     if status is None:
-        raise UploadError(f"avrdude did not end within {LIMIT:g} s: {words}")
+        raise UploadError(f"avrdude did not end within {LIMIT:g} s: {text}")
     if status:
-        raise UploadError(f"avrdude {failure} through {port}: {words}")
+        raise UploadError(f"avrdude {failure} through {port}: {text}")
 
 
 def _open_output(progress: Path | None) -> IO[bytes]:
@@ -107,11 +107,11 @@ def _open_output(progress: Path | None) -> IO[bytes]:
 
 
 def upload_paused(program: Path, tty: Path, board: EmulatorClient, stop: Cancellation) -> None:
-    """Uploads to a paused board with a boot loader; its time passes only while there is something to do.
+    """Upload to a paused board with a boot loader; its time passes only while there is something to do.
 
     The boot loader's patience, 1 s, does not run out, however busy the computer is. avrdude's does: it waits
     by its own clock, asks again, and loses step over the two answers. It then starts over, a few times.
-    Raises BoardError too.
+    Raise BoardError too.
     """
     for attempt in range(1, ATTEMPTS + 1):
         began = time.monotonic()
@@ -144,7 +144,7 @@ def _traffic(board: EmulatorClient) -> tuple[float, ...]:
 
 
 def _wait(avrdude: subprocess.Popen[bytes], stop: Cancellation, attend: Callable[[], None]) -> int | None:
-    """Its exit status; None where it takes too long."""
+    """Wait for the process; return its exit status, None where it takes too long."""
     end = time.monotonic() + LIMIT
     while time.monotonic() < end:
         check(stop)
@@ -154,10 +154,10 @@ def _wait(avrdude: subprocess.Popen[bytes], stop: Cancellation, attend: Callable
     return None
 
 
-def _shorten(said: str) -> str:
-    lines = dict.fromkeys(line.removeprefix("avrdude: ").strip() for line in said.splitlines())
-    words = " / ".join(line for line in lines if line and "| ##" not in line)
-    return words if len(words) <= WORDS_MAX else "... " + words[-WORDS_MAX:]
+def _shorten(output: str) -> str:
+    lines = dict.fromkeys(line.removeprefix("avrdude: ").strip() for line in output.splitlines())
+    text = " / ".join(line for line in lines if line and "| ##" not in line)
+    return text if len(text) <= WORDS_MAX else "... " + text[-WORDS_MAX:]
 
 
 def _run_briefly(command: list[str]) -> str:

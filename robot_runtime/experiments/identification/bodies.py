@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robot_runtime.contract.buoyancy import DENSITY, GRAVITY
 from robot_runtime.contract.craft import Craft
 
 Floats = NDArray[np.float64]
 
-DENSITY, GRAVITY = 1000.0, 9.81
 STATES = 9
 """Depth (m); velocity forward, right, down (m/s); roll and pitch (rad); turn rates (rad/s)."""
 CHANNELS = 7
@@ -32,11 +32,11 @@ class FinMotions:
 
 
 class _FinGeometry:
-    """All about the fins that the hull's motion does not change, for every half step."""
+    """The fins' geometry that the hull's motion does not change, for every half step."""
 
     def __init__(self, craft: Craft, motions: Sequence[FinMotions]) -> None:
-        angles = np.stack([one.angles for one in motions], axis=2)
-        speeds = np.stack([one.speeds for one in motions], axis=2)
+        angles = np.stack([motion.angles for motion in motions], axis=2)
+        speeds = np.stack([motion.speeds for motion in motions], axis=2)
         roots, out = np.array(craft.fin_positions), np.array(craft.fin_directions)
         centre = craft.fin_centre
 
@@ -60,7 +60,7 @@ class Bodies:
     """The same windows for each of these crafts, which share hull size and fin geometry."""
 
     def __init__(self, crafts: Sequence[Craft], motions: Sequence[FinMotions], which: Sequence[int]) -> None:
-        """`which` names for each craft one of the `motions`."""
+        """Prepare the crafts; `which` is the index of each craft's motion in `motions`."""
 
         def column(values: Sequence[float]) -> Floats:
             return np.array(values, dtype=float)[:, None]
@@ -71,41 +71,41 @@ class Bodies:
         self._fins = _FinGeometry(crafts[0], motions)
         self._which = np.array(which)
         self._shared = len(motions) == 1
-        self._mass = six([one.total_mass for one in crafts])
-        self._linear = six([one.damping_linear for one in crafts])
-        self._quadratic = six([one.damping_quadratic for one in crafts])
-        self._thrust = column([one.thrust_coefficient for one in crafts])
-        self._normal = column([0.5 * DENSITY * one.fin_area * one.fin_normal for one in crafts])
-        weight = column([one.mass * GRAVITY for one in crafts])
-        self._lift = weight * column([one.buoyancy for one in crafts])
+        self._mass = six([craft.total_mass for craft in crafts])
+        self._linear = six([craft.damping_linear for craft in crafts])
+        self._quadratic = six([craft.damping_quadratic for craft in crafts])
+        self._thrust = column([craft.thrust_coefficient for craft in crafts])
+        self._normal = column([0.5 * DENSITY * craft.fin_area * craft.fin_normal for craft in crafts])
+        weight = column([craft.mass * GRAVITY for craft in crafts])
+        self._lift = weight * column([craft.buoyancy for craft in crafts])
         self._excess = weight - self._lift
-        self._forward = column([one.buoyancy_forward for one in crafts])
-        self._right = column([one.buoyancy_right for one in crafts])
-        self._above = column([one.buoyancy_height for one in crafts])
+        self._forward = column([craft.buoyancy_forward for craft in crafts])
+        self._right = column([craft.buoyancy_right for craft in crafts])
+        self._above = column([craft.buoyancy_height for craft in crafts])
         self._sensor = crafts[0].pressure_position
 
     def simulate(self, start: Floats, step: float, every: int) -> Floats:
-        """The measured channels of shape (CHANNELS, moments, variants, windows), without offsets.
+        """Return the measured channels of shape (CHANNELS, moments, variants, windows), without offsets.
 
         `start` are the states of shape (STATES, variants, windows); a moment is every `every` steps of `step`
         (s), by the midpoint rule (Runge-Kutta of second order).
         """
         state = _whole_state(start)
         steps = (len(self._fins.along) - 1) // 2
-        found = np.empty((CHANNELS, steps // every + 1, *start.shape[1:]))
+        channels = np.empty((CHANNELS, steps // every + 1, *start.shape[1:]))
         for index in range(steps + 1):
             slope = self._slope(state, 2 * index) if index < steps or steps % every == 0 else None
             if index % every == 0 and slope is not None:
-                found[:, index // every] = self._measure(state, slope)
+                channels[:, index // every] = self._measure(state, slope)
             if index == steps or slope is None:
                 break
             middle = state + 0.5 * step * slope
             state = state + step * self._slope(middle, 2 * index + 1)
             state[1:5] /= np.sqrt((state[1:5] ** 2).sum(axis=0))
-        return found
+        return channels
 
     def _slope(self, state: Floats, half: int) -> Floats:
-        """Time derivative of depth, quaternion, velocity and turn rate, stacked to 11 rows."""
+        """Return the time derivative of depth, quaternion, velocity and turn rate, stacked to 11 rows."""
         w, x, y, z = state[1:5]
         velocity, rate = state[5:8], state[8:11]
         u, v, down = velocity
@@ -141,7 +141,7 @@ class Bodies:
         return slope
 
     def _wrench(self, half: int, velocity: Floats, rate: Floats) -> Floats:
-        """Force and torque of the fins, as `Fins.push`."""
+        """Return force and torque of the fins, as `Fins.push`."""
         fins = self._fins
         u, v, w = velocity
         p, q, r = rate
@@ -167,23 +167,23 @@ class Bodies:
         return wrench
 
     def _measure(self, state: Floats, slope: Floats) -> Floats:
-        """The sensors' readings: the IMU is at the centre of mass, the pressure sensor at its place."""
+        """Return the readings of the IMU at the centre of mass and of the pressure sensor at its position."""
         towards = _down(state)
         velocity, rate = state[5:8], state[8:11]
-        found = np.empty((CHANNELS, *state.shape[1:]))
+        channels = np.empty((CHANNELS, *state.shape[1:]))
         x, y, z = self._sensor
-        found[0] = state[0] + towards[0] * x + towards[1] * y + towards[2] * z
-        found[1:4] = rate
+        channels[0] = state[0] + towards[0] * x + towards[1] * y + towards[2] * z
+        channels[1:4] = rate
         # Acceleration over ground in body axes, less gravity.
-        found[4:7] = slope[5:8] - GRAVITY * towards
-        found[4] += rate[1] * velocity[2] - rate[2] * velocity[1]
-        found[5] += rate[2] * velocity[0] - rate[0] * velocity[2]
-        found[6] += rate[0] * velocity[1] - rate[1] * velocity[0]
-        return found
+        channels[4:7] = slope[5:8] - GRAVITY * towards
+        channels[4] += rate[1] * velocity[2] - rate[2] * velocity[1]
+        channels[5] += rate[2] * velocity[0] - rate[0] * velocity[2]
+        channels[6] += rate[0] * velocity[1] - rate[1] * velocity[0]
+        return channels
 
 
 def _whole_state(start: Floats) -> Floats:
-    """Depth, quaternion, velocity and turn rate, of hulls that look north."""
+    """Return depth, quaternion, velocity and turn rate of hulls that look north."""
     roll, pitch = start[4] / 2, start[5] / 2
     state = np.empty((11, *start.shape[1:]))
     state[0] = start[0]
@@ -194,6 +194,6 @@ def _whole_state(start: Floats) -> Floats:
 
 
 def _down(state: Floats) -> Floats:
-    """The direction downwards in body axes: the last row of the rotation to the world."""
+    """Return the direction downwards in body axes: the last row of the rotation to the world."""
     w, x, y, z = state[1:5]
     return np.stack((2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)))

@@ -50,7 +50,7 @@ class FitSolution:
 
 
 class Fit:
-    """One fit; `run` does it all."""
+    """One fit; `run` performs all of it."""
 
     def __init__(self, windows: Windows, start: Craft, progress: Progress = lambda _share: None) -> None:
         self._shooting = Shooting(windows, start)
@@ -59,7 +59,7 @@ class Fit:
         self._activity = windows.activity()
 
     def run(self) -> FitSolution:
-        """Fits all numbers, and then once more those that are seen. Raises what `progress` raises."""
+        """Fit all numbers, and then once more those that the windows show. Raise the errors of `progress`."""
         fitted: list[CraftQuantity] = list(QUANTITIES)
         unseen: list[CraftQuantity] = []
         numbers = np.zeros(len(fitted) + OF_A_SESSION * self._shooting.sessions)
@@ -69,9 +69,9 @@ class Fit:
                 continue
             weak = self._find_unseen(fitted, numbers)
             # They go back to where they were: the last round fits the rest to that.
-            unseen += [fitted[one] for one in weak]
+            unseen += [fitted[index] for index in weak]
             numbers = np.delete(numbers, weak)
-            fitted = [one for place, one in enumerate(fitted) if place not in weak]
+            fitted = [quantity for index, quantity in enumerate(fitted) if index not in weak]
         deviations = self._deviations(fitted, numbers)
         count, spreads = len(fitted), np.array(OFFSET_SPREADS)
         self._progress(1.0)
@@ -86,7 +86,7 @@ class Fit:
         )
 
     def _solve(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> Floats:
-        """The best scaled numbers from these on; then moves the starts and models the residuals anew."""
+        """Return the best scaled numbers from these on; move the starts, and model the residuals anew."""
         low, high = self._bounds(fitted)
         solution = least_squares(
             lambda at: self._project(fitted, at)[0],
@@ -104,15 +104,15 @@ class Fit:
         return numbers
 
     def _bounds(self, fitted: Sequence[CraftQuantity]) -> tuple[Floats, Floats]:
-        """The craft's ranges as scaled numbers, with room for a number that begins at its limit."""
+        """Return the craft's ranges as scaled numbers, with room for a number that begins at its limit."""
         start = self._shooting.start
-        pairs = [one.scaled_limits(start) for one in fitted]
+        pairs = [quantity.scaled_limits(start) for quantity in fitted]
         pairs += [(-np.inf, np.inf)] * (OF_A_SESSION * self._shooting.sessions)
         low, high = np.array(pairs).T
         return low - 1e-5, high + 1e-5
 
     def _project(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats]:
-        """Residuals and Jacobian without what other starts of the windows explain, and with the priors."""
+        """Return residuals and Jacobian, with priors, without the part that the windows' starts explain."""
         residuals, of_starts, of_numbers = self._whiten(fitted, numbers)
         basis, _ = np.linalg.qr(of_starts)
         projected = residuals - np.einsum("wmk,wk->wm", basis, np.einsum("wmk,wm->wk", basis, residuals))
@@ -123,7 +123,7 @@ class Fit:
         )
 
     def _whiten(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats, Floats]:
-        """Each window's whitened residuals, and their derivatives by its start and by the numbers.
+        """Return each window's whitened residuals, and their derivatives by its start and by the numbers.
 
         The last residuals are the distance of its start from the guess.
         """
@@ -141,14 +141,14 @@ class Fit:
         return residuals, slopes[:, :, :STATES], slopes[:, :, STATES:]
 
     def _move_starts(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> None:
-        """One step of Gauss and Newton on the windows' starts."""
+        """Move the windows' starts by one step of Gauss and Newton."""
         residuals, of_starts, _ = self._whiten(fitted, numbers)
         basis, upper = np.linalg.qr(of_starts)
         step = np.linalg.solve(upper, np.einsum("wmk,wm->wk", basis, residuals)[:, :, None])[:, :, 0]
         self._shooting.states = self._shooting.states - step.T * START_SPREADS[:, None]
 
     def _deviations(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> Floats:
-        """Standard deviations: the larger of those from the Jacobian and those from the windows' scatter.
+        """Return standard deviations: the larger of the Jacobian's and those of the windows' scatter.
 
         The second is the sandwich estimate with windows as clusters (H. White, Econometrica 48, 1980): the
         pulls of the windows on a number must cancel, and how far they differ shows errors that no weight
@@ -168,7 +168,7 @@ class Fit:
         return np.asarray(np.sqrt(np.maximum(np.diag(inverse), np.diag(scatter))))
 
     def _find_unseen(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> list[int]:
-        """Places of the quantities that the windows do not show, the weakest first.
+        """Find the indices of the quantities that the windows do not show, the weakest first.
 
         Each is taken out before the next is judged: of two that show only together, one may be seen alone.
         """
@@ -178,9 +178,9 @@ class Fit:
         weak: list[int] = []
         while True:
             deviations = np.sqrt(np.diag(np.linalg.inv(information[np.ix_(there, there)])))
-            judged = [(float(deviations[at]), one) for at, one in enumerate(there) if one < len(fitted)]
-            worst, place = max(judged, default=(0.0, -1))
+            judged = [(float(deviations[at]), index) for at, index in enumerate(there) if index < len(fitted)]
+            worst, index = max(judged, default=(0.0, -1))
             if worst < SEEN:
                 return weak
-            weak.append(place)
-            there.remove(place)
+            weak.append(index)
+            there.remove(index)

@@ -72,7 +72,7 @@ class Prediction:
 
     @property
     def improvement(self) -> float:
-        """Error before over error after."""
+        """The error before over the error after."""
         return self.before_error / self.after_error
 
 
@@ -97,17 +97,17 @@ def identify(
     start: Craft,
     progress: Progress = lambda _share: None,
 ) -> Identification:
-    """Fits `start` to the sessions. Raises ValueError in words where none of them can be used."""
+    """Fit `start` to the sessions. Raise ValueError with the reason where none of them can be used."""
     windows = cut(sessions, start)
     # Cut first: a check that is not possible is told before minutes of computing.
     check = None if left_out is None else cut([left_out], start)
     solution = Fit(windows, start, lambda share: progress(0.9 * share)).run()
-    counts = tuple(windows.sessions.count(place) for place in range(len(sessions)))
+    counts = tuple(windows.sessions.count(index) for index in range(len(sessions)))
     noise = _mean_noise(sessions)
     offsets = np.full((len(sessions), solution.offsets.shape[1]), np.nan)
-    for place in range(len(solution.offsets)):
-        if counts[place]:
-            offsets[place] = solution.offsets[place]
+    for index in range(len(solution.offsets)):
+        if counts[index]:
+            offsets[index] = solution.offsets[index]
     craft = _with_sensors(solution.craft, noise, np.nanmean(offsets, axis=0))
     prediction = None
     if check is not None and left_out is not None:
@@ -124,7 +124,7 @@ def identify(
 
 
 def _list_results(solution: FitSolution, start: Craft) -> tuple[QuantityResult, ...]:
-    found = []
+    results = []
     for quantity, scaled in zip(solution.fitted, solution.deviations.tolist(), strict=True):
         value = quantity.value(solution.craft)
         deviation = quantity.deviation(scaled, value)
@@ -133,21 +133,21 @@ def _list_results(solution: FitSolution, start: Craft) -> tuple[QuantityResult, 
             deviation = hypot(deviation, AGE_DEVIATION)
         weak = deviation > WEAK * abs(value) if not quantity.spread else scaled > WEAK * 2
         seen: Seen = "weakly" if weak else "well"
-        found.append(QuantityResult(quantity, quantity.value(start), value, deviation, seen))
+        results.append(QuantityResult(quantity, quantity.value(start), value, deviation, seen))
     for quantity in solution.unseen:
         value = quantity.value(start)
-        found.append(QuantityResult(quantity, value, value, None, "no"))
-    return tuple(found)
+        results.append(QuantityResult(quantity, value, value, None, "no"))
+    return tuple(results)
 
 
 def _mean_noise(sessions: Sequence[SessionStreams]) -> dict[str, float]:
-    each = [sensor_noise(one) for one in sessions]
-    names = dict.fromkeys(name for one in each for name in one)
-    return {name: float(np.mean([one[name] for one in each if name in one])) for name in names}
+    each = [sensor_noise(session) for session in sessions]
+    names = dict.fromkeys(name for noise in each for name in noise)
+    return {name: float(np.mean([noise[name] for noise in each if name in noise])) for name in names}
 
 
 def _with_sensors(craft: Craft, noise: dict[str, float], offset: Floats) -> Craft:
-    """The craft with this noise of its sensors, and this offset of its IMU."""
+    """Return the craft with this noise of its sensors, and this offset of its IMU."""
     p, q, r, x, y, z = offset.tolist()
     rate: Vector = (p, q, r)
     force: Vector = (x, y, z)

@@ -1,4 +1,4 @@
-"""Predicts recorded windows with a craft, from what their first seconds show."""
+"""Prediction of recorded windows with a craft, from their first seconds."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ _ITERATIONS = 4
 
 @dataclass(frozen=True, slots=True)
 class Predicted:
-    """The channels as the craft predicts them, and how far off they are after the known part."""
+    """The channels as the craft predicts them, and their error after the known part."""
 
     channels: Floats
     """Of shape (windows, CHANNELS, moments), with the offsets of the IMU."""
@@ -28,7 +28,7 @@ class Predicted:
 
 
 def predict(windows: Windows, craft: Craft) -> Predicted:
-    """Predicts each window; start and offsets fit its first 2 s best (Gauss and Newton)."""
+    """Predict each window; start and offsets fit its first 2 s best (Gauss and Newton)."""
     shooting = Shooting(windows, craft)
     count = len(windows)
     offsets = np.zeros((count, OFFSETS))

@@ -8,10 +8,9 @@ are. A mass is weighed; the added mass of heave is that of an ellipsoid (docs/re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import exp, log
-from typing import get_args, get_type_hints
 
 from robot_runtime.contract.craft import Craft
-from robot_runtime.contract.limits import Range
+from robot_runtime.contract.hints import read_fields
 
 FACTOR_SPREAD = 0.7
 """Spread (σ) of a number's logarithm before a fit: assumed numbers may be wrong by a factor of two."""
@@ -35,18 +34,18 @@ class CraftQuantity:
     spread: float = 0.0
 
     def value(self, craft: Craft) -> float:
-        """The number in a craft."""
+        """Return the number in a craft."""
         whole = getattr(craft, self.entry)
         return float(whole if self.index is None else whole[self.index])
 
     def put(self, craft: Craft, start: Craft, scaled: float) -> Craft:
-        """The craft with this number, which `scaled` says."""
+        """Return the craft with this number, given as the scaled number."""
         before = self.value(start)
         value = before + self.spread * scaled if self.spread else before * exp(FACTOR_SPREAD * scaled)
         return self.replaced(craft, value)
 
     def replaced(self, craft: Craft, value: float) -> Craft:
-        """The craft with this value, within its range."""
+        """Return the craft with this value, within its range."""
         low, high = self.limits
         value = min(max(value, low), high)
         if self.index is None:
@@ -58,14 +57,13 @@ class CraftQuantity:
     @property
     def limits(self) -> tuple[float, float]:
         """The range of the number in a craft file."""
-        hint = _HINTS[self.entry]
-        if self.index is not None:
-            hint = get_args(hint)[self.index]
-        limits = next(one for one in get_args(hint) if isinstance(one, Range))
+        hint = read_fields(Craft)[self.entry]
+        limits = (hint if self.index is None else hint.parts[self.index]).limits
+        assert limits is not None
         return limits.minimum, limits.maximum
 
     def scaled_limits(self, start: Craft) -> tuple[float, float]:
-        """The range as scaled numbers; that of a positive number begins a hundredth of `start` above 0."""
+        """Return the range as scaled numbers; a positive number's begins a hundredth of `start` above 0."""
         low, high = self.limits
         if not self.spread:
             low = max(low, 0.01 * self.value(start))
@@ -76,11 +74,10 @@ class CraftQuantity:
         return (value - before) / self.spread if self.spread else log(value / before) / FACTOR_SPREAD
 
     def deviation(self, scaled: float, value: float) -> float:
-        """A standard deviation of the scaled number as one of the number itself, in its unit."""
+        """Return a standard deviation of the scaled number as one of the number itself, in its unit."""
         return scaled * (self.spread or FACTOR_SPREAD * abs(value))
 
 
-_HINTS = get_type_hints(Craft, include_extras=True)
 _WAYS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 _MOTIONS = (
     "swimming forwards and backwards",
@@ -93,9 +90,9 @@ _MOTIONS = (
 _FAST = tuple(f"{motion}, fast and slowly" for motion in _MOTIONS)
 
 
-def _damping(entry: str, words: str, units: tuple[str, str]) -> list[CraftQuantity]:
+def _damping(entry: str, label: str, units: tuple[str, str]) -> list[CraftQuantity]:
     return [
-        CraftQuantity(f"{entry}_{way}", entry, index, units[index > 2], f"{words} of {way}", _FAST[index])
+        CraftQuantity(f"{entry}_{way}", entry, index, units[index > 2], f"{label} of {way}", _FAST[index])
         for index, way in enumerate(_WAYS)
     ]
 
@@ -147,7 +144,7 @@ ZERO_SPREAD = 0.005
 
 
 def put_all(start: Craft, quantities: Sequence[CraftQuantity], scaled: Sequence[float]) -> Craft:
-    """The craft with all these scaled numbers."""
+    """Return the craft with all these scaled numbers."""
     craft = start
     for quantity, number in zip(quantities, scaled, strict=True):
         craft = quantity.put(craft, start, number)

@@ -47,11 +47,11 @@ class Shooting:
         self._last: tuple[tuple[object, ...], tuple[Floats, Floats]] | None = None
 
     def craft(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> Craft:
-        """The craft with these scaled numbers."""
+        """Return the craft with these scaled numbers."""
         return put_all(self.start, fitted, numbers[: len(fitted)].tolist())
 
     def errors(self, fitted: Sequence[CraftQuantity], numbers: Floats) -> tuple[Floats, Floats]:
-        """Simulated less measured, of shape (windows, CHANNELS, moments), and its derivatives.
+        """Return simulated less measured, of shape (windows, CHANNELS, moments), and its derivatives.
 
         These have one more axis: the scaled starts of the window, then the scaled numbers.
         """
@@ -71,9 +71,9 @@ class Shooting:
         )
         crafts, motions = [craft] * (1 + STATES), [windows.fins(craft.fin_delay, zeros)]
         which = [0] * (1 + STATES)
-        for place, quantity in enumerate(fitted):
+        for index, quantity in enumerate(fitted):
             moved = numbers[:count].copy()
-            moved[place] += _SMALL
+            moved[index] += _SMALL
             crafts.append(put_all(self.start, fitted, moved.tolist()))
             which.append(len(motions) if quantity.entry == "fin_delay" else 0)
             if which[-1]:
@@ -88,10 +88,10 @@ class Shooting:
         for state in range(STATES):
             starts[state, 1 + state] += _SMALL * START_SPREADS[state]
         with np.errstate(over="ignore", invalid="ignore"):
-            found = Bodies(crafts, motions, which).simulate(starts, STEP, EVERY)
-        base = found[:, :, 0] - windows.measured
+            channels = Bodies(crafts, motions, which).simulate(starts, STEP, EVERY)
+        base = channels[:, :, 0] - windows.measured
         base[1:] += offsets.T[:, list(windows.sessions)][:, None, :]
-        slopes = (found[:, :, 1:] - found[:, :, :1]) / _SMALL
+        slopes = (channels[:, :, 1:] - channels[:, :, :1]) / _SMALL
         # A craft without sense may move without bounds, and the fit must be able to go back.
         base, slopes = np.nan_to_num(base, posinf=1e6, neginf=-1e6), np.nan_to_num(slopes)
         slopes = slopes.transpose(3, 0, 1, 2)
@@ -99,12 +99,12 @@ class Shooting:
         return base.transpose(2, 0, 1), np.concatenate((common, self._of_sessions(of_zeros)), axis=3)
 
     def _of_sessions(self, of_zeros: Floats) -> Floats:
-        """Derivatives of the errors by the sessions' scaled numbers: a window has its session's."""
+        """Return the errors' derivatives by the sessions' scaled numbers: a window has its session's."""
         windows = self.windows
-        found = np.zeros((*of_zeros.shape[:3], OF_A_SESSION * self.sessions))
+        derivatives = np.zeros((*of_zeros.shape[:3], OF_A_SESSION * self.sessions))
         for window, session in enumerate(windows.sessions):
             first = session * OF_A_SESSION
             for axis, spread in enumerate(OFFSET_SPREADS):
-                found[window, 1 + axis, :, first + axis] = spread
-            found[window, :, :, first + OFFSETS : first + OF_A_SESSION] = of_zeros[window]
-        return found
+                derivatives[window, 1 + axis, :, first + axis] = spread
+            derivatives[window, :, :, first + OFFSETS : first + OF_A_SESSION] = of_zeros[window]
+        return derivatives

@@ -94,7 +94,7 @@ class Windows:
         return len(self.starts)
 
     def fins(self, delay: float, zeros: Floats) -> FinMotions:
-        """The fins at every half step, as the water feels them after this delay (s).
+        """Return the fins at every half step, as they act on the water after this delay (s).
 
         `zeros` (rad), of shape (sessions, fins), are what the encoders show at angle 0.
         """
@@ -106,49 +106,49 @@ class Windows:
         return FinMotions(shown, np.stack(speeds, axis=2))
 
     def activity(self) -> Floats:
-        """The fins' mean square speed (rad²/s²) about the compared moments, of shape (windows, moments)."""
+        """Return the fins' mean square speed (rad²/s²) at the moments, of shape (windows, moments)."""
         speeds = self.fins(0.0, np.zeros((max(self.sessions) + 1, 4))).speeds[:: 2 * EVERY]
         squares = (speeds**2).mean(axis=1)
         return np.asarray(uniform_filter1d(squares, round(ACTIVITY_TIME / (STEP * EVERY)), axis=0).T)
 
     def chosen(self, places: Sequence[int]) -> "Windows":
-        """Some of the windows."""
+        """Return some of the windows."""
         return Windows(
             self.measured[:, :, places],
-            tuple(self.splines[one] for one in places),
-            tuple(self.starts[one] for one in places),
-            tuple(self.sessions[one] for one in places),
+            tuple(self.splines[index] for index in places),
+            tuple(self.starts[index] for index in places),
+            tuple(self.sessions[index] for index in places),
             self.states[:, places],
         )
 
 
 def cut(sessions: Sequence[SessionStreams], craft: Craft) -> Windows:
-    """The windows of these sessions in which the hull is under water and nothing is missing.
+    """Return the windows of these sessions in which the hull is under water and nothing is missing.
 
-    Of more than `WINDOWS_MAX` an even choice is taken. Raises ValueError where there is none, in words.
+    Of more than `WINDOWS_MAX` an even choice is taken. Raise ValueError with the reason where there is none.
     """
-    found = [
-        (place, spline, start, *_sample(session, readings, start, craft))
-        for place, session in enumerate(sessions)
+    pieces = [
+        (index, spline, start, *_sample(session, readings, start, craft))
+        for index, session in enumerate(sessions)
         if len(session.motor_times) >= FIN_SAMPLES_MIN
         for starts in [tuple(_starts(session))]
         if starts
         for spline, readings in [(_smooth_fins(session), _Readings.of(session))]
         for start in starts
     ]
-    if not found:
+    if not pieces:
         raise ValueError(
             "No part of these sessions can be used: it takes depth, IMU and fins without a gap for "
             f"{WINDOW:g} s, with the robot deeper than {100 * COVERED:.0f} cm."
         )
-    if len(found) > WINDOWS_MAX:
-        found = [found[int(one)] for one in np.linspace(0, len(found) - 1, WINDOWS_MAX).round()]
-    places, splines, starts, measured, states = zip(*found, strict=True)
+    if len(pieces) > WINDOWS_MAX:
+        pieces = [pieces[int(position)] for position in np.linspace(0, len(pieces) - 1, WINDOWS_MAX).round()]
+    places, splines, starts, measured, states = zip(*pieces, strict=True)
     return Windows(np.stack(measured, axis=2), splines, starts, places, np.stack(states, axis=1))
 
 
 def _starts(session: SessionStreams) -> Iterator[float]:
-    """The first moments of windows that follow each other."""
+    """Yield the first moments of windows that follow each other."""
     streams = (session.motor_times, session.imu_times, session.depth_times)
     if any(len(times) < 2 for times in streams):
         return
@@ -191,7 +191,7 @@ class _Readings:
 def _sample(
     session: SessionStreams, readings: _Readings, start: float, craft: Craft
 ) -> tuple[Floats, Floats]:
-    """The measured channels on the grid, and a guess of the state at its start."""
+    """Return the measured channels on the grid, and a guess of the state at its start."""
     grid = start + np.arange(round(WINDOW / STEP) // EVERY + 1) * STEP * EVERY + MEASURED_AGE
     measured = np.empty((CHANNELS, len(grid)))
     measured[0] = readings.depth(grid + DEPTH_LATENCY)
@@ -212,7 +212,7 @@ def _sample(
 
 
 def _smooth_fins(session: SessionStreams) -> BSpline:
-    """The fin angles over time, smoothed above `FIN_CUTOFF`.
+    """Return the fin angles over time, smoothed above `FIN_CUTOFF`.
 
     A smoothing spline that charges λ for each unit of ∫θ̈² passes the share 1 / (1 + λ·Δt·(2πf)⁴) of a
     frequency f (P. Craven and G. Wahba, Numerische Mathematik 31, 1979).
@@ -227,17 +227,17 @@ def _smooth_fins(session: SessionStreams) -> BSpline:
         make_smoothing_spline(times, column, weight, charge)
         for column, weight in zip(angles.T, weights.T, strict=True)
     ]
-    return BSpline(fins[0].t, np.stack([one.c for one in fins], axis=1), fins[0].k)
+    return BSpline(fins[0].t, np.stack([fin.c for fin in fins], axis=1), fins[0].k)
 
 
 def _ascending(times: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Without samples whose time is not after the one before."""
+    """Return the stream without samples whose time is not after the previous one's."""
     later = np.concatenate(([True], np.diff(np.maximum.accumulate(times)) > 0))
     return times[later], values[later]
 
 
 def sensor_noise(session: SessionStreams) -> dict[str, float]:
-    """The noise (σ) of pressure (Pa), turn rate (rad/s) and specific force (m/s²), without a model.
+    """Return the noise (σ) of pressure (Pa), turn rate (rad/s) and specific force (m/s²), without a model.
 
     A fourth difference removes what the hull does (less than 0.1 % of a stroke's motion remains at 100 Hz)
     and leaves white noise √70 times as large. The least of the axes counts, since strokes shake some of them.
@@ -249,7 +249,7 @@ def sensor_noise(session: SessionStreams) -> dict[str, float]:
         "gyroscope": Imu.wires["rate"],
         "accelerometer": Imu.wires["force"],
     }
-    found = {}
+    noise = {}
     for name, values in columns.items():
         if len(values) < 100:
             continue
@@ -257,5 +257,5 @@ def sensor_noise(session: SessionStreams) -> dict[str, float]:
         # The quietest 90 %: where a fin turns round, the hull jerks.
         quiet = np.sort(fourth**2, axis=0)[: int(0.9 * len(fourth))]
         variance = float(np.min(quiet.mean(axis=0))) / _TRIMMED
-        found[name] = float(np.sqrt(max(variance - wires[name].scale ** 2 / 12, 0.0)))
-    return found
+        noise[name] = float(np.sqrt(max(variance - wires[name].scale ** 2 / 12, 0.0)))
+    return noise

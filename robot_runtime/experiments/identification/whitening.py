@@ -1,6 +1,6 @@
-"""Whitens residuals, so that each of them counts as much as it says.
+"""Whitening of residuals, so that each counts by its accuracy.
 
-What the encoders' errors do to the simulated hull grows with the fins' speed; while the robot drifts with its
+The encoders' errors move the simulated hull more, the faster the fins are; while the robot drifts with its
 fins at rest, the residuals of turn rates are a tenth as large. So each channel's variance is a sum: a fixed
 part, and one in proportion to the fins' mean square speed.
 
@@ -27,7 +27,7 @@ _LEAST = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Whitening:
-    """The autoregressive model of each channel, and the standard deviations of what it leaves."""
+    """The autoregressive model of each channel, and the standard deviations of its innovations."""
 
     coefficients: Floats
     """Of shape (channels, ORDER), the newest residual first."""
@@ -36,7 +36,7 @@ class Whitening:
 
     @classmethod
     def of(cls, errors: Floats, activity: Floats) -> "Whitening":
-        """The model of residuals of shape (windows, channels, moments), by Yule and Walker.
+        """Return the model of residuals of shape (windows, channels, moments), by Yule and Walker.
 
         `activity` is the fins' mean square speed (rad²/s²), of shape (windows, moments).
         """
@@ -49,35 +49,35 @@ class Whitening:
         )
         # A share of white noise: a channel without any would leave the equations singular.
         products[0] = products[0] * (1 + 1e-6) + _LEAST**2
-        coefficients = np.stack([solve_toeplitz(one[:ORDER], one[1:]) for one in products.T])
+        coefficients = np.stack([solve_toeplitz(product[:ORDER], product[1:]) for product in products.T])
         white = cls.none(np.ones(errors.shape[1]), coefficients).apply(errors)
         later = activity[:, ORDER:]
-        sigma = np.stack([_deviations(one, later) for one in white.transpose(1, 0, 2)], axis=1)
+        sigma = np.stack([_deviations(channel, later) for channel in white.transpose(1, 0, 2)], axis=1)
         return cls(coefficients, sigma)
 
     @classmethod
     def none(cls, sigma: Floats, coefficients: Floats | None = None) -> "Whitening":
-        """The model of residuals with these standard deviations, at all times; by default they are white."""
+        """Return the model of white residuals with these standard deviations at all times."""
         if coefficients is None:
             coefficients = np.zeros((len(sigma), ORDER))
         return cls(coefficients, sigma[None, :, None])
 
     def apply(self, errors: Floats) -> Floats:
-        """Whitens along the third axis, to a standard deviation of 1; the first ORDER moments drop out.
+        """Whiten along the third axis, to a standard deviation of 1; the first ORDER moments drop out.
 
         The axes are windows, channels, moments, and any more.
         """
         moments, more = errors.shape[2], (1,) * (errors.ndim - 3)
-        found = errors[:, :, ORDER:].copy()
+        whitened = errors[:, :, ORDER:].copy()
         for lag, share in enumerate(self.coefficients.T, 1):
             if share.any():
-                found -= share.reshape(-1, 1, *more) * errors[:, :, ORDER - lag : moments - lag]
-        found /= self.sigma.reshape(*self.sigma.shape, *more)
-        return found
+                whitened -= share.reshape(-1, 1, *more) * errors[:, :, ORDER - lag : moments - lag]
+        whitened /= self.sigma.reshape(*self.sigma.shape, *more)
+        return whitened
 
 
 def _deviations(white: Floats, activity: Floats) -> Floats:
-    """The standard deviation of each of a channel's residuals, of shape (windows, moments)."""
+    """Return the standard deviation of each of a channel's residuals, of shape (windows, moments)."""
     parts = np.array_split(np.argsort(activity, axis=None), _PARTS)
     squares = np.array([max((white.ravel()[part] ** 2).mean(), _LEAST**2) for part in parts])
     terms = np.array([(1.0, activity.ravel()[part].mean()) for part in parts])

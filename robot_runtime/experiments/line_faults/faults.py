@@ -23,20 +23,20 @@ class Recurrence:
     """An event with the same probability in each of many trials."""
 
     def __init__(self, rate: float, random: Random) -> None:
-        """Raises ValueError unless the rate is from 0 to 1."""
+        """Raise ValueError unless the rate is from 0 to 1."""
         if not 0 <= rate <= 1:
             raise ValueError(f"a rate is from 0 to 1, and not {rate:g}")
         self._rate = rate
         self._random = random
-        self._left = self._gap()
+        self._distance = self._gap()
 
     def hits(self, trials: int) -> list[int]:
-        """Returns the hits among the next trials, counted from 0."""
+        """Return the hits among the next trials, counted from 0."""
         hits = []
-        while self._left < trials:
-            hits.append(int(self._left))
-            self._left += 1 + self._gap()
-        self._left -= trials
+        while self._distance < trials:
+            hits.append(int(self._distance))
+            self._distance += 1 + self._gap()
+        self._distance -= trials
         return hits
 
     def _gap(self) -> float:
@@ -61,20 +61,20 @@ class FaultyChannel:
         self.seed(seed)
 
     def seed(self, seed: int) -> None:
-        """Seeds all faults from now on."""
+        """Seed all faults from now on."""
         with self._lock:
             self._seed = seed
             self._inserted = self._random("inserted")
             self._flips = self._random("flips")
-            self._burst_left = 0
+            self._burst_rest = 0
             self._faults = {kind: Recurrence(rate, self._random(kind)) for kind, rate in self._rates.items()}
 
     def set_rate(self, kind: Kind, rate: float) -> None:
-        """Sets the probability of this fault for each bit (bit_errors) or byte. Raises ValueError."""
+        """Set the probability of this fault for each bit (bit_errors) or byte. Raise ValueError."""
         self._set(kind, rate)
 
     def burst(self, rate: float, bits: int) -> None:
-        """Sets the probability that a burst of so many bits begins at a bit. Raises ValueError.
+        """Set the probability that a burst of so many bits begins at a bit. Raise ValueError.
 
         Half of the bits in a burst are wrong.
         """
@@ -84,18 +84,18 @@ class FaultyChannel:
         self._burst_bits = bits
 
     def cut(self, cut: bool) -> None:
-        """Cuts the line, or restores it."""
+        """Cut the line, or restore it."""
         self._cut = cut
 
     def clean(self) -> None:
-        """Removes all faults; the counts stay."""
+        """Remove all faults; the counts stay."""
         for kind in self._rates:
             self._set(kind, 0.0)
-        self._burst_left = 0
+        self._burst_rest = 0
         self._cut = False
 
     def carry(self, data: bytes) -> bytes:
-        """Returns the bytes that arrive of these."""
+        """Return the bytes that arrive when these are sent."""
         with self._lock:
             if self._cut:
                 self.counts["cuts"] += len(data)
@@ -133,14 +133,14 @@ class FaultyChannel:
     def _harm_bits(self, data: bytearray) -> None:
         bits = 8 * len(data)
         errors, beginnings = self._faults["bit_errors"].hits(bits), self._faults["burst"].hits(bits)
-        burst = set(range(min(self._burst_left, bits)))
-        end = self._burst_left
+        burst = set(range(min(self._burst_rest, bits)))
+        end = self._burst_rest
         for beginning in beginnings:
             if beginning >= end:
                 self.counts["bursts"] += 1
                 end = beginning + self._burst_bits
                 burst.update(range(beginning, min(end, bits)))
-        self._burst_left = max(end - bits, 0)
+        self._burst_rest = max(end - bits, 0)
         self._turn(data, (bit for bit in sorted(burst) if self._flips.getrandbits(1)), "burst_errors")
         self._turn(data, (bit for bit in errors if bit not in burst), "bit_errors")
 

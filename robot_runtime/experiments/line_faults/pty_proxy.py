@@ -34,7 +34,7 @@ _CHECK_SECONDS = 0.1  # s between two looks whether the line has ended
 class PtyProxy:
     """The pseudo-terminal at `link` and the port behind it, with a thread that carries bytes between them.
 
-    Raises PortError where one of them cannot be had. `failure` says why the line ended by itself.
+    Raises PortError where one of them cannot be opened. `failure` says why the line ended by itself.
     """
 
     def __init__(self, port: str, baud: int, link: Path, seed: int = 0) -> None:
@@ -69,7 +69,7 @@ class PtyProxy:
         self.close()
 
     def close(self) -> None:
-        """Ends the line and removes the link."""
+        """End the line and remove the link."""
         self._ending = True
         self._wake()
         self._thread.join()
@@ -78,12 +78,12 @@ class PtyProxy:
         self._close_files()
 
     def seed(self, seed: int) -> None:
-        """Seeds all faults from now on, in both directions."""
+        """Seed all faults from now on, in both directions."""
         for channel in self.channels.values():
             channel.seed(seed)
 
     def stall(self, direction: Direction, seconds: float) -> None:
-        """Delays sent bytes for this many s. Raises ValueError for less than 0 s or more than an hour."""
+        """Delay sent bytes for this many s. Raise ValueError for less than 0 s or more than an hour."""
         if not 0 <= seconds <= _STALL_MAX:
             raise ValueError("a stall lasts from 0 s to an hour")
         self.channels[direction].counts["stalls"] += seconds > 0
@@ -91,18 +91,18 @@ class PtyProxy:
         self._wake()
 
     def clean(self, direction: Direction) -> None:
-        """Removes all faults of this direction."""
+        """Remove all faults of this direction."""
         self.channels[direction].clean()
         self._stalled_until[direction] = 0.0
         self._wake()
 
     def stats(self) -> dict[str, int]:
-        """Returns the counts of both directions, by names that begin with the direction."""
+        """Return the counts of both directions, by names that begin with the direction."""
         channels = self.channels.items()
         return {f"{name}_{count}": channel.counts[count] for name, channel in channels for count in COUNTS}
 
     def running(self) -> bool:
-        """True until it ends by itself."""
+        """Return True until the line ends by itself."""
         return self._thread.is_alive()
 
     def _make_link(self) -> None:
@@ -158,7 +158,7 @@ class PtyProxy:
 
 
 def execute(line: PtyProxy, command: str) -> str:
-    """Executes a command and returns the answer. Raises ValueError for an invalid one."""
+    """Execute a command and return the answer. Raise ValueError for an invalid one."""
     match command.split():
         case ["stats"]:
             return " ".join(["stats", *(f"{name}={count}" for name, count in line.stats().items())])
@@ -171,9 +171,9 @@ def execute(line: PtyProxy, command: str) -> str:
     return "ok"
 
 
-def _set_fault(line: PtyProxy, direction: Direction, words: list[str]) -> None:
+def _set_fault(line: PtyProxy, direction: Direction, arguments: list[str]) -> None:
     channel = line.channels[direction]
-    match words:
+    match arguments:
         case [("bit_errors" | "drop" | "double" | "insert") as kind, rate]:
             channel.set_rate(kind, float(rate))
         case ["burst", rate, bits]:
@@ -189,7 +189,7 @@ def _set_fault(line: PtyProxy, direction: Direction, words: list[str]) -> None:
 
 
 def main() -> None:
-    """Carries bytes until SIGTERM, SIGINT, or the port goes away."""
+    """Carry bytes until SIGTERM, SIGINT, or the port goes away."""
     arguments = _parser().parse_args()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: sys.exit(0))

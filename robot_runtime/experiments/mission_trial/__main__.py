@@ -14,8 +14,8 @@ from typing import Any
 
 import cv2
 
-from robot_runtime.config import craft_in
-from robot_runtime.contract.craft import Craft
+from robot_runtime.config import craft_document_in
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import MissionLimits
 from robot_runtime.contract.parsing import parse
@@ -33,7 +33,7 @@ BYTES_MAX = 1_000_000_000
 
 
 def main() -> int:
-    """Exit status: 2 where the mission is refused, 1 where its board fails."""
+    """Try the mission. Return the exit status: 2 where the mission is refused, 1 where its board fails."""
     made = boards()
     parser = argparse.ArgumentParser(prog="python -m robot_runtime.experiments.mission_trial")
     parser.add_argument("--board", choices=sorted(made), default="host", help="what runs the firmware")
@@ -47,11 +47,11 @@ def main() -> int:
     cv2.setNumThreads(1)
     try:
         asked = json.load(sys.stdin)
-        craft = craft_in(options.craft) if options.craft else Craft()
+        craft = craft_document_in(options.craft) if options.craft else DEFAULT_DOCUMENT
         limits = parse(MissionLimits, asked["limits"])
         for seed in range(options.first, options.first + options.seeds):
-            scenario = trial_scenario(asked["text"], asked["library"], limits, seed, craft)
-            _write(asdict(try_mission(scenario, made[options.board])))
+            scenario = trial_scenario(asked["text"], asked["library"], limits, seed, craft.craft)
+            _write(asdict(try_mission(scenario, made[options.board], craft)))
     except ConfigError as problem:
         _write({"problems": problem.texts})
         return REFUSED

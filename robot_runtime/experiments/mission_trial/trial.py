@@ -1,4 +1,4 @@
-"""One mission in simulated time, seed by seed: how it ends, how long it takes, how deep it goes."""
+"""One mission in simulated time, seed by seed: its outcome, duration and greatest depth."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -8,13 +8,13 @@ from random import Random
 from typing import Any
 
 from robot_runtime.contract.commands import MissionCommand
-from robot_runtime.contract.craft import Craft
+from robot_runtime.contract.craft import DEFAULT_DOCUMENT, Craft, CraftDocument
 from robot_runtime.contract.documents import Control, MissionStepState
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import MissionLimits, MissionPhase
 from robot_runtime.contract.parsing import TOP
 from robot_runtime.contract.problems import EntryProblem
-from robot_runtime.contract.topics import Kind
+from robot_runtime.contract.topics import CONTROL, MISSION
 from robot_runtime.experiments.scenario.document import DURATION, MISSION_AT, Scenario, read_scenario_table
 from robot_runtime.experiments.scenario.events import CommandEvent
 from robot_runtime.experiments.scenario.rig import MakeBoard
@@ -34,7 +34,7 @@ _MARGIN = 10.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialResult:
-    """The outcome of a mission with one seed. `phase` is null where it did not begin; `text` says why.
+    """The outcome of a mission with one seed. `phase` is null where it did not begin; `text` is the reason.
 
     `failed` is the path of the step by which it failed, empty for the mission's own; null where none did, as
     at a limit. `curve` has the depth, m, every `CURVE_PERIOD` s from its start to its end.
@@ -52,9 +52,9 @@ class TrialResult:
 def trial_scenario(
     text: str, library: Mapping[str, str], limits: MissionLimits, seed: int, craft: Craft
 ) -> Scenario:
-    """The scenario in which a mission is tried: its own `trial` entries, else a pool of 3 m.
+    """Return the scenario in which a mission is tried: its own `trial` entries, else a pool of 3 m.
 
-    Each seed has its own noise and, unless the trial says one, its own heading at the start. Raises
+    Each seed has its own noise and, unless the trial says one, its own heading at the start. Raise
     ConfigError with the problems of the mission and of its trial.
     """
     mission = read_mission(text, library, limits)
@@ -79,16 +79,24 @@ def trial_scenario(
         scenario = read_scenario_table(table, craft)
     except ConfigError as problem:
         raise ConfigError(
-            *(EntryProblem(("trial", *one.path), f"trial: {one.text}", one.words) for one in problem.problems)
+            *(
+                EntryProblem(("trial", *problem.path), f"trial: {problem.text}", problem.words)
+                for problem in problem.problems
+            )
         ) from problem
     begin = CommandEvent(at=MISSION_AT, command=MissionCommand(text=text, library=dict(library)))
-    return replace(scenario, events=tuple(sorted([*scenario.events, begin], key=lambda one: one.at)))
+    return replace(scenario, events=tuple(sorted([*scenario.events, begin], key=lambda event: event.at)))
 
 
-def try_mission(scenario: Scenario, make_board: MakeBoard) -> TrialResult:
-    """Runs a trial's scenario until its mission has ended. Raises BoardError, PortError."""
+def try_mission(
+    scenario: Scenario, make_board: MakeBoard, craft: CraftDocument = DEFAULT_DOCUMENT
+) -> TrialResult:
+    """Run a trial's scenario until its mission has ended. `craft` is what the robot knows of its hull.
+
+    Raise BoardError, PortError.
+    """
     watch = _Watch()
-    run = ScenarioRun(scenario, make_board, watch)
+    run = ScenarioRun(scenario, make_board, watch, craft)
     watch.on_end = run.cancel
     run.perform(lambda _: {})
     last = watch.last
@@ -107,12 +115,12 @@ def try_mission(scenario: Scenario, make_board: MakeBoard) -> TrialResult:
 
 
 def _find_failed(steps: list[dict[str, Any]]) -> str | None:
-    failed = find_failed([MissionStepState(**one) for one in steps])
+    failed = find_failed([MissionStepState(**step) for step in steps])
     return None if failed is None else failed.path
 
 
 class _Watch:
-    """Reads a run's output; calls `on_end` with the mission's end."""
+    """The reader of a run's output; it calls `on_end` with the mission's end."""
 
     def __init__(self) -> None:
         self.on_end: Callable[[], None] = lambda: None
@@ -122,16 +130,16 @@ class _Watch:
         self._began: float | None = None
 
     def blocks(self, data: bytes) -> None:
-        """Takes the mission's documents and the depths."""
+        """Take the mission's documents and the depths."""
         for block in read_blocks(data):
-            if block.topic.name == "mission" and block.topic.kind is Kind.DOCUMENTS:
+            if block.topic is MISSION:
                 documents = json.loads(block.payload)
                 self.last = documents[-1]
                 if self._began is None:
                     self._began = documents[0]["time"]
                 if not self._is_running:
                     self.on_end()
-            elif block.topic.name == "control" and self._began is not None and self._is_running:
+            elif block.topic is CONTROL and self._began is not None and self._is_running:
                 for time, record in read_rows(block):
                     due = self._began + len(self.curve) * CURVE_PERIOD
                     if isinstance(record, Control) and time >= due:
@@ -142,6 +150,6 @@ class _Watch:
         return self.last is not None and self.last["phase"] in ("running", "paused")
 
     def event(self, event: str, **more: Any) -> None:
-        """Notes what was refused."""
+        """Record a refusal."""
         if event == "ended" and more.get("problem"):
             self.problem = str(more["problem"])

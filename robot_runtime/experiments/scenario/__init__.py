@@ -1,1 +1,1 @@
-"""Experiments as documents: what the water, the robot and the operator do, second by second."""
+"""Experiments as documents: the actions of water, robot and operator, second by second."""

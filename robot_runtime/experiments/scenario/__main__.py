@@ -44,17 +44,17 @@ BYTES_MAX = 1_000_000_000
 
 
 class RunOutput:
-    """Writes a run's data and events."""
+    """The output of a run's data and events."""
 
     def __init__(self, output: UnbufferedOutput) -> None:
         self._output = output
 
     def blocks(self, data: bytes) -> None:
-        """Writes a message of blocks."""
+        """Write a message of blocks."""
         self._write(BLOCKS, data)
 
     def event(self, event: str, **more: Any) -> None:
-        """Writes an event."""
+        """Write an event."""
         self._write(
             EVENTS, json.dumps({"event": event, **more}, allow_nan=False, separators=(",", ":")).encode()
         )
@@ -64,7 +64,7 @@ class RunOutput:
 
 
 def main() -> int:
-    """Exit status: 2 where the scenario is refused, 1 where its board fails."""
+    """Run the scenario. Return the exit status: 2 where the scenario is refused, 1 where its board fails."""
     made = boards()
     parser = argparse.ArgumentParser(prog="python -m robot_runtime.experiments.scenario", description=__doc__)
     parser.add_argument("--board", choices=sorted(made), default="host", help="what runs the firmware")

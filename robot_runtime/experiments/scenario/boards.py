@@ -16,7 +16,7 @@ BUILD = Path(os.environ.get("MUCAT_BUILD", places.BUILD))
 
 
 def boards() -> dict[str, MakeBoard]:
-    """Returns the factory of each kind of board: `host`, this computer, and `emulated`, the robot's chip."""
+    """Return the factory of each kind of board: `host`, this computer, and `emulated`, the robot's chip."""
     elf = firmware_path(BUILD, LinkConfig().baud, ".elf")
     return {
         "host": partial(HostBoard, BUILD / "libhost_board.so"),

@@ -15,14 +15,18 @@ from robot_runtime.vision.cards import CameraCard
 
 
 def needs_camera(scenario: Scenario) -> bool:
-    """True if the scenario shows anything to its camera; a card camera sees only cards."""
+    """Return True if the scenario shows anything to its camera; a card camera sees only cards."""
     return scenario.vision.camera == "scene" or any(
-        isinstance(one, CommandEvent) and isinstance(one.command, CardCommand) for one in scenario.events
+        isinstance(event, CommandEvent) and isinstance(event.command, CardCommand)
+        for event in scenario.events
     )
 
 
 class RenderedSceneCamera(Camera):
-    """Renders what the robot sees now. Raises RuntimeError or ImportError where nothing can be rendered."""
+    """The view of the robot, rendered by MuJoCo.
+
+    Raises RuntimeError or ImportError where nothing can be rendered.
+    """
 
     def __init__(
         self,
@@ -35,28 +39,28 @@ class RenderedSceneCamera(Camera):
         # Loads MuJoCo, which most scenarios do without.
         from robot_runtime.simulation.scene.scene import SceneRenderer
 
-        self._size = (config.width, config.height)
+        self.size = config.size
         self._clock = clock
         self._simulator = simulator
         self._card = card
-        self._place = scenario.scene
-        self._rendered = SceneRenderer(_contents(self._place, simulator), scenario.robot)
+        self._scene = scenario.scene
+        self._rendered = SceneRenderer(_contents(self._scene, simulator), scenario.robot)
 
     def read(self) -> CameraFrame:
-        """Renders the current picture."""
-        contents = _contents(self._place, self._simulator)
+        """Render the current picture."""
+        contents = _contents(self._scene, self._simulator)
         if contents != self._rendered.contents:
             self._rendered.fill(contents)
         time, truth, card = self._clock.now(), self._simulator.truth(), self._card()
         # Numbers as they travel to the scene's own process.
         seen = Truth.from_bytes(truth.to_bytes())
         picture = self._rendered.render_camera(
-            time, seen, *self._size, card.paint if card else None, marked=bool(card and card.marked)
+            time, seen, *self.size, card.paint if card else None, marked=bool(card and card.marked)
         )
         return CameraFrame(picture, time)
 
     def close(self) -> None:
-        """Releases the renderer."""
+        """Release the renderer."""
         self._rendered.close()
 
     def __str__(self) -> str:
@@ -66,10 +70,11 @@ class RenderedSceneCamera(Camera):
 
 def _contents(scene: Scene, simulator: Simulator) -> Contents:
     return Contents(
-        place=SceneWater(kind=scene.kind, turbidity=scene.turbidity),
+        water=SceneWater(kind=scene.kind, turbidity=scene.turbidity),
         basin=scene.basin,
         beacons=simulator.surroundings().beacons,
         targets=tuple(
-            Target(colour=one.colour, position=one.position, size=one.size) for one in scene.targets
+            Target(colour=target.colour, position=target.position, size=target.size)
+            for target in scene.targets
         ),
     )

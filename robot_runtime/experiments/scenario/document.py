@@ -1,4 +1,4 @@
-"""The scenario: a TOML document that says everything about an experiment, read strictly.
+"""The scenario: a TOML document that describes an experiment completely, read strictly.
 
 SI units; world axes north, east, down from the start, angles in rad. docs/use/scenarios.md has the table.
 """
@@ -6,11 +6,12 @@ SI units; world axes north, east, down from the start, angles in rad. docs/use/s
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Annotated, Any, Literal, get_type_hints
+from typing import Annotated, Any, Literal
 
 from robot_runtime.config import ControlConfig
 from robot_runtime.contract.commands import MissionCommand
 from robot_runtime.contract.craft import Craft, complete_sensors
+from robot_runtime.contract.hints import read_fields
 from robot_runtime.contract.limits import VISION_RATE, ConfigError, Range
 from robot_runtime.contract.missions import NO_LIMITS, MissionLimits
 from robot_runtime.contract.parsing import TOP, parse, read_value
@@ -59,7 +60,7 @@ _LIMITS: dict[str, tuple[float, float]] = {
     "latency": (0.0, 5.0),
 }
 DEFAULT_CRAFT = Craft()
-_OF_A_CRAFT = frozenset(one.name for one in fields(Craft))
+_OF_A_CRAFT = frozenset(field.name for field in fields(Craft))
 """Numbers whose limits are the craft's own."""
 _ELSEWHERE = {"floor": "[scene] depth", "beacons": "[scene] beacons"}
 
@@ -96,7 +97,7 @@ class Scene:
 
     @property
     def basin(self) -> Basin:
-        """Returns floor and walls."""
+        """The floor and walls."""
         return Basin(self.depth, self.length, self.width)
 
 
@@ -148,15 +149,15 @@ class Scenario:
     events: tuple[TimedEvent, ...] = ()
 
     def __post_init__(self) -> None:
-        problems = [*self._words(), *self._water(), *self._mistakes(), *self._events()]
+        problems = [*self._texts(), *self._water(), *self._mistakes(), *self._events()]
         if problems:
             raise ConfigError(*problems)
 
-    def _words(self) -> list[EntryProblem]:
+    def _texts(self) -> list[EntryProblem]:
         problems = []
         if not NAME.fullmatch(self.name):
-            words = f"is {self.name!r}; it is 1 to 60 small letters, digits, - and _, as it names a file"
-            problems.append(TOP.field("name").problem(words))
+            text = f"is {self.name!r}; it is 1 to 60 small letters, digits, - and _, as it names a file"
+            problems.append(TOP.field("name").problem(text))
         if not 1 <= len(self.title.strip()) <= TITLE_MAX:
             problems.append(TOP.field("title").problem(f"must be a text of 1 to {TITLE_MAX} characters"))
         if len(self.description) > DESCRIPTION_MAX:
@@ -169,9 +170,9 @@ class Scenario:
         problems: list[str | EntryProblem] = []
         waves = [("water: waves", self.water.waves)]
         waves += [
-            (f"event at {one.at:g} s", one.change)
-            for one in self.events
-            if isinstance(one, WaterEvent) and isinstance(one.change, Waves)
+            (f"event at {event.at:g} s", event.change)
+            for event in self.events
+            if isinstance(event, WaterEvent) and isinstance(event.change, Waves)
         ]
         for where, wave in waves:
             try:
@@ -199,9 +200,9 @@ class Scenario:
 
     def _events(self) -> list[str]:
         return [
-            f"event {one.do} at {one.at:g} s comes after the end; the scenario lasts {self.duration:g} s"
-            for one in self.events
-            if one.at > self.duration
+            f"event {event.do} at {event.at:g} s comes after the end; the scenario lasts {self.duration:g} s"
+            for event in self.events
+            if event.at > self.duration
         ]
 
 
@@ -218,7 +219,7 @@ _STAND_IN: dict[str, Any] = {
 def read_scenario(
     text: str, craft: Craft = DEFAULT_CRAFT, missions: Mapping[str, str] | None = None
 ) -> Scenario:
-    """The scenario that a TOML text says, on this robot's craft. Raises ConfigError with all problems.
+    """Return the scenario in a TOML text, on this robot's craft. Raise ConfigError with all problems.
 
     `missions` are the texts of the library's, by name; without it, those that ship with the program.
     """
@@ -232,7 +233,7 @@ def read_scenario(
 def read_scenario_table(
     table: dict[str, Any], craft: Craft = DEFAULT_CRAFT, missions: Mapping[str, str] | None = None
 ) -> Scenario:
-    """The scenario that a table says, as `read_scenario`."""
+    """Return the scenario in a table, as `read_scenario`."""
     problems: list[str | EntryProblem] = []
     own = craft if table.get("craft") == "robot" else DEFAULT_CRAFT
     values = {"robot": SimulationParameters.of(own)} | _read_entries(table, own, problems)
@@ -249,7 +250,7 @@ def read_scenario_table(
         text = library[scenario.mission]
         command = MissionCommand(text=text, library=called_by(text, library))
         events = [*scenario.events, CommandEvent(at=MISSION_AT, command=command)]
-        scenario = replace(scenario, events=tuple(sorted(events, key=lambda one: one.at)))
+        scenario = replace(scenario, events=tuple(sorted(events, key=lambda event: event.at)))
     return replace(scenario, control=tune_to_craft(scenario.control, own))
 
 
@@ -265,8 +266,8 @@ def _check_mission(scenario: Scenario, library: Mapping[str, str]) -> list[Entry
 
 
 def _read_entries(table: dict[str, Any], craft: Craft, problems: list[str | EntryProblem]) -> dict[str, Any]:
-    """Returns the valid entries of the table; adds the problems of the others."""
-    hints = get_type_hints(Scenario, include_extras=True)
+    """Return the valid entries of the table; add the problems of the others."""
+    hints = read_fields(Scenario)
     values: dict[str, Any] = {}
     for name, value in table.items():
         try:
@@ -274,7 +275,7 @@ def _read_entries(table: dict[str, Any], craft: Craft, problems: list[str | Entr
                 where = TOP.field(name, repr(name))
                 problems.append(where.problem(f"is not known here; known are {', '.join(hints)}"))
             elif name == "events":
-                values[name] = tuple(sorted(_read_events(value, problems), key=lambda one: one.at))
+                values[name] = tuple(sorted(_read_events(value, problems), key=lambda event: event.at))
             elif name == "robot":
                 values[name] = _read_robot(value, craft)
             else:
@@ -302,7 +303,7 @@ def _read_events(tables: Any, problems: list[str | EntryProblem]) -> list[TimedE
 
 
 def _read_robot(table: Any, craft: Craft) -> SimulationParameters:
-    """The simulated robot with what the scenario changes about it. Raises ConfigError."""
+    """Return the simulated robot with the scenario's changes. Raise ConfigError."""
     plain = SimulationParameters.of(craft)
     if not isinstance(table, dict):
         raise ConfigError(ROBOT.problem("must be a table"))
@@ -327,12 +328,12 @@ def _read_robot(table: Any, craft: Craft) -> SimulationParameters:
 
 
 def _check_number(where: DocumentEntry, value: Any, default: Any) -> list[EntryProblem]:
-    """Returns the problems of an overridden number, or of each in a tuple, that the physics cannot handle."""
+    """Return the problems of an overridden number, or of each in a tuple, that the physics cannot handle."""
     if isinstance(value, tuple):
         return [
             problem
-            for index, (one, own) in enumerate(zip(value, default, strict=True))
-            for problem in _check_number(where.item(index), one, own)
+            for index, (number, own) in enumerate(zip(value, default, strict=True))
+            for problem in _check_number(where.item(index), number, own)
         ]
     if isinstance(value, SensorQuality):
         return _check_number(where.key("latency"), value.latency, 0.0) if value.latency else []

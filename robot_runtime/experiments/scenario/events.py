@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, make_dataclass
+from functools import cache
 from math import hypot
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -15,6 +16,7 @@ from robot_runtime.contract.commands import (
     RobotCommand,
     VisionCommand,
 )
+from robot_runtime.contract.declarations import Declarations
 from robot_runtime.contract.limits import ConfigError, Range
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.problems import DocumentEntry
@@ -49,7 +51,7 @@ _LINE_NUMBERS: dict[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TimedEvent(ABC):
-    """Something that happens at a time (s since the start)."""
+    """An event at a time (s since the start)."""
 
     do: ClassVar[str]
 
@@ -57,7 +59,7 @@ class TimedEvent(ABC):
 
     @property
     @abstractmethod
-    def words(self) -> str:
+    def label(self) -> str:
         """A short description of the event."""
 
 
@@ -73,9 +75,9 @@ class CommandEvent(TimedEvent):
         return self.command.policy.name
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """A short description of the event."""
-        return self.command.words
+        return self.command.label
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +97,7 @@ class WaterEvent(TimedEvent):
         return {name: value for name, value in asdict(self.change).items() if value is not None}
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """A short description of the event."""
         match self.change:
             case BeaconPositions(positions=places):
@@ -142,7 +144,7 @@ class LineFaultChange(TimedEvent):
                 raise ValueError(f"a line's {self.kind} takes {' and '.join(allowed) or 'nothing more'}")
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """A short description of the event."""
         way = "Line to the board" if self.direction == "to_board" else "Line from the board"
         if self.kind == "cut":
@@ -152,10 +154,10 @@ class LineFaultChange(TimedEvent):
     @property
     def command(self) -> str:
         """The command to the emulated board's socket."""
-        given = [one for one in (self.rate, self.length, self.seconds) if one is not None]
+        given = [value for value in (self.rate, self.length, self.seconds) if value is not None]
         if self.on is not None:
             return f"line {self.direction} cut {'on' if self.on else 'off'}"
-        return " ".join([f"line {self.direction} {self.kind}", *(f"{one:g}" for one in given)])
+        return " ".join([f"line {self.direction} {self.kind}", *(f"{value:g}" for value in given)])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,37 +173,39 @@ class BookmarkEvent(TimedEvent):
             raise ValueError(f"a marker's text has 1 to {TEXT_MAX} characters")
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """A short description of the event."""
         return self.text
 
 
-EVENTS: dict[str, type[TimedEvent]] = {"line": LineFaultChange, "marker": BookmarkEvent}
-"""Events of the serial line and of the recording, by name."""
-
-
-def event_names() -> list[str]:
-    """Every `do` that a scenario may have."""
-    commands = (name for name, cls in COMMANDS.items() if cls.policy.in_scenarios)
-    return [*commands, *WATER_CHANGES, *EVENTS]
+EVENTS: Declarations[str, Any] = Declarations("the name of a scenario's event")
+"""Every `do` that a scenario may have: commands, changes of the water, events of line and recording."""
+for _command in COMMANDS.values():
+    if _command.policy.in_scenarios:
+        EVENTS[_command.policy.name] = _command
+for _name, _change in WATER_CHANGES.items():
+    EVENTS[_name] = _change
+EVENTS["line"] = LineFaultChange
+EVENTS["marker"] = BookmarkEvent
 
 
 def read_event(table: Any, where: DocumentEntry) -> TimedEvent:
-    """An event from its table. Raises ConfigError with all problems."""
+    """Return an event from its table. Raise ConfigError with all problems."""
     if not isinstance(table, Mapping):
         raise ConfigError(where.problem("must be a table"))
     do = table.get("do")
-    if do not in (names := event_names()):
+    if not isinstance(do, str) or do not in EVENTS:
         what = "is missing" if do is None else f"is {do!r}"
-        raise ConfigError(where.field("do").problem(f"{what}; it must be one of {', '.join(names)}"))
+        raise ConfigError(where.field("do").problem(f"{what}; it must be one of {', '.join(EVENTS)}"))
     rest = {name: value for name, value in table.items() if name != "do"}
-    if do in EVENTS:
-        return parse(EVENTS[do], rest, where)
+    cls = EVENTS[do]
+    if issubclass(cls, TimedEvent):
+        event: TimedEvent = parse(cls, rest, where)
+        return event
     if do == "waves" and "amplitude" not in table:
         raise ConfigError(where.field("amplitude").problem("is missing"))
-    cls: Any = WATER_CHANGES.get(do) or COMMANDS[do]
-    timed: Any = parse(make_dataclass(do, [], bases=(cls, _Timed), frozen=True, kw_only=True), rest, where)
-    content = cls(**{one.name: getattr(timed, one.name) for one in fields(cls)})
+    timed: Any = parse(_timed(cls), rest, where)
+    content = cls(**{field.name: getattr(timed, field.name) for field in fields(cls)})
     _check(content, where)
     if isinstance(content, RobotCommand):
         return CommandEvent(at=timed.at, command=content)
@@ -213,8 +217,14 @@ class _Timed:
     at: Annotated[float, AT]
 
 
+@cache
+def _timed(cls: type) -> Any:
+    """Return the class of an event's entries: those of the change or command, and its time."""
+    return make_dataclass(cls.__name__, [], bases=(cls, _Timed), frozen=True, kw_only=True)
+
+
 def _check(content: RobotCommand | WaterChange, where: DocumentEntry) -> None:
-    """Raises ConfigError where a scenario's robot or simulator could not do it."""
+    """Raise ConfigError where a scenario's robot or simulator cannot perform the command."""
     try:
         match content:
             case BeaconPositions(positions=positions):

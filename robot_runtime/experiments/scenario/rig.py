@@ -1,98 +1,38 @@
 """The robot, its board and its water, put together for one scenario in simulated time, in one thread."""
 
 from collections.abc import Callable
-from hashlib import sha256
 from random import Random
 from typing import Protocol, Self
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.config import Config, LinkConfig, VisionConfig
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.contract.documents import Event
 from robot_runtime.contract.topics import CRAFT, TRUTH
-from robot_runtime.core import Core
 from robot_runtime.experiments.scenario.cameras import RenderedSceneCamera
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.link.link_driver import LinkDriver
+from robot_runtime.experiments.scenario.simulated_robot import SimulatedRobot
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Water
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.water.craft_report import CraftReport
+from robot_runtime.simulation.water.faults import FaultOfDevice
 from robot_runtime.simulation.water.requests import TRUTH_PERIOD
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
-from robot_runtime.transport.outbox import STREAM, Outbox
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import CameraCard
-from robot_runtime.vision.node import VisionNode
 
 _NOISY = -round(1.0 / PERIOD)
 _TRUTH_EVERY = round(TRUTH_PERIOD / PERIOD)
 
 
 class MakeBoard(Protocol):
-    """Makes the board that the robot runs on, in this water."""
+    """The factory of the board that the robot runs on, in this water."""
 
     def __call__(self, water: Water, /) -> SteppedBoard:
-        """The board, just powered. Raises BoardError."""
+        """Return the board, just powered. Raise BoardError."""
         ...
-
-
-class SimulatedRobot(Core):
-    """The robot whose time is the scenario's; `send` gets what it publishes, blocks one after the other.
-
-    The vision node runs in this process, one step after the other.
-    """
-
-    vision: VisionNode
-
-    def __init__(
-        self,
-        scenario: Scenario,
-        clock: SimulatedClock,
-        send: Callable[[bytes], None],
-        open_camera: Callable[[], Camera],
-    ) -> None:
-        number = sha256(f"{scenario.name} {scenario.seed}".encode())
-        baud = LinkConfig().baud
-        config = Config(
-            control=scenario.control,
-            vision=VisionConfig(
-                camera=scenario.vision.camera,
-                rate=scenario.vision.rate,
-                colour=scenario.vision.colour,
-                markers=scenario.vision.markers,
-            ),
-            missions=scenario.missions,
-        )
-        self.link = LinkDriver(
-            "simulated",
-            baud,
-            clock,
-            int.from_bytes(number.digest()[:2], "big"),
-            self.take_messages,
-            self.link_changed,
-        )
-
-        def publish(name: str, payload: bytes) -> None:
-            if name == STREAM:
-                send(payload)
-
-        super().__init__(
-            config,
-            clock,
-            number.hexdigest()[:16],
-            self.link,
-            Outbox(publish, lambda _: False),
-            watched=lambda _: False,
-            open_vision=lambda outputs: VisionNode(config.vision, clock, outputs, open_camera),
-        )
-
-    def publish_tick(self) -> None:
-        """Publishes what is due. An operator's page counts as open: simulated time has none to close."""
-        self.missions.see_pages(1)
-        super().publish_tick()
 
 
 class ScenarioRig:
@@ -121,9 +61,9 @@ class ScenarioRig:
         # No sensor is without noise, and one that is counts as frozen. Before that it learns the surface's,
         # which is exact then, as the scenario says it.
         self._noise = Random(f"{scenario.seed} prelude").gauss
-        self._broken: frozenset[str] = frozenset()
+        self._device_faults: dict[str, FaultOfDevice] = {}
         self._camera: Camera | None = None
-        self.robot = SimulatedRobot(scenario, self.clock, send, self._open_camera)
+        self.robot = SimulatedRobot(scenario, self.clock, send, self._open_camera, craft.craft)
         self.board = make_board(self._advance_water)
         self.board.seed_line(scenario.seed)
         for mistake in scenario.mistakes:
@@ -139,7 +79,7 @@ class ScenarioRig:
         self.board.close()
 
     def run(self, periods: int) -> bytes:
-        """Advances by this many `PERIOD`s; returns the bytes from the board."""
+        """Advance by this many `PERIOD`s; return the bytes from the board."""
         data = self.board.run(periods)
         # Not a sum of many small numbers.
         self._period += periods
@@ -147,13 +87,13 @@ class ScenarioRig:
         return data
 
     def break_devices(self) -> None:
-        """Makes the board's devices fail or answer again, by the sensors' faults."""
-        devices = self.simulator.broken_devices
-        for device in sorted(devices - self._broken):
-            self.board.fault(device, "absent")
-        for device in sorted(self._broken - devices):
+        """Make the board's devices fail or answer again, by the sensors' faults."""
+        faults = self.simulator.device_faults
+        for device, fault in sorted(faults.items() - self._device_faults.items()):
+            self.board.fault(device, fault)
+        for device in sorted(self._device_faults.keys() - faults.keys()):
             self.board.fault(device, "none")
-        self._broken = devices
+        self._device_faults = faults
 
     def _advance_water(self, fins: FinMotion) -> Reading:
         if self._period < 0:
@@ -186,15 +126,15 @@ class ScenarioRig:
             except (ImportError, RuntimeError) as error:
                 problem = str(error)
             if problem is not None:
-                words = f"Camera: the scene cannot be rendered: {problem}. A drawn card stands in."
+                text = f"Camera: the scene cannot be rendered: {problem}. A drawn card stands in."
                 self.robot.publish_event(
-                    Event(time=self.clock.now(), kind="camera", severity="caution", text=words)
+                    Event(time=self.clock.now(), kind="camera", severity="caution", text=text)
                 )
         return self._camera
 
 
 def _fill(scenario: Scenario) -> Simulator:
-    """The water and the hull at the scenario's start."""
+    """Return the water and the hull at the scenario's start."""
     simulator = Simulator(scenario.robot, scenario.seed)
     simulator.set_basin(scenario.scene.basin)
     simulator.set_beacons(scenario.scene.beacons)

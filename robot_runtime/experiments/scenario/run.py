@@ -1,4 +1,4 @@
-"""A scenario in simulated time, as fast as it goes: the same steps as in real time, one after the other.
+"""A scenario in simulated time, as fast as possible: the steps of real time, one after the other.
 
 Nothing here looks at the computer's clock, and nothing runs beside it, so that the same scenario and seed
 give the same bytes. Before time 0 the board lies powered in still water at the surface for `PRELUDE`, as a
@@ -35,19 +35,19 @@ PROGRESS_EVERY = 1.0
 
 
 class RunListener(Protocol):
-    """Receives the data and the events of a run; times are s since its start."""
+    """Receiver of the data and the events of a run; times are s since its start."""
 
     def blocks(self, data: bytes) -> None:
-        """Takes the robot's data: blocks one after the other."""
+        """Take the robot's data: blocks one after the other."""
         ...
 
     def event(self, event: str, **more: Any) -> None:
-        """Receives an event of the run: started, progress, marker or ended."""
+        """Receive an event of the run: started, progress, marker or ended."""
         ...
 
 
 class ScenarioRun:
-    """One run of a scenario on this kind of board; `perform` does it all. `craft` is the robot's."""
+    """One run of a scenario on this kind of board; `perform` runs all of it. `craft` is the robot's."""
 
     def __init__(
         self,
@@ -64,13 +64,13 @@ class ScenarioRun:
         self._cancelled = False
 
     def cancel(self) -> None:
-        """Ends `perform` soon, in order; may be called from a signal handler."""
+        """End `perform` soon, in order; may be called from a signal handler."""
         self._cancelled = True
 
     def perform(self, describe: Callable[[bytes], Mapping[str, str]]) -> None:
-        """Runs the whole scenario. `describe` returns what the start event says about the board's program.
+        """Run the whole scenario. `describe` returns the board's program for the start event.
 
-        Raises BoardError where there is no board, or it goes away.
+        Raise BoardError where there is no board, or it goes away.
         """
         with ScenarioRig(self._scenario, self._make_board, self._send, PRELUDE, self._craft) as rig:
             run_loop = _RunLoop(rig, self._listener, lambda: self._cancelled)
@@ -86,7 +86,7 @@ class ScenarioRun:
 
 
 class _RunLoop:
-    """Advances the rig from the prelude on; `stopped` tells if it is to end early."""
+    """The loop that advances the rig from the prelude on; `stopped` returns True to end early."""
 
     def __init__(self, rig: ScenarioRig, listener: RunListener, stopped: Callable[[], bool]) -> None:
         self._rig = rig
@@ -107,7 +107,7 @@ class _RunLoop:
         rig.robot.bus.on_document(EVENT, self._see_event)
 
     def wait_for_start(self) -> None:
-        """Runs the prelude."""
+        """Run the prelude."""
         self._until(0.0)
         robot = self._rig.robot
         robot.outbox.flush()
@@ -115,7 +115,7 @@ class _RunLoop:
         self._tasks.append(PeriodicTask(0.0, PROGRESS_EVERY, self._report_progress))
 
     def play(self) -> None:
-        """Runs all events, until the end or until it is stopped."""
+        """Run all events, until the end or until it is stopped."""
         scenario = self._rig.scenario
         for event in scenario.events:
             self._until(event.at)
@@ -125,7 +125,7 @@ class _RunLoop:
         self._until(scenario.duration)
 
     def finish(self, *, cancelled: bool) -> None:
-        """Disarms the robot and reports how the run ended."""
+        """Disarm the robot and report how the run ended."""
         robot, clock = self._rig.robot, self._rig.clock
         if robot.supervisor.armed:
             robot.supervisor.stop(f"The scenario {'was cancelled' if cancelled else 'ended'}.")
@@ -141,7 +141,7 @@ class _RunLoop:
         )
 
     def _until(self, end: float) -> None:
-        """Advances the time to `end` (s), or until it is stopped."""
+        """Advance the time to `end` (s), or until it is stopped."""
         rig = self._rig
         while (now := rig.clock.now()) < end - SAME_TIME and not self._stopped():
             self._poll_link(now)
@@ -157,7 +157,7 @@ class _RunLoop:
             self._received += rig.run(periods)
 
     def _poll_link(self, now: float) -> None:
-        """Does the work of the link's thread: collects bytes, handles them, sends what is due."""
+        """Do the work of the link's thread: collect bytes, handle them, send what is due."""
         line = self._rig.robot.link
         if now < self._next_poll - SAME_TIME and (line.gathering or not self._received):
             return
@@ -179,12 +179,12 @@ class _RunLoop:
             self._refuse(event, str(problem))
         else:
             if not _arms(event):
-                self._add_bookmark(event.words)
+                self._add_bookmark(event.label)
 
     def _do(self, event: TimedEvent, now: float) -> None:
         rig = self._rig
         if isinstance(event, CommandEvent) and isinstance(command := event.command, ArmCommand):
-            arming = rig.robot.supervisor.begin_arming(command.mode, command.alone)
+            arming = rig.robot.supervisor.begin_arming(command.mode, command.alone, command.unwatched)
             self._arming = arming, event
             self._next_attempt = now + ARM_WAIT
         elif isinstance(event, CommandEvent) and isinstance(command := event.command, MissionCommand):
@@ -211,20 +211,20 @@ class _RunLoop:
             if arming.refusal:
                 self._refuse(event, arming.refusal)
             else:
-                self._add_bookmark(event.words)
+                self._add_bookmark(event.label)
 
     def _refuse(self, event: TimedEvent, problem: str) -> None:
         # A refusal does not end the experiment, as with an operator.
-        words = f"{event.words}: refused. {problem}"
-        self._remarks.append(f"At {event.at:g} s: {words}")
-        self._add_bookmark(words)
+        text = f"{event.label}: refused. {problem}"
+        self._remarks.append(f"At {event.at:g} s: {text}")
+        self._add_bookmark(text)
 
     def _see_event(self, event: Event) -> None:
         if event.kind == MISSION_MARK:
             self._add_bookmark(event.text)
 
-    def _add_bookmark(self, words: str) -> None:
-        self._listener.event("marker", time=_round_time(self._rig.clock.now()), text=words)
+    def _add_bookmark(self, text: str) -> None:
+        self._listener.event("marker", time=_round_time(self._rig.clock.now()), text=text)
 
     def _report_progress(self) -> None:
         self._listener.event("progress", time=_round_time(self._rig.clock.now()))

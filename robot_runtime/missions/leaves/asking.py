@@ -1,4 +1,4 @@
-"""The leaves that look and ask."""
+"""The leaves that check conditions or wait for them."""
 
 from dataclasses import field
 from typing import Annotated
@@ -26,20 +26,20 @@ class WaitForLeaf(Leaf):
     )
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Wait for {self.sees}"
 
     def check(self, robot: MissionStart) -> str:
-        """The camera must look for it."""
+        """Check that the camera looks for it."""
         return robot.check_sight(self.sees)
 
     def begin(self, robot: MissionRobot) -> None:
-        """Starts the time."""
+        """Start the time."""
         self._began = robot.now
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done when it is seen; fails after the timeout."""
+        """Return True when it is seen; fail after the timeout."""
         if robot.sees(self.sees):
             return True
         return robot.now - self._began >= self.timeout and f"It saw no {self.sees} for {self.timeout:g} s."
@@ -77,19 +77,19 @@ class IsLeaf(Leaf):
         return parts + ([] if self.elapsed is None else [f"after {self.elapsed:g} s"])
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
-        words = ", ".join(self._parts)
-        return words[0].upper() + words[1:]
+        text = ", ".join(self._parts)
+        return text[0].upper() + text[1:]
 
     def check(self, robot: MissionStart) -> str:
-        """The camera must look for it, and the battery must be measured."""
+        """Check that the camera looks for it, and that the battery is measured."""
         if self.battery is not None and robot.battery is None:
             return "The battery is not measured."
         return "" if self.sees is None else robot.check_sight(self.sees)
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done or failed at once."""
+        """Succeed or fail at once."""
         if self.below is not None and robot.depth <= self.below:
             return f"It was at {robot.depth:.2f} m, not below {self.below:g} m."
         if self.above is not None and robot.depth >= self.above:

@@ -19,21 +19,21 @@ class SetLeaf(Leaf):
     value: ParameterValue = field(metadata={"description": "in the parameter's unit"})
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Set {self.parameter} to {self.value}"
 
     @property
     def longest(self) -> float:
-        """s in which the board must confirm."""
+        """The time (s) within which the board must confirm."""
         return CONFIRMED_WITHIN
 
     def check(self, robot: MissionStart) -> str:
-        """The parameter must exist, take the value, and be changeable while armed."""
+        """Check that the parameter exists, takes the value, and may change while armed."""
         return robot.check_parameter(self.parameter, self.value)
 
     def begin(self, robot: MissionRobot) -> None:
-        """Sets it."""
+        """Set the parameter."""
         self._began, self._problem = robot.now, ""
         try:
             robot.set_parameter(self.parameter, self.value)
@@ -41,7 +41,7 @@ class SetLeaf(Leaf):
             self._problem = str(problem)
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done when it is confirmed."""
+        """Return True when the value is confirmed."""
         if self._problem:
             return self._problem
         if not robot.is_pending(self.parameter):
@@ -62,11 +62,11 @@ class MarkLeaf(Leaf):
             raise ValueError(f"text has 1 to {TEXT_MAX} characters, all of which can be printed")
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Mark “{self.text}”"
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done at once."""
+        """Succeed at once."""
         robot.mark(self.text)
         return True

@@ -1,7 +1,7 @@
 """The leaves that move the robot."""
 
 from dataclasses import field
-from math import degrees, inf, pi
+from math import atan2, cos, degrees, inf, pi, sin
 from typing import Annotated, ClassVar
 
 from robot_runtime.contract.limits import SET_POINT, Range
@@ -11,19 +11,24 @@ from robot_runtime.missions.leaf import Claim, Leaf, MissionRobot, mission_node
 
 STEADY = 1.0
 """s for which a value must stay near its target."""
+LOOKAHEAD = 0.6
+"""m; the point of its line that it swims to is this far ahead."""
+ALIGNED = 0.8
+"""rad beside its course up to which it swims forwards; farther beside it turns on the spot first."""
 _TIMEOUT = {"description": "after which it fails", "unit": "s"}
 
 
 class Steady:
-    """Tells when a value has been near its target for `STEADY` s."""
+    """Detector of a value that has been near its target for a time (s)."""
 
-    def __init__(self) -> None:
+    def __init__(self, seconds: float = STEADY) -> None:
+        self._seconds = seconds
         self._since = inf
 
     def see(self, near: bool, now: float) -> bool:
-        """True if the value has been near for long enough at `now` (s)."""
+        """Return True if the value has been near for long enough at `now` (s)."""
         self._since = min(self._since, now) if near else inf
-        return now - self._since >= STEADY
+        return now - self._since >= self._seconds
 
 
 @mission_node("dive")
@@ -38,7 +43,7 @@ class DiveLeaf(Leaf):
     timeout: MissionSeconds = field(default=30.0, metadata=_TIMEOUT)
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Dive to {self.depth:g} m"
 
@@ -48,17 +53,17 @@ class DiveLeaf(Leaf):
         return self.depth
 
     def begin(self, robot: MissionRobot) -> None:
-        """Holds the depth from now on."""
+        """Hold the depth from now on."""
         self._began = robot.now
         self.resume(robot)
 
     def resume(self, robot: MissionRobot) -> None:
-        """Waits for the depth anew."""
+        """Wait for the depth anew."""
         self._steady = Steady()
         robot.hold_depth(self.depth)
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done at the depth; fails after the timeout."""
+        """Return True at the depth; fail after the timeout."""
         if self._steady.see(abs(robot.depth - self.depth) <= self.within, robot.now):
             return True
         if robot.now - self._began < self.timeout:
@@ -77,21 +82,21 @@ class HoldLeaf(Leaf):
     )
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Hold the depth for {self.seconds:g} s"
 
     def begin(self, robot: MissionRobot) -> None:
-        """Starts the time."""
+        """Start the time."""
         self._began = robot.now
         self.resume(robot)
 
     def resume(self, robot: MissionRobot) -> None:
-        """Goes back first, if somebody moved it."""
+        """Return to the depth first, if somebody moved the robot."""
         self._inside = abs(robot.depth - robot.depth_held) <= self.within
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done when the time is over."""
+        """Return True when the time is over."""
         inside = abs(robot.depth - robot.depth_held) <= self.within
         if self._inside and not inside:
             return f"It was at {robot.depth:.2f} m, over {self.within:g} m from {robot.depth_held:.2f} m."
@@ -124,14 +129,14 @@ class TurnLeaf(Leaf):
             raise ValueError("needs heading or by, one of the two")
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         if self.by is not None:
             return f"Turn by {degrees(self.by):.0f}°"
         return f"Turn to {degrees(self.heading or 0.0):.0f}°"
 
     def begin(self, robot: MissionRobot) -> None:
-        """Holds the heading from now on."""
+        """Hold the heading from now on."""
         self._began = robot.now
         self._target = self.heading if self.heading is not None else 0.0
         if self.by is not None:
@@ -140,12 +145,12 @@ class TurnLeaf(Leaf):
         self.resume(robot)
 
     def resume(self, robot: MissionRobot) -> None:
-        """Turns to the same heading again."""
+        """Turn to the same heading again."""
         self._steady = Steady()
         robot.hold_heading(self._target)
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done at the heading; fails after the timeout."""
+        """Return True at the heading; fail after the timeout."""
         error = abs(wrap_angle(robot.heading - self._target))
         if self._steady.see(error <= self.within, robot.now):
             return True
@@ -178,17 +183,17 @@ class SwimLeaf(Leaf):
         return self.claims if self.yaw else frozenset({"course"})
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         way = "forwards" if self.x > 0 else "backwards" if self.x else "round"
         return f"Swim {way} for {self.seconds:g} s"
 
     def begin(self, robot: MissionRobot) -> None:
-        """Starts the time."""
+        """Start the time."""
         self._began = robot.now
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done when the time is over."""
+        """Return True when the time is over."""
         if robot.now - self._began >= self.seconds:
             return True
         if self.yaw:
@@ -197,9 +202,57 @@ class SwimLeaf(Leaf):
         return False
 
 
+@mission_node("go")
+class GoLeaf(Leaf):
+    """Goes a distance on a heading by dead reckoning.
+
+    It keeps to the line that begins where the step does. No position is measured: in a current, and with
+    the time, it misses the line's end by more and more. The topic `track` has the estimate.
+    """
+
+    claims: ClassVar[frozenset[Claim]] = frozenset({"course", "heading"})
+    distance: Annotated[float, Range(0.2, 50)] = field(metadata={"unit": "m"})
+    heading: Annotated[float, Range(-pi, pi)] = field(
+        metadata={"description": "0 is north, positive to the east", "unit": "rad"}
+    )
+    x: Annotated[float, Range(0.1, 1)] = field(
+        default=0.5, metadata={"description": "share of the full command, forwards"}
+    )
+    timeout: MissionSeconds = field(metadata=_TIMEOUT)
+
+    @property
+    def label(self) -> str:
+        """The step in a few words, for a person."""
+        return f"Go {self.distance:g} m at {degrees(self.heading):.0f}° by dead reckoning"
+
+    def begin(self, robot: MissionRobot) -> None:
+        """Begin the line where the robot is."""
+        self._began = robot.now
+        self._start = robot.way
+
+    def tick(self, robot: MissionRobot) -> bool | str:
+        """Return True at the line's end; fail after the timeout."""
+        north, east = (now - start for now, start in zip(robot.way, self._start, strict=True))
+        along = north * cos(self.heading) + east * sin(self.heading)
+        aside = east * cos(self.heading) - north * sin(self.heading)
+        if along >= self.distance:
+            return True
+        if robot.now - self._began >= self.timeout:
+            return f"After {self.timeout:g} s it had gone {along:.1f} m of {self.distance:g} m, by estimate."
+        # Line-of-sight guidance (Fossen 2011, 10.3.2): towards a point of the line ahead.
+        course = wrap_angle(self.heading - atan2(aside, LOOKAHEAD))
+        robot.hold_heading(course)
+        if abs(wrap_angle(robot.heading - course)) <= ALIGNED:
+            robot.swim(self.x, 0.0)
+        return False
+
+
 @mission_node("to_light")
 class ToLightLeaf(Leaf):
-    """Swims to the light for a time. Arrival cannot be felt. It fails when no light is seen for too long."""
+    """Swims to the light for a time.
+
+    It cannot detect its arrival. It fails when no light is seen for too long.
+    """
 
     claims: ClassVar[frozenset[Claim]] = frozenset({"course", "heading"})
     timeout: MissionSeconds = field(metadata={"description": "after which it is done", "unit": "s"})
@@ -208,21 +261,21 @@ class ToLightLeaf(Leaf):
     )
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Swim to the light for {self.timeout:g} s"
 
     def begin(self, robot: MissionRobot) -> None:
-        """Starts the time."""
+        """Start the time."""
         self._began = robot.now
         self.resume(robot)
 
     def resume(self, robot: MissionRobot) -> None:
-        """Searches the light anew."""
+        """Search the light anew."""
         self._seen = robot.now
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done when the time is over."""
+        """Return True when the time is over."""
         if robot.light:
             self._seen = robot.now
         if robot.now - self._began >= self.timeout:
@@ -241,6 +294,6 @@ class SurfaceLeaf(Leaf):
     claims: ClassVar[frozenset[Claim]] = frozenset({"depth", "heading", "course"})
 
     def tick(self, robot: MissionRobot) -> bool | str:
-        """Done at once."""
+        """Succeed at once."""
         robot.surface()
         return True

@@ -27,7 +27,7 @@ class LineBuffer:
         self._rest = b""
 
     def feed(self, data: bytes) -> Iterator[str]:
-        """Yields the lines that `data` completes, without line ends. Raises BoardLineError on a long line."""
+        """Yield the lines that `data` completes, without line ends. Raise BoardLineError on a long line."""
         *whole, self._rest = (self._rest + data).split(b"\n")
         if len(self._rest) > LINE_BYTES_MAX:
             raise BoardLineError(f"a line of more than {LINE_BYTES_MAX} bytes")
@@ -36,7 +36,7 @@ class LineBuffer:
 
 
 def read_fins(line: str) -> FinMotion:
-    """Returns the fins of a `fins` line. Raises BoardLineError if it is invalid."""
+    """Return the fins of a `fins` line. Raise BoardLineError if it is invalid."""
     word, *texts = line.split()
     if word != "fins" or len(texts) != FIN_NUMBERS:
         raise BoardLineError(f"{line!r} is not `fins` and {FIN_NUMBERS} numbers")
@@ -50,7 +50,7 @@ def read_fins(line: str) -> FinMotion:
 
 
 def write_sense(reading: Reading) -> str:
-    """Returns the answer to a `fins` line, with its line end."""
+    """Return the answer to a `fins` line, with its line end."""
     numbers = (*reading.force, *reading.rate)
     motion = " ".join(f"{number:.6f}" for number in numbers)
     encoders = " ".join(f"{error:.5f}" for error in reading.encoders)

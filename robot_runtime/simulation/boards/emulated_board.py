@@ -41,21 +41,21 @@ class PausedPort:
             raise
 
     def close(self) -> None:
-        """Closes the port."""
+        """Close the port."""
         self._port.close()
 
     def count(self, counter: str) -> int:
-        """Returns the board's counter of this name."""
+        """Return the board's counter of this name."""
         return int(self._board.stats()[counter])
 
     def write(self, data: bytes) -> None:
-        """Sends these bytes, and returns when the board has them."""
+        """Send these bytes, and return when the board has them."""
         self._port.write(data)
         self.written += len(data)
         self._wait_for(lambda: self.count("bytes_from_host") == self.written)
 
     def receive(self) -> bytes:
-        """Returns all bytes that the board has sent since the last call."""
+        """Return all bytes that the board has sent since the last call."""
         given, data = self.count("bytes_to_host"), b""
 
         def complete() -> bool:
@@ -81,10 +81,10 @@ class EmulatedBoard(SteppedBoard):
 
     def __init__(self, program: Path, elf: Path, water: Water) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="mucat-")
-        place = Path(self._folder.name)
+        folder = Path(self._folder.name)
         try:
             options = ("--paused", "--with-parent")
-            self._process = EmulatorProcess(program, elf, place / "tty", place / "board", *options)
+            self._process = EmulatorProcess(program, elf, folder / "tty", folder / "board", *options)
         except Exception:
             self._folder.cleanup()
             raise
@@ -99,36 +99,36 @@ class EmulatedBoard(SteppedBoard):
             raise
 
     def run(self, periods: int) -> bytes:
-        """Advances by this many periods; returns the bytes for the host."""
+        """Advance by this many periods; return the bytes for the host."""
         self._board.run(periods * PERIOD)
         return self._port.receive()
 
     def write(self, data: bytes) -> None:
-        """Sends these bytes to the board."""
+        """Send these bytes to the board."""
         self._port.write(data)
 
     def fault(self, device: str, kind: FaultKind) -> None:
-        """Sets or clears the fault of a device."""
+        """Set or clear the fault of a device."""
         self._board.fault(device, kind)
 
     def mistake(self, text: str) -> None:
-        """Adds a mistake of wiring, or an imperfection of a part."""
+        """Add a mistake of wiring, or an imperfection of a part."""
         self._board.mistake(text)
 
     def line(self, command: str) -> None:
-        """Sets a fault of the line by a command such as `line to_board cut on`."""
+        """Set a fault of the line by a command such as `line to_board cut on`."""
         self._board.command(command)
 
     def seed_line(self, seed: int) -> None:
-        """Seeds the faults of the line."""
+        """Seed the faults of the line."""
         self._board.seed_line(seed)
 
     def reset(self) -> None:
-        """Pulls the reset pin."""
+        """Pull the reset pin."""
         self._board.reset()
 
     def close(self) -> None:
-        """Ends the board."""
+        """End the board."""
         self._port.close()
         self._board.close()
         self._process.stop()

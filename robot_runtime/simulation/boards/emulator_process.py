@@ -21,7 +21,9 @@ ANSWER_TIMEOUT = 60.0
 """s of real time for an answer; a `run` of many emulated seconds takes a while."""
 
 Water = Callable[[FinMotion], Reading]
-FaultKind = Literal["none", "absent", "stuck", "weak", "tripped", "dip", "refused", "stretched", "contested"]
+FaultKind = Literal[
+    "none", "absent", "stuck", "weak", "tripped", "dip", "wet", "refused", "stretched", "contested"
+]
 """Not every device has each; see docs/reference/emulator.md."""
 LineDirection = Literal["to_board", "from_board"]
 LineFault = Literal["bit_errors", "drop", "double", "insert"]
@@ -46,7 +48,7 @@ class EmulatorClient:
     """A connection to the board's socket. After `attach` it answers the board's `fins` lines."""
 
     def __init__(self, path: Path) -> None:
-        """Connects. Raises BoardError if no board answers at `path`."""
+        """Connect. Raise BoardError if no board answers at `path`."""
         self._water: Water | None = None
         self._lines = LineBuffer()
         self._pending: list[str] = []
@@ -65,100 +67,103 @@ class EmulatorClient:
         self.close()
 
     def close(self) -> None:
-        """Disconnects; the board continues with the last values."""
+        """Disconnect; the board continues with the last values."""
         self._socket.close()
 
     def attach(self, period: float, water: Water) -> None:
-        """Becomes the water: while it waits for an answer, `water` is called every `period` (emulated s).
+        """Become the water: while it waits for an answer, `water` is called every `period` (emulated s).
 
-        Raises BoardError if another connection is the water, or the period is impossible.
+        Raise BoardError if another connection is the water, or the period is impossible.
         """
         self._water = water
         self._send_checked(f"attach {period!r}")
 
     def sense(self, reading: Reading) -> None:
-        """Sets the quantities that the sensors measure from now on.
+        """Set the quantities that the sensors measure from now on.
 
-        Raises BoardError on impossible values, or if another connection is the water.
+        Raise BoardError on impossible values, or if another connection is the water.
         """
         self._send_checked(write_sense(reading).strip())
 
     def fins(self) -> FinMotion:
-        """Returns the present motion of the fins."""
+        """Return the present motion of the fins."""
         return read_fins(f"fins {self._query_fins()}")
 
     def led(self) -> bool:
-        """Returns True if the LED is on."""
+        """Return True if the LED is on."""
         return self._query_fins().endswith(" 1")
 
     def run(self, seconds: float) -> float:
-        """Advances a paused board in emulated time, as fast as possible; returns its time (s)."""
+        """Advance a paused board in emulated time, as fast as possible; return its time (s)."""
         self._send(f"run {seconds!r}")
         return float(self._answer("ok"))
 
     def stats(self) -> dict[str, float]:
-        """Returns the board's counters, by name."""
+        """Return the board's counters, by name."""
         self._send("stats")
         pairs = (pair.split("=") for pair in self._answer("stats").split())
         return {name: float(value) for name, value in pairs}
 
     def fault(self, device: str, kind: FaultKind) -> None:
-        """Sets or clears the fault of a device (imu, pressure, encoder0-3, bridge0-3). Raises BoardError."""
+        """Set or clear the fault of a device (imu, pressure, encoder0-3, bridge0-3, leak).
+
+        Raise BoardError.
+        """
         self.command(f"fault {device} {kind}")
 
     def mistake(self, text: str) -> None:
-        """Adds a mistake of `mistakes.MISTAKES`, or removes all by `none`. Raises BoardError."""
+        """Add a mistake of `mistakes.MISTAKES`, or remove all by `none`. Raise BoardError."""
         self.command(f"mistake {text}")
 
     def disturb_line(self, direction: LineDirection, kind: LineFault, rate: float) -> None:
-        """Sets the probability of a fault for each bit (bit_errors) or character. Raises BoardError."""
+        """Set the probability of a fault for each bit (bit_errors) or character. Raise BoardError."""
         self.command(f"line {direction} {kind} {rate!r}")
 
     def burst_line(self, direction: LineDirection, rate: float, bits: float) -> None:
-        """Sets the probability that a burst begins at a bit; half of the bits in a burst are wrong."""
+        """Set the probability that a burst begins at a bit; half of the bits in a burst are wrong."""
         self.command(f"line {direction} burst {rate!r} {bits!r}")
 
     def stall_line(self, direction: LineDirection, seconds: float) -> None:
-        """Delays sent bytes by this much emulated time; nothing gets lost."""
+        """Delay sent bytes by this much emulated time; nothing gets lost."""
         self.command(f"line {direction} stall {seconds!r}")
 
     def cut_line(self, direction: LineDirection, cut: bool) -> None:
-        """Cuts the wire, or restores it."""
+        """Cut the wire, or restore it."""
         self.command(f"line {direction} cut {'on' if cut else 'off'}")
 
     def clean_line(self, direction: LineDirection) -> None:
-        """Removes all faults of this direction."""
+        """Remove all faults of this direction."""
         self.command(f"line {direction} clean")
 
     def seed_line(self, seed: int) -> None:
-        """Seeds the faults of the line from now on."""
+        """Seed the faults of the line from now on."""
         self.command(f"seed {seed}")
 
     def turn(self, fin: int, angle: float) -> None:
-        """Turns a fin by hand to this angle (rad). Raises BoardError."""
+        """Turn a fin by hand to this angle (rad). Raise BoardError."""
         self.command(f"turn {fin} {angle!r}")
 
     def reset(self) -> None:
-        """Pulls the reset pin."""
+        """Pull the reset pin."""
         self.command("reset")
 
     def brown_out(self, lost: float) -> None:
-        """Resets the chip as a dip of its supply does; this share of its memory's bytes becomes random.
+        """Reset the chip as a dip of its supply does; this share of its memory's bytes becomes random.
 
-        Raises BoardError if the share is not within 0 to 1.
+        Raise BoardError if the share is not within 0 to 1.
         """
         self.command(f"brownout {lost!r}")
 
     def power(self) -> None:
-        """Switches the power off and on; flash memory and EEPROM keep their contents."""
+        """Switch the power off and on; flash memory and EEPROM keep their contents."""
         self.command("power")
 
     def load(self, elf: Path) -> None:
-        """Uploads another program and resets the board. Raises BoardError if it is invalid."""
+        """Upload another program and reset the board. Raise BoardError if it is invalid."""
         self.command(f"load {elf}")
 
     def command(self, command: str) -> None:
-        """Sends a command that is answered with a plain `ok`. Raises BoardError if it is refused."""
+        """Send a command that is answered with a plain `ok`. Raise BoardError if it is refused."""
         self._send(command)
         self._answer("ok")
 
@@ -208,7 +213,7 @@ class EmulatorClient:
 
 
 def check_emulator(program: Path) -> None:
-    """Raises BoardError where the emulated board is missing or made for another kind of computer."""
+    """Raise BoardError where the emulated board is missing or made for another kind of computer."""
     try:
         subprocess.run([program, "--help"], capture_output=True, check=True, timeout=START_TIMEOUT)
     except FileNotFoundError as problem:
@@ -223,7 +228,7 @@ class EmulatorProcess:
     """The emulator's process; ends with the `with` statement. It creates the paths `tty` and `socket`."""
 
     def __init__(self, program: Path, elf: Path | None, tty: Path, socket: Path, *options: str) -> None:
-        """Starts it and waits until it is ready. Raises BoardError with the emulator's own message.
+        """Start the emulator and wait until it is ready. Raise BoardError with the emulator's own message.
 
         Without an `elf` the flash memory holds only the boot loader, which `options` must name.
         """
@@ -249,11 +254,11 @@ class EmulatorProcess:
         self.stop()
 
     def connect(self) -> EmulatorClient:
-        """Opens a new connection to its socket."""
+        """Open a new connection to its socket."""
         return EmulatorClient(self.socket)
 
     def stop(self) -> int:
-        """Ends the process by SIGTERM and returns its exit status."""
+        """End the process by SIGTERM and return its exit status."""
         if self.process.poll() is None:
             self.process.terminate()
         status = self.process.wait(START_TIMEOUT)

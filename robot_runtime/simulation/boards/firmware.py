@@ -25,7 +25,7 @@ class FirmwareBuildError(Exception):
 
 
 def firmware_path(build: Path, baud: int, suffix: str, *, hil: bool = False) -> Path:
-    """Returns the path of the firmware for this many bit/s; `suffix` is ".elf" (emulated) or ".hex" (upload).
+    """Return the path of the firmware for this many bit/s; `suffix` is ".elf" (emulated) or ".hex" (upload).
 
     `build` is the folder of all products, `hil` selects the firmware of a board in the loop. The file need
     not exist.
@@ -37,12 +37,12 @@ def firmware_path(build: Path, baud: int, suffix: str, *, hil: bool = False) -> 
 
 
 def bring_up_path(build: Path, baud: int) -> Path:
-    """Returns the path of the bring-up's sketch for this many bit/s, to upload."""
+    """Return the path of the bring-up's sketch for this many bit/s, to upload."""
     return firmware_path(build, baud, ".hex").with_name("bring_up.hex")
 
 
-def make(folder: Path, *words: str, products: Path) -> subprocess.CompletedProcess[str]:
-    """Runs `make` in this folder, with these targets and variables. Returns its status and its words.
+def make(folder: Path, *arguments: str, products: Path) -> subprocess.CompletedProcess[str]:
+    """Run `make` in this folder, with these targets and variables. Return its status and its output.
 
     It waits for others that build into the folder `products`: make does not notice another make that writes
     the same files. Where nothing is to be built, a robot starts without waiting.
@@ -50,7 +50,7 @@ def make(folder: Path, *words: str, products: Path) -> subprocess.CompletedProce
     # Another make's flags are not for this one: to keep going would bury the compiler's words.
     alone = os.environ | {"MAKEFLAGS": ""}
     run = partial(subprocess.run, capture_output=True, text=True, check=False, env=alone)
-    command = ["make", "--silent", "-C", str(folder), *words]
+    command = ["make", "--silent", "-C", str(folder), *arguments]
     asked = run([*command, "--question"])
     if asked.returncode == 0:
         return asked
@@ -64,7 +64,7 @@ def make(folder: Path, *words: str, products: Path) -> subprocess.CompletedProce
 
 
 def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
-    """Builds the firmware for this many bit/s if it is out of date. Raises FirmwareBuildError.
+    """Build the firmware for this many bit/s if it is out of date. Raise FirmwareBuildError.
 
     Without a compiler or the sources an existing file is used as it is.
     """
@@ -89,7 +89,7 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
 
 
 def main() -> int:
-    """Builds the configured firmware. Returns 0, or 1 if the configuration or the build has errors."""
+    """Build the configured firmware. Return 0, or 1 if the configuration or the build has errors."""
     parser = argparse.ArgumentParser(
         prog="python -m robot_runtime.simulation.boards.firmware", description=__doc__
     )

@@ -55,7 +55,7 @@ class HostBoard(SteppedBoard):
         self._fins = (c_double * 13)()
 
     def run(self, periods: int) -> bytes:
-        """Advances by this many periods; returns the bytes for the host."""
+        """Advance by this many periods; return the bytes for the host."""
         library, board, received, fins = self._library, self._board, self._received, self._fins
         data = b""
         for _ in range(periods):
@@ -67,21 +67,21 @@ class HostBoard(SteppedBoard):
         return data
 
     def write(self, data: bytes) -> None:
-        """Sends these bytes to the board."""
+        """Send these bytes to the board."""
         self._library.board_send(self._board, data, len(data))
 
     def fault(self, device: str, kind: FaultKind) -> None:
-        """Sets or clears the fault of a device."""
+        """Set or clear the fault of a device."""
         if not self._library.board_fault(self._board, device.encode(), kind.encode()):
             raise BoardError(f"there is no device {device!r}, or no fault {kind!r}")
 
     def mistake(self, text: str) -> None:
-        """Adds a mistake of wiring, or an imperfection of a part."""
+        """Add a mistake of wiring, or an imperfection of a part."""
         if not self._library.board_mistake(self._board, text.encode()):
             raise BoardError(f"there is no mistake {text!r}")
 
     def line(self, command: str) -> None:
-        """Sets a fault of the line by a command such as `line to_board cut on`."""
+        """Set a fault of the line by a command such as `line to_board cut on`."""
         _, direction, kind, *rest = command.split()
         value = " ".join(rest)
         if kind == "stall":
@@ -96,15 +96,15 @@ class HostBoard(SteppedBoard):
             raise BoardError(f"unknown command: {command}")
 
     def seed_line(self, seed: int) -> None:
-        """Seeds the faults of the line."""
+        """Seed the faults of the line."""
         self._library.board_seed(self._board, seed)
 
     def reset(self) -> None:
-        """Pulls the reset pin."""
+        """Pull the reset pin."""
         self._library.board_reset(self._board)
 
     def close(self) -> None:
-        """Ends the board."""
+        """End the board."""
         if self._board is not None:
             self._library.board_destroy(self._board)
             self._board = None

@@ -37,11 +37,11 @@ def _is_fin(text: str) -> bool:
 
 
 def _are_two_fins(text: str) -> bool:
-    return text in {f"{one},{other}" for one, other in permutations(FINS, 2)}
+    return text in {f"{first},{other}" for first, other in permutations(FINS, 2)}
 
 
 def _are_axes(text: str) -> bool:
-    """True for the 24 ways in which a chip can lie; the other 24 are mirror images."""
+    """Return True for the 24 ways in which a chip can lie; the other 24 are mirror images."""
     signs, axes = text[::2], tuple(text[1::2])
     if len(text) != 6 or not set(signs) <= {"+", "-"} or set(axes) != {"x", "y", "z"}:
         return False
@@ -56,7 +56,7 @@ def _are_numbers(least: float, most: float, count: int = 1) -> Callable[[str], b
     def accepts(text: str) -> bool:
         values = text.split(",")
         return len(values) == count and all(
-            _NUMBER.fullmatch(one) and least <= float(one) <= most for one in values
+            _NUMBER.fullmatch(value) and least <= float(value) <= most for value in values
         )
 
     return accepts
@@ -84,20 +84,26 @@ MISTAKES: dict[str, Mistake] = {
         "PERCENT", "the converter's 5 V are this much higher, -10 to 10", _are_numbers(-10, 10)
     ),
     "gyro-offset": Mistake("X,Y,Z", "°/s of the gyroscope's axes, -20 to 20", _are_numbers(-20, 20, 3)),
+    "gyro-drift": Mistake(
+        "X,Y,Z", "°/s of the gyroscope's axes for each °C above 25, -1 to 1", _are_numbers(-1, 1, 3)
+    ),
     "encoder-noise": Mistake("TICKS", "of all encoders, to either side, 0 to 20", _are_numbers(0, 20)),
     "backlash": Mistake("RAD", "of all fins' gears, 0 to 0.3", _are_numbers(0, 0.3)),
+    "stiction": Mistake(
+        "STEPS", "of all fins: below this drive one that rests stays at rest, 0 to 63", _are_numbers(0, 63)
+    ),
     "pack-resistance": Mistake("OHM", "of the battery, 0 to 2", _are_numbers(0, 2)),
 }
 """By name, wiring first. FIN is one of `FINS`."""
 
 
 def write_list() -> list[str]:
-    """Returns a line for each kind of mistake: how it is written, and what it means."""
+    """Return a line for each kind of mistake: its notation and its meaning."""
     return [f"{_written(name)}: {mistake.meaning}" for name, mistake in MISTAKES.items()]
 
 
 def check_mistake(text: str) -> None:
-    """Raises ValueError if there is no such mistake; its text says what there is."""
+    """Raise ValueError if there is no such mistake; its text lists the mistakes."""
     name, colon, argument = text.partition(":")
     if name not in MISTAKES:
         raise ValueError(f"there is no mistake {text!r}; there are {', '.join(MISTAKES)}")

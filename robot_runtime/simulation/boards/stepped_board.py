@@ -20,38 +20,41 @@ class SteppedBoard(ABC):
 
     @abstractmethod
     def run(self, periods: int) -> bytes:
-        """Advances by this many `PERIOD`s; returns the bytes for the host, in order.
+        """Advance by this many `PERIOD`s; return the bytes for the host, in order.
 
-        Raises BoardError if the board ends.
+        Raise BoardError if the board ends.
         """
 
     @abstractmethod
     def write(self, data: bytes) -> None:
-        """Sends these bytes to the board, after those still queued."""
+        """Send these bytes to the board, after those still queued."""
 
     @abstractmethod
     def fault(self, device: str, kind: FaultKind) -> None:
-        """Sets or clears the fault of a device (imu, pressure, encoder0-3, bridge0-3). Raises BoardError."""
+        """Set or clear the fault of a device (imu, pressure, encoder0-3, bridge0-3, leak).
+
+        Raise BoardError.
+        """
 
     @abstractmethod
     def mistake(self, text: str) -> None:
-        """Adds a mistake of `mistakes.MISTAKES` from now on. Raises BoardError."""
+        """Add a mistake of `mistakes.MISTAKES` from now on. Raise BoardError."""
 
     @abstractmethod
     def line(self, command: str) -> None:
-        """Sets a fault of the line by a command such as `line to_board cut on`. Raises BoardError."""
+        """Set a fault of the line by a command such as `line to_board cut on`. Raise BoardError."""
 
     @abstractmethod
     def seed_line(self, seed: int) -> None:
-        """Seeds the faults of the line from now on."""
+        """Seed the faults of the line from now on."""
 
     @abstractmethod
     def reset(self) -> None:
-        """Pulls the reset pin."""
+        """Pull the reset pin."""
 
     @abstractmethod
     def close(self) -> None:
-        """Ends the board."""
+        """End the board."""
 
     def __enter__(self) -> Self:
         return self

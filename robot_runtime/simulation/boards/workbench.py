@@ -48,10 +48,12 @@ class Workbench:
         self.depth = 0.0
         """m of water above the pressure sensor."""
         self.lamp: Lamp = "none"
+        self.leak = False
+        """True while the ends of the leak sensor are in water."""
         self._chance = Random(7)
 
     def read(self) -> Reading:
-        """Returns what surrounds the robot's sensors now."""
+        """Return the surroundings of the robot's sensors now."""
         p, q, r = (self._chance.gauss(0, _NOISE) for _ in range(3))
         return STILL_WATER._replace(
             pressure=BAROMETER + self.depth * _PRESSURE_PER_METRE,
@@ -66,8 +68,8 @@ class Workbench:
 class Hands:
     """A person's hands at an emulated board that runs in real time, and eyes on its fins.
 
-    Entering takes the board out of the simulated water, which must have let go of it: raises BoardError where
-    it has not. The other methods may be called from any thread, and raise BoardError once it has ended.
+    Entering takes the board out of the simulated water; it raises BoardError while the water has the board.
+    The other methods may be called from any thread, and raise BoardError once it has ended.
     """
 
     def __init__(self, socket: Path) -> None:
@@ -102,16 +104,22 @@ class Hands:
 
     @property
     def fins(self) -> FinMotion:
-        """The motion of the fins, as somebody sees it."""
+        """The motion of the fins."""
         return self._fins
 
     def turn(self, fin: int, angle: float) -> None:
-        """Turns a fin to this angle (rad)."""
+        """Turn a fin to this angle (rad)."""
         with self._lock:
             self._board.turn(fin, angle)
 
+    def wet(self, wet: bool) -> None:
+        """Put the ends of the leak sensor into water, or dry them."""
+        with self._lock:
+            self._board.fault("leak", "wet" if wet else "none")
+            self.bench.leak = wet
+
     def mend(self) -> None:
-        """Mends every mistake of the board's wiring and its parts."""
+        """Mend every mistake of the board's wiring and its parts."""
         with self._lock:
             self._board.mistake("none")
 

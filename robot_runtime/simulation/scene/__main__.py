@@ -23,7 +23,7 @@ BYTES_MAX = 1_500_000_000
 
 
 def main() -> None:
-    """Runs until SIGTERM or SIGINT."""
+    """Run until SIGTERM or SIGINT."""
     keep_private()
     limit_memory(BYTES_MAX)
     arguments = _parser().parse_args()

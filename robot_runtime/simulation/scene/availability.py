@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 
 def missing() -> str | None:
-    """Returns what is not installed and how to install it; None if nothing is missing."""
+    """Return the missing packages and how to install them; None if nothing is missing."""
     if find_spec("mujoco") is None:
         return (
             "MuJoCo is not installed; where there is a wheel for this computer, "

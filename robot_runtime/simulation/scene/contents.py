@@ -72,7 +72,7 @@ START_TARGETS = (
 class Contents:
     """Everything in the scene except the robot. Raises ValueError on impossible beacons."""
 
-    place: SceneWater = SceneWater()
+    water: SceneWater = SceneWater()
     basin: Basin = START_BASIN
     beacons: tuple[Vector, ...] = START_BEACONS
     targets: tuple[Target, ...] = START_TARGETS
@@ -83,4 +83,4 @@ class Contents:
     @property
     def kind(self) -> Kind:
         """The kind of scene that is drawn."""
-        return self.place.kind or ("natural" if self.basin.length is None else "pool")
+        return self.water.kind or ("natural" if self.basin.length is None else "pool")

@@ -58,7 +58,7 @@ _MESH, _HFIELD = _M.mjtGeom.mjGEOM_MESH, _M.mjtGeom.mjGEOM_HFIELD
 
 
 def build(contents: Contents, parameters: SimulationParameters) -> Any:
-    """Returns the compiled model (MjModel) of this scene with the robot in it."""
+    """Return the compiled model (MjModel) of this scene with the robot in it."""
     spec = mujoco.MjSpec()
     spec.stat.extent = 1.0
     spec.visual.map.znear, spec.visual.map.zfar = NEAR, FAR
@@ -88,7 +88,7 @@ def build(contents: Contents, parameters: SimulationParameters) -> Any:
 
 
 def _texture(spec: Any, name: str, pixels: textures.Texture, repeat: float = 1.0, **more: Any) -> str:
-    """Adds a material with this texture, `repeat` times per m, or once over the whole object."""
+    """Add a material with this texture, `repeat` times per m, or once over the whole object."""
     kind = more.pop("type", _T2D)
     texture = spec.add_texture(name=name, type=kind, nchannel=pixels.shape[2])
     texture.width, texture.height = pixels.shape[1], pixels.shape[0]
@@ -100,7 +100,7 @@ def _texture(spec: Any, name: str, pixels: textures.Texture, repeat: float = 1.0
 
 
 def _surface(spec: Any, contents: Contents) -> None:
-    blue, green, red = water(contents.kind, contents.place.turbidity).glow
+    blue, green, red = water(contents.kind, contents.water.turbidity).glow
     glow = (round(red), round(green), round(blue))
     below = _texture(spec, "below", textures.surface_below(glow), 1 / SURFACE_TEXTURE, emission=0.9)
     body = spec.worldbody.add_body(name="surface", mocap=True)
@@ -149,8 +149,8 @@ def _natural(spec: Any, contents: Contents) -> None:
     sand = _texture(spec, "sand", textures.sand(), 1 / (PERIOD / 4))
     _texture(spec, "stone", textures.stone(), type=_TCUBE)
     ground = spec.worldbody.add_body(name="ground", mocap=True)
-    one = textures.relief(RELIEF_SIDE)
-    wide = np.tile(one[:-1, :-1], (2, 2))
+    tile = textures.relief(RELIEF_SIDE)
+    wide = np.tile(tile[:-1, :-1], (2, 2))
     wide = np.pad(wide, ((0, 1), (0, 1)), mode="wrap")
     spec.add_hfield(
         name="relief", nrow=wide.shape[0], ncol=wide.shape[1], size=[PERIOD, PERIOD, RELIEF, 0.1],
@@ -166,7 +166,7 @@ def _natural(spec: Any, contents: Contents) -> None:
 
     def height(x: float, y: float) -> float:
         column, row = ((value + PERIOD) / PERIOD % 1.0 * (RELIEF_SIDE - 1) for value in (x, y))
-        return bottom + RELIEF * float(one[round(row), round(column)])
+        return bottom + RELIEF * float(tile[round(row), round(column)])
 
     for number in range(STONES + PLANTS):
         stone = number < STONES
@@ -259,7 +259,7 @@ def _rope(spec: Any, north: float, east: float, down: float, floor: float, rgba:
 
 
 def _axes(x: tuple[float, float, float], y: tuple[float, float, float]) -> list[float]:
-    """Returns the quaternion of a frame with these x and y axes."""
+    """Return the quaternion of a frame with these x and y axes."""
     quaternion = np.empty(4)
     frame = np.column_stack((x, y, np.cross(x, y))).astype(float)
     mujoco.mju_mat2Quat(quaternion, frame.ravel())

@@ -47,7 +47,7 @@ BLUR = 5
 
 
 class UnderwaterOptics:
-    """Applies the optics to pictures of `width` × `height` pixels with this vertical field of view (°)."""
+    """The optics of water for pictures of `width` × `height` pixels with this vertical field of view (°)."""
 
     def __init__(self, width: int, height: int, field_of_view: float) -> None:
         self._size = (width, height)
@@ -73,7 +73,7 @@ class UnderwaterOptics:
         time: float,
         noise: float,
     ) -> Picture:
-        """Returns the picture as seen through water, uint8 of shape (height, width, 3), blue, green, red.
+        """Return the picture as seen through water, uint8 of shape (height, width, 3), blue, green, red.
 
         `depth` (m) is measured along the camera's axis. `position` (m) and `axes`, from forward, right, down
         to world axes, are the camera's pose. `noise` is the standard deviation of a byte.
@@ -103,7 +103,7 @@ class UnderwaterOptics:
     def _light(
         self, depth: Floats, water: WaterOptics, position: Vector, axes: Matrix, time: float
     ) -> Floats:
-        """Returns the light on each visible point relative to the average."""
+        """Return the light on each visible point relative to the average."""
         far = _floats(cv2.resize(depth, self._half, interpolation=cv2.INTER_NEAREST))
         np.minimum(far, CAUSTICS_FAR, out=far)
         right, down = self._half_rays
@@ -139,13 +139,13 @@ class UnderwaterOptics:
         return _floats(cv2.resize(light, self._size, interpolation=cv2.INTER_LINEAR))
 
     def _up(self, axes: Matrix) -> Floats:
-        """Returns the sine of each pixel's elevation."""
+        """Return the sine of each pixel's elevation."""
         ahead, aside, under = (np.float32(-part) for part in axes[2])
         up: Floats = _floats(ahead + aside * self._right + under * self._down) / self._stretch
         return up
 
     def _sky(self, up: Floats, depth: Floats, position: Vector) -> Floats | None:
-        """Returns the share of sky light through the surface: all within Snell's window, else none."""
+        """Return the share of sky light through the surface: 1 within Snell's window, else 0."""
         if up.max() < SNELL - SNELL_RIM:
             return None
         below = position[2] - depth * self._stretch * up
@@ -158,7 +158,7 @@ class UnderwaterOptics:
         return _bytes(cv2.blendLinear(picture, soft, sharp, 1 - sharp))
 
     def _grain(self, picture: Picture, time: float, noise: float) -> Picture:
-        """Returns the picture with the sensor's noise: a part of a larger array, another one at each time."""
+        """Return the picture with the sensor's noise: a part of a larger array, another part at each time."""
         width, height = self._size
         x, y = np.random.default_rng(int(time * 1000)).integers(0, NOISE_SHIFT, 2).tolist()
         grain = _sheet(width, height, noise)[y : y + height, x : x + width]

@@ -21,7 +21,7 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.scene_picture import Picture, Request, read_request, write_picture
-from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.contract.topics import OBSERVER, TRUTH
 from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.contents import Contents, SceneWater, Targets
@@ -52,7 +52,7 @@ Question = dict[str, Any]
 
 
 class SceneProcess:
-    """Answers requests and publishes until `end`; `run` renders in the thread that calls it."""
+    """The scene's service, which answers and publishes until `end`; `run` renders in its caller's thread."""
 
     def __init__(self, messages: ZenohTransport, clock: Clock) -> None:
         self._messages = messages
@@ -72,10 +72,10 @@ class SceneProcess:
         self._ending = False
         if self._problem:
             log.warning("nothing can be rendered: %s", self._problem)
-        messages.subscribe("truth", self._see_truth)
+        messages.subscribe(TRUTH.name, self._see_truth)
         handlers: dict[str, Callable[[Question], Mapping[str, Any] | None]] = {
             "ready": lambda _: {"missing": self._problem},
-            "world": self._set_place,
+            "world": self._set_water,
             "targets": self._set_targets,
             "view": self._set_view,
             "contents": self._describe_contents,
@@ -85,7 +85,7 @@ class SceneProcess:
         messages.serve_bytes("scene/picture", self._answer_picture)
 
     def run(self) -> None:
-        """Renders until `end` is called."""
+        """Render until `end` is called."""
         try:
             while not self._ending:
                 try:
@@ -101,7 +101,7 @@ class SceneProcess:
                 self._scene.close()
 
     def end(self) -> None:
-        """Makes `run` return soon; may be called from a signal handler or any thread."""
+        """Make `run` return soon; may be called from a signal handler or any thread."""
         self._ending = True
 
     def _see_truth(self, _: str, data: bytes) -> None:
@@ -113,10 +113,10 @@ class SceneProcess:
         if isinstance(truth, Truth):
             self._truth = (time, truth)
 
-    def _set_place(self, question: Question) -> None:
-        place = parse(SceneWater, question)
+    def _set_water(self, question: Question) -> None:
+        water = parse(SceneWater, question)
         with self._lock:
-            self._contents = replace(self._contents, place=place)
+            self._contents = replace(self._contents, water=water)
 
     def _set_targets(self, question: Question) -> None:
         targets = parse(Targets, question).targets
@@ -124,11 +124,11 @@ class SceneProcess:
             self._contents = replace(self._contents, targets=targets)
 
     def _describe_contents(self, _: Question) -> Question:
-        """Returns the requests that restore the present place and targets."""
+        """Return the requests that restore the present water and targets."""
         with self._lock:
             contents = self._contents
-        place = {name: value for name, value in asdict(contents.place).items() if value is not None}
-        return {"world": place, "targets": {"targets": [asdict(one) for one in contents.targets]}}
+        water = {name: value for name, value in asdict(contents.water).items() if value is not None}
+        return {"world": water, "targets": {"targets": [asdict(target) for target in contents.targets]}}
 
     def _set_view(self, question: Question) -> None:
         self._view = parse(ObserverView, question)
@@ -143,9 +143,9 @@ class SceneProcess:
             raise RefusedError(f"the scene takes longer than {ANSWER_TIMEOUT:g} s for a picture") from None
 
     def _render(self, request: Request) -> Picture:
-        """Renders the picture of the newest truth.
+        """Render the picture of the newest truth.
 
-        Raises RefusedError if there is none, or if nothing can be rendered.
+        Raise RefusedError if there is none, or if nothing can be rendered.
         """
         if self._truth is None:
             raise RefusedError("the simulator has not sent the robot's position yet")
@@ -157,12 +157,12 @@ class SceneProcess:
         return Picture(time, pixels)
 
     def _observe(self) -> float:
-        """Publishes the observer's picture if it is viewed and due. Returns the s until the next one."""
+        """Publish the observer's picture if it is viewed and due. Return the s until the next one."""
         now = self._clock.now()
         if now < self._observe_due:
             return self._observe_due - now
         period = CHECK_PERIOD
-        if not self._messages.watched("observer"):
+        if not self._messages.watched(OBSERVER.name):
             self._observed = None
         elif self._truth is not None and self._problem is None:
             period = OBSERVER_PERIOD
@@ -185,12 +185,12 @@ class SceneProcess:
         pixels = self._ready_scene().render_observer(time, truth, self._view, *OBSERVER_SIZE, self._card)
         _, jpeg = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
         payload = row(time, jpeg.tobytes())
-        block = Block.of(BY_NAME["observer"], 1, self._observer_number, payload)
+        block = Block.of(OBSERVER, 1, self._observer_number, payload)
         self._observer_number += 1
-        self._messages.publish("observer", block.data)
+        self._messages.publish(OBSERVER.name, block.data)
 
     def _ready_scene(self) -> "SceneRenderer":
-        """Returns the renderer with the present contents. Raises RefusedError if nothing can be rendered."""
+        """Return the renderer with the present contents. Raise RefusedError if nothing can be rendered."""
         self._query_surroundings()
         if self._problem is not None:
             raise RefusedError(self._problem)
@@ -218,7 +218,7 @@ class SceneProcess:
             raise RefusedError(self._problem) from problem
 
     def _query_surroundings(self) -> None:
-        """Queries floor, walls and beacons from the simulator; without an answer they stay as they are."""
+        """Query floor, walls and beacons from the simulator; without an answer they stay as they are."""
         now = self._clock.now()
         if now - self._queried < QUERY_PERIOD:
             return

@@ -41,7 +41,7 @@ class _Eye:
 
 
 class SceneRenderer:
-    """Renders by MuJoCo, only in the thread that makes it. `close` releases OpenGL.
+    """Renderer by MuJoCo, only for the thread that makes it. `close` releases OpenGL.
 
     The same contents, truth and time give the same pictures. Raises RuntimeError or ImportError without
     OpenGL.
@@ -61,7 +61,7 @@ class SceneRenderer:
         self.fill(contents)
 
     def fill(self, contents: Contents) -> None:
-        """Replaces the contents of the scene; where they cannot be built, it stays as it is."""
+        """Replace the contents of the scene; where they cannot be built, it stays as it is."""
         model = modelling.build(contents, self._parameters)
         if self._context is not None:
             self._context.free()
@@ -90,7 +90,7 @@ class SceneRenderer:
         card: Paint | None = None,
         marked: bool = False,
     ) -> Picture:
-        """Renders the robot's camera at this time (s), uint8 of shape (height, width, 3); blue, green, red.
+        """Render the robot's camera at this time (s), uint8 of shape (height, width, 3); blue, green, red.
 
         `card` is the paint of the card before the camera, `marked` is True if the marker is printed on it.
         """
@@ -106,7 +106,7 @@ class SceneRenderer:
         height: int,
         card: Paint | None = None,
     ) -> Picture:
-        """Renders the view of an observer who follows the robot, as `render_camera`."""
+        """Render the view of an observer who follows the robot, as `render_camera`."""
         self._pose(time, truth, card)
         position, axes = view.eye(truth)
         eye = _Eye(position, axes, _camera(view, truth), self._groups(position, card, modelling.ROBOT))
@@ -125,7 +125,7 @@ class SceneRenderer:
         card: Paint | None = None,
         marked: bool = False,
     ) -> tuple[Picture, Floats, _Eye]:
-        """Returns the camera's picture without water, the depth (m) of each pixel, and the point of view."""
+        """Return the camera's picture without water, the depth (m) of each pixel, and the point of view."""
         self._pose(time, truth, card)
         axes = rotation(normalize(truth.attitude))
         nose = to_world(axes, (modelling.NOSE, 0.0, 0.0))
@@ -136,14 +136,14 @@ class SceneRenderer:
         return *self._render(eye, width, height), eye
 
     def apply_water(self, picture: Picture, depth: Floats, eye: _Eye, time: float) -> Picture:
-        """Returns a picture of `draw_camera` as seen through the water."""
+        """Return a picture of `draw_camera` as seen through the water."""
         height, width = depth.shape
         return self._optics_for(width, height, modelling.FIELD_OF_VIEW).apply(
             picture, depth, self._water, eye.position, eye.axes, time, NOISE
         )
 
     def close(self) -> None:
-        """Releases the memory of OpenGL."""
+        """Release the memory of OpenGL."""
         if self._gl is not None:
             if self._context is not None:
                 self._context.free()
@@ -160,7 +160,7 @@ class SceneRenderer:
 
     @property
     def _water(self) -> WaterOptics:
-        return water(self.contents.kind, self.contents.place.turbidity)
+        return water(self.contents.kind, self.contents.water.turbidity)
 
     def _optics_for(self, width: int, height: int, field_of_view: float) -> UnderwaterOptics:
         key = (width, height, field_of_view)
@@ -170,13 +170,13 @@ class SceneRenderer:
 
     @staticmethod
     def _groups(eye: Vector, card: Paint | None, *more: int) -> tuple[int, ...]:
-        """Returns the visible groups; the surface only from below, as from above it would hide everything."""
+        """Return the visible groups; the surface only from below: from above it would hide everything."""
         surface = (modelling.SURFACE_BELOW,) if eye[2] > 0 else ()
         held = (modelling.CARD_HELD,) if card else ()
         return (modelling.ALWAYS, *surface, *held, *more)
 
     def _pose(self, time: float, truth: Truth, card: Paint | None) -> None:
-        """Sets the pose of the robot and what moves with it."""
+        """Set the pose of the robot and of everything that moves with it."""
         north, east, down = truth.position
         w, x, y, z = truth.attitude
         self._data.qpos[:3] = north, -east, -down
@@ -220,7 +220,7 @@ class SceneRenderer:
 
 
 def _camera(view: ObserverView, truth: Truth) -> Any:
-    """Returns MuJoCo's camera of this view. Its azimuth counts from its x axis towards its y axis, west."""
+    """Return MuJoCo's camera of this view. Its azimuth counts from its x axis towards its y axis, west."""
     azimuth, elevation = view.line_of_sight(truth)
     north, east, down = truth.position
     camera = mujoco.MjvCamera()

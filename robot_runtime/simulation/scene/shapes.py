@@ -16,7 +16,7 @@ JOINTS = 7
 
 
 def stone(seed: int) -> tuple[Vertices, Faces]:
-    """Returns a rounded stone, 7 to 30 cm high; each `seed` gives another one."""
+    """Return a rounded stone, 7 to 30 cm high; each `seed` gives another one."""
     rng = np.random.default_rng(seed)
     size = 0.07 + 0.22 * (seed / KINDS) ** 2
     around, up = 14, 8
@@ -45,7 +45,7 @@ def stone(seed: int) -> tuple[Vertices, Faces]:
 
 
 def plant(seed: int) -> tuple[Vertices, Faces]:
-    """Returns a tuft of leaves, 20 to 60 cm high; each leaf has two sides."""
+    """Return a tuft of leaves, 20 to 60 cm high; each leaf has two sides."""
     rng = np.random.default_rng(seed)
     size = 0.22 + 0.4 * seed / KINDS
     vertices: list[tuple[float, float, float]] = []

@@ -17,7 +17,7 @@ SIDE = 512
 
 @cache
 def tiles() -> Texture:
-    """8 × 8 glazed tiles with dark joints, each of a slightly different shade."""
+    """Draw 8 × 8 glazed tiles with dark joints, each of a slightly different shade."""
     ground, across = np.array((196, 226, 232)), 8
     rng = np.random.default_rng(2)
     shade = rng.normal(0.0, 0.022, (across, across, 1)) + rng.normal(0.0, 0.006, (across, across, 3))
@@ -33,7 +33,7 @@ def tiles() -> Texture:
 
 @cache
 def sand() -> Texture:
-    """Grey sand with ripples and grains."""
+    """Draw grey sand with ripples and grains."""
     down, across = _grid()
     wander = 2.2 * _cloud(3, 4.0)
     ripples = np.sin(2 * np.pi * (9 * down + 2 * across) + 2.4 * wander)
@@ -44,7 +44,7 @@ def sand() -> Texture:
 
 @cache
 def stone() -> Texture:
-    """Dark stone with patches of growth."""
+    """Draw dark stone with patches of growth."""
     light = 1 + 0.22 * _cloud(6, 2.2) + 0.12 * _cloud(7, 1.2)
     growth = np.clip(0.5 + 0.8 * _cloud(8, 3.0), 0, 1)[:, :, np.newaxis]
     paint = np.array((92, 94, 98)) * (1 - growth) + np.array((58, 66, 66)) * growth
@@ -53,7 +53,7 @@ def stone() -> Texture:
 
 @cache
 def surface_below(glow: tuple[int, int, int]) -> Texture:
-    """The water's surface from below: the colour of the water with bright ripples of the sky."""
+    """Return the water's surface from below: the colour of the water with bright ripples of the sky."""
     crest = np.clip(1 - np.abs(_ripples(10, 7.0)) * 1.5, 0, 1) ** 2
     patch = np.clip(0.5 + 0.5 * _ripples(12, 3.0), 0, 1)
     light = (0.86 + 0.16 * patch + 0.4 * crest * (0.35 + patch))[:, :, np.newaxis]
@@ -62,7 +62,7 @@ def surface_below(glow: tuple[int, int, int]) -> Texture:
 
 @cache
 def caustics() -> Floats:
-    """Light on a floor under ripples, about 1 on average, float32 of shape (SIDE, SIDE).
+    """Draw the light on a floor under ripples, about 1 on average, float32 of shape (SIDE, SIDE).
 
     Vertical rays are refracted by the slope of a random surface and counted on the floor.
     """
@@ -83,7 +83,7 @@ def caustics() -> Floats:
 
 @cache
 def marker() -> Texture:
-    """The marker on a card, without its white border."""
+    """Return the marker on a card, without its white border."""
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
     printed = cv2.aruco.generateImageMarker(dictionary, MARKER_CARD, SIDE)
     return cv2.cvtColor(printed, cv2.COLOR_GRAY2RGB).astype(np.uint8, copy=False)
@@ -91,7 +91,7 @@ def marker() -> Texture:
 
 @cache
 def relief(side: int) -> Floats:
-    """Heights of an uneven floor, 0 to 1, float32 of shape (side, side); the first line equals the last."""
+    """Return an uneven floor's heights, 0 to 1, float32 of shape (side, side); its edges fit."""
     hills = cv2.resize(_cloud(15, 3.2), (side - 1, side - 1), interpolation=cv2.INTER_AREA)
     small = cv2.resize(_cloud(16, 2.4), (side - 1, side - 1), interpolation=cv2.INTER_AREA)
     heights = hills + 0.18 * small
@@ -100,7 +100,7 @@ def relief(side: int) -> Floats:
 
 
 def _cloud(seed: int, smoothness: float) -> Floats:
-    """Returns periodic noise of standard deviation 1 whose spectrum falls with frequency to this power."""
+    """Return periodic noise of standard deviation 1 whose spectrum falls with frequency to this power."""
     white = np.fft.rfft2(np.random.default_rng(seed).standard_normal((SIDE, SIDE)))
     frequency = np.hypot(np.fft.fftfreq(SIDE)[:, np.newaxis], np.fft.rfftfreq(SIDE)[np.newaxis])
     frequency[0, 0] = 1.0
@@ -114,7 +114,7 @@ def _cloud(seed: int, smoothness: float) -> Floats:
 
 
 def _ripples(seed: int, cycles: float) -> Floats:
-    """Returns periodic waves in all directions, about `cycles` per texture, of standard deviation 1."""
+    """Return periodic waves in all directions, about `cycles` per texture, of standard deviation 1."""
     white = np.fft.rfft2(np.random.default_rng(seed).standard_normal((SIDE, SIDE)))
     number = SIDE * np.hypot(np.fft.fftfreq(SIDE)[:, np.newaxis], np.fft.rfftfreq(SIDE)[np.newaxis])
     waves = np.fft.irfft2(white * np.exp(-(((number - cycles) / (0.45 * cycles)) ** 2)), (SIDE, SIDE))

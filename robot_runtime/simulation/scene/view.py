@@ -26,7 +26,7 @@ class ObserverView:
     """m."""
 
     def line_of_sight(self, truth: Truth) -> tuple[float, float]:
-        """Returns azimuth, from north to the right, and elevation, downwards, of the line of sight (rad)."""
+        """Return azimuth, from north to the right, and elevation, downwards, of the line of sight (rad)."""
         heading = 0.0
         if self.name == "follow":
             axes = rotation(truth.attitude)
@@ -34,7 +34,7 @@ class ObserverView:
         return radians(self.azimuth) + heading, radians(self.elevation)
 
     def eye(self, truth: Truth) -> tuple[Vector, Matrix]:
-        """Returns the observer's position (m) and its axes forward, right, down, as `rotation` does."""
+        """Return the observer's position (m) and its axes forward, right, down, as `rotation` does."""
         azimuth, elevation = self.line_of_sight(truth)
         c, s, level, steep = cos(azimuth), sin(azimuth), cos(elevation), sin(elevation)
         axes = ((c * level, -s, -c * steep), (s * level, c, -s * steep), (steep, 0.0, level))

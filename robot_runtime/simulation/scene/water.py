@@ -1,7 +1,7 @@
 """Every optical property of the water, with its origin.
 
-A picture is taken through I·e^(-βz) + B·(1 - e^(-βz)), for each of the three colours: of the light I that a
-thing sends out, β (1/m) takes away so much on the way z (m), and the water puts its own light B in its place
+A picture is taken through I·e^(-βz) + B·(1 - e^(-βz)), for each of the three colours: the water
+attenuates the light I of an object by β (1/m) along the distance z (m), and adds its own light B
 (D. Akkaynak and T. Treibitz, A Revised Underwater Image Formation Model, CVPR 2018, with one β for both
 terms). The camera is taken to have balanced white at its own depth, as cameras do: light is not lost on its
 way down.
@@ -45,7 +45,7 @@ class WaterOptics:
     """Contrast, 0 to 1, of caustics just below the surface."""
 
     def with_visibility(self, factor: float) -> "WaterOptics":
-        """Returns water with this factor of visibility."""
+        """Return water with this factor of visibility."""
         blue, green, red = (beta / factor for beta in self.attenuation)
         return WaterOptics((blue, green, red), self.glow, self.scattering / factor, self.caustics)
 
@@ -61,7 +61,7 @@ CLEAN = {
 
 
 def water(kind: Kind, turbidity: float) -> WaterOptics:
-    """Returns the water of this kind of scene with this turbidity, 0 to 1."""
+    """Return the water of this kind of scene with this turbidity, 0 to 1."""
     clean = CLEAN[kind]
     added = TURBIDITY_ATTENUATION * turbidity**TURBIDITY_POWER
     blue, green, red = (beta + added for beta in clean.attenuation)

@@ -1,9 +1,9 @@
 """The hull's motion in six degrees of freedom.
 
 The model is Fossen's, for a hull whose centre of mass is the origin and whose planes of symmetry make all its
-matrices diagonal: M ν̇_r + C(ν_r) ν_r + D(ν_r) ν_r + g(η) = τ, where ν_r is the velocity through the water and
-M holds the added mass (T. I. Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2011, 8.1).
-C(ν_r) includes the Munk moment, which turns a drifting hull across its path. Water that accelerates, in
+matrices diagonal: M ν̇_r + C(ν_r) ν_r + D(ν_r) ν_r + g(η) = τ, where ν_r is the velocity through the water
+and M holds the added mass (T. I. Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2011,
+8.1). C(ν_r) includes the Munk moment, which turns a drifting hull across its path. Water that accelerates, in
 waves, takes the hull along as the water that it displaces (J. N. Newman, Marine Hydrodynamics, 1977, chapter
 4): its acceleration is added to that through the water. The flow is that at the centre of mass. Body axes are
 forward, right, down; the world's north, east, down.
@@ -42,13 +42,13 @@ class Body:
         self.start()
 
     def start(self, start: StartPose = FLOATING) -> None:
-        """Puts the hull there, at rest, at time 0."""
+        """Put the hull at this pose, at rest, at time 0."""
         depth = self.world.floating_depth(self.trim.buoyancy) if start.down is None else start.down
         self.time = 0.0
         self.state = at_rest(depth, start.north, start.east, start.heading)
 
     def step(self, duration: float, angles: Four, speeds: Four) -> None:
-        """Advances by `duration` (s): one step of the midpoint rule (Runge-Kutta of second order).
+        """Advance by `duration` (s): one step of the midpoint rule (Runge-Kutta of second order).
 
         `angles` (rad) are the fins' at the start; during the step they turn evenly at `speeds` (rad/s).
         """
@@ -63,7 +63,7 @@ class Body:
         self.time += duration
 
     def derivative(self, state: BodyState, angles: Four, speeds: Four, later: float = 0.0) -> BodyState:
-        """Returns the time derivative of a state that is reached `later` (s) than now."""
+        """Return the time derivative of a state that is reached `later` (s) than now."""
         position, attitude, velocity, rate = state
         matrix = rotation(attitude)
         water = self.world.flow(self.time + later, position)
@@ -96,7 +96,7 @@ class Body:
         )
 
     def _restoring(self, depth: float, matrix: Matrix, through: Vector) -> tuple[float, ...]:
-        """Returns force (N) and torque (N m) of weight, buoyancy and waves in body axes.
+        """Return force (N) and torque (N m) of weight, buoyancy and waves in body axes.
 
         `depth` (m) is that below the surface as it is above the hull, `through` (m/s) the velocity through
         the water.

@@ -27,7 +27,7 @@ RESTING = 0.01
 
 
 class Contact:
-    """Keeps the hull within its basin."""
+    """The contact of the hull with its basin."""
 
     def __init__(self, parameters: SimulationParameters) -> None:
         length, width, height = parameters.size
@@ -38,7 +38,7 @@ class Contact:
         self._friction = parameters.friction
 
     def settle(self, state: BodyState, basin: Basin) -> BodyState:
-        """Returns the state of a hull that may have passed floor or walls, put back and stopped there."""
+        """Return the state of a hull that may have passed floor or walls, put back and stopped there."""
         reach, (north, east, down) = self._reach, state.position
         if down + reach > basin.depth:
             state = self._touch(state, 2, 1.0, basin.depth)
@@ -50,7 +50,7 @@ class Contact:
         return state
 
     def _touch(self, state: BodyState, axis: int, side: float, limit: float) -> BodyState:
-        """Returns the state after contact with a plane across this world axis, at `side`·`limit` (m)."""
+        """Return the state after contact with a plane across this world axis, at `side`·`limit` (m)."""
         matrix = rotation(state.attitude)
         x, y, z = matrix[axis]
         a, b, c = self._half
@@ -63,14 +63,16 @@ class Contact:
         depth = side * state.position[axis] + reach - limit
         back = self._take_back(state, matrix, point, inwards, depth)
         x, y, z = rotation(back.attitude)[axis]
-        place = list(back.position)
-        place[axis] = side * min(side * place[axis], limit - sqrt((a * x) ** 2 + (b * y) ** 2 + (c * z) ** 2))
-        return self._stop(back._replace(position=(place[0], place[1], place[2])), point, inwards)
+        position = list(back.position)
+        position[axis] = side * min(
+            side * position[axis], limit - sqrt((a * x) ** 2 + (b * y) ** 2 + (c * z) ** 2)
+        )
+        return self._stop(back._replace(position=(position[0], position[1], position[2])), point, inwards)
 
     def _take_back(
         self, state: BodyState, matrix: Matrix, point: Vector, inwards: Vector, depth: float
     ) -> BodyState:
-        """Returns the state moved and turned as by a push at the point, until the point is inside."""
+        """Return the state moved and turned as by a push at the point, until the point is inside."""
         size = depth * self._mass_along(point, inwards)
         x, y, z, roll, pitch, yaw = (
             size * part / mass
@@ -102,7 +104,7 @@ class Contact:
         return self._push(state, point, against, grip)
 
     def _mass_along(self, point: Vector, line: Vector) -> float:
-        """Returns the effective mass, kg, at this point along this line."""
+        """Return the effective mass, kg, at this point along this line."""
         lever = cross(point, line)
         yielding = sum(part * part / mass for part, mass in zip((*line, *lever), self._mass, strict=True))
         return 1 / yielding

@@ -9,7 +9,7 @@ PERIOD = 10.0
 
 
 class CraftReport:
-    """Makes the document of a simulator whose craft comes from this file, where one is due."""
+    """The reports of a simulator whose craft comes from this file."""
 
     def __init__(self, simulator: Simulator, file: CraftDocument) -> None:
         self._simulator = simulator
@@ -17,7 +17,7 @@ class CraftReport:
         self._last: SwimmingCraft | None = None
 
     def due(self, now: float) -> SwimmingCraft | None:
-        """Returns the document at its first call, after a change and every `PERIOD`; `now` is its time, s.
+        """Return the document at its first call, after a change and every `PERIOD`; `now` is its time, s.
 
         Also where the time has run back, as after a reboot of the robot whose clock it is.
         """

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Literal, get_args
 
-Kind = Literal["none", "stuck", "dropout", "spike", "drift", "bus"]
+Kind = Literal["none", "stuck", "dropout", "spike", "drift", "bus", "wet"]
+FaultOfDevice = Literal["absent", "wet"]
+"""A fault of a device of the emulated board."""
 
 DEVICES = {
     "pressure": "pressure",
@@ -13,7 +15,9 @@ DEVICES = {
     **{f"encoder{fin}": f"encoder{fin}" for fin in range(4)},
 }
 """The emulated board's device behind each sensor on a bus. Gyroscope and accelerometer are one chip."""
-SENSORS = (*DEVICES, "beacon_right", "beacon_left", "battery")
+LEAK = "leak"
+"""The leak sensor, a device of the board: it measures nothing of the water outside, and is dry or wet."""
+SENSORS = (*DEVICES, "beacon_right", "beacon_left", "battery", LEAK)
 
 _NUMBERS: dict[str, tuple[str, ...]] = {
     "dropout": ("share",),
@@ -28,7 +32,8 @@ class SimulatedFault:
 
     kind: Kind = "none"
     """stuck: repeats its last reading. dropout: some readings are lost, and the last one is repeated.
-    spike: some readings jump up or down. drift: the offset grows steadily. bus: the part does not answer."""
+    spike: some readings jump up or down. drift: the offset grows steadily. bus: the part does not answer.
+    wet: there is water at the leak sensor."""
     share: float | None = None
     """Share of the readings that drop out or jump, above 0, at most 1."""
     size: float | None = None
@@ -57,8 +62,10 @@ NO_FAULT = SimulatedFault()
 
 
 def check_sensor(sensor: str, fault: SimulatedFault) -> None:
-    """Raises ValueError if there is no such sensor, or it cannot have this fault."""
+    """Raise ValueError if there is no such sensor, or it cannot have this fault."""
     if sensor not in SENSORS:
         raise ValueError(f"there is no sensor {sensor!r}; there are {', '.join(SENSORS)}")
+    if fault.kind != "none" and (fault.kind == "wet") != (sensor == LEAK):
+        raise ValueError(f"{sensor} cannot be {fault.kind}: the leak sensor has the fault wet, and no other")
     if fault.kind == "bus" and sensor not in DEVICES:
         raise ValueError(f"{sensor} is on no bus; choose stuck or dropout")

@@ -28,7 +28,7 @@ class Fins:
         self._normal = half * parameters.fin_normal
 
     def push(self, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Six:
-        """Returns force (N) and torque (N m) in body axes.
+        """Return force (N) and torque (N m) in body axes.
 
         `angles` in rad, `speeds` in rad/s; `velocity` (m/s) of the hull through the water and its turn `rate`
         (rad/s) in body axes.
@@ -64,7 +64,7 @@ class Fins:
 
 
 class FinDelay:
-    """The motion of the fins to which the water answers now: that of `seconds` ago."""
+    """The delayed motion of the fins: the water answers to that of `seconds` ago."""
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
@@ -73,7 +73,7 @@ class FinDelay:
         self._before: Four = (0.0, 0.0, 0.0, 0.0)
 
     def delay(self, period: float, angles: Four, speeds: Four) -> tuple[Four, Four]:
-        """Takes angles (rad) and speeds (rad/s) at the end of a period (s); returns the delayed ones.
+        """Take angles (rad) and speeds (rad/s) at the end of a period (s); return the delayed ones.
 
         Between two periods' ends the fins turn evenly, at the speeds of the later one. Before the first they
         were where it begins. The delayed speeds are the means of the period.

@@ -10,12 +10,12 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """Returns a × b."""
+    """Return a × b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def rotation(attitude: Quaternion) -> Matrix:
-    """Returns the rows of the matrix from body axes to world axes."""
+    """Return the rows of the matrix from body axes to world axes."""
     w, x, y, z = attitude
     return (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
@@ -25,21 +25,21 @@ def rotation(attitude: Quaternion) -> Matrix:
 
 
 def to_world(matrix: Matrix, body: Vector) -> Vector:
-    """Returns a vector in body axes, in world axes."""
+    """Return a vector in body axes, in world axes."""
     x, y, z = body
     (a, b, c), (d, e, f), (g, h, i) = matrix
     return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
 
 def to_body(matrix: Matrix, world: Vector) -> Vector:
-    """Returns a vector in world axes, in body axes."""
+    """Return a vector in world axes, in body axes."""
     x, y, z = world
     (a, b, c), (d, e, f), (g, h, i) = matrix
     return a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z
 
 
 def attitude_rate(attitude: Quaternion, rate: Vector) -> Quaternion:
-    """Returns the time derivative of the attitude of a body that turns at `rate` (rad/s, body axes)."""
+    """Return the time derivative of the attitude of a body that turns at `rate` (rad/s, body axes)."""
     w, x, y, z = attitude
     p, q, r = rate
     return (
@@ -51,7 +51,7 @@ def attitude_rate(attitude: Quaternion, rate: Vector) -> Quaternion:
 
 
 def normalize(attitude: Quaternion) -> Quaternion:
-    """Returns the unit quaternion of the same direction."""
+    """Return the unit quaternion of the same direction."""
     w, x, y, z = attitude
     scale = 1 / sqrt(w * w + x * x + y * y + z * z)
     return w * scale, x * scale, y * scale, z * scale
@@ -71,6 +71,6 @@ class BodyState(NamedTuple):
 
 
 def at_rest(depth: float, north: float = 0.0, east: float = 0.0, heading: float = 0.0) -> BodyState:
-    """Returns the state of an upright hull at rest at this position (m) and heading (rad)."""
+    """Return the state of an upright hull at rest at this position (m) and heading (rad)."""
     attitude = (cos(heading / 2), 0.0, 0.0, sin(heading / 2))
     return BodyState((north, east, depth), attitude, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))

@@ -16,7 +16,7 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import CRAFT, TRUTH
+from robot_runtime.contract.topics import CRAFT, MOTOR, TRUTH
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.craft_report import CraftReport
 from robot_runtime.simulation.water.fins import Four
@@ -39,7 +39,7 @@ QUIET = 2.0
 
 
 class HilSimulator:
-    """Joins the simulator and a robot elsewhere. `run` returns after `end`."""
+    """The connection of the simulator and a robot elsewhere. `run` returns after `end`."""
 
     def __init__(
         self, simulator: Simulator, messages: ZenohTransport, craft: CraftDocument = DEFAULT_DOCUMENT
@@ -56,10 +56,10 @@ class HilSimulator:
         self._time: float | None = None
         self._angles: Four = (0.0, 0.0, 0.0, 0.0)
         self._truth_due = 0.0
-        messages.subscribe("motor", self._receive)
+        messages.subscribe(MOTOR.name, self._receive)
 
     def run(self) -> None:
-        """Simulates the received motion of the fins until `end` is called."""
+        """Simulate the received motion of the fins until `end` is called."""
         receiving: bool | None = None
         robot = self._messages.robot
         while not self._ending:
@@ -83,17 +83,17 @@ class HilSimulator:
             self._outbox.flush()
 
     def end(self) -> None:
-        """Makes `run` return; may be called from a signal handler or any thread."""
+        """Make `run` return; may be called from a signal handler or any thread."""
         self._ending = True
         self._arrived.set()
 
     def _receive(self, _: str, data: bytes) -> None:
-        """Called in Zenoh's thread."""
+        """Queue a message, in Zenoh's thread."""
         self._waiting.append(data)
         self._arrived.set()
 
     def _advance(self) -> Reading | None:
-        """Advances by all queued messages; returns the last reading."""
+        """Advance by all queued messages; return the last reading."""
         reading = None
         while self._waiting:
             try:

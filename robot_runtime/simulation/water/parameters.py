@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, fields
 from math import pi
 from typing import Self
 
+from robot_runtime.contract.battery_pack import CAPACITY
 from robot_runtime.contract.craft import Craft, SensorQuality, Six, Vector
 
 __all__ = ["SensorQuality", "SimulationParameters", "Six", "Vector"]
@@ -15,7 +16,7 @@ __all__ = ["SensorQuality", "SimulationParameters", "Six", "Vector"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulationParameters(Craft):
-    """The parameters of the physics. Raises ValueError for a number without physical sense."""
+    """The parameters of the physics. Raises ValueError for a physically impossible number."""
 
     beacon_right: SensorQuality = field(default=SensorQuality(rate=20.0, latency=0.05, noise=0.02))
     beacon_left: SensorQuality = field(default=SensorQuality(rate=20.0, latency=0.05, noise=0.02))
@@ -32,10 +33,8 @@ class SimulationParameters(Craft):
     """m at which a beacon's light is lost. Assumed: clear water."""
     battery_full: float = 8.2
     """V. Assumed: two lithium cells, freshly charged."""
-    battery_idle: float = 0.1 / 3600
-    """V/s lost by the electronics alone. Assumed."""
-    battery_motors: float = 1.0 / 3600
-    """V/s lost besides when all four fins are driven fully. Assumed."""
+    battery_capacity: float = CAPACITY
+    """Ah. Of the reference robot's cells."""
 
     # The surroundings
     density: float = 1000.0
@@ -55,7 +54,7 @@ class SimulationParameters(Craft):
 
     def __post_init__(self) -> None:
         Craft.__post_init__(self)
-        for name in ("density", "gravity", "floor"):
+        for name in ("density", "gravity", "floor", "battery_capacity"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} is {getattr(self, name)}; it must be above 0")
         if self.floor <= self.height:
@@ -63,8 +62,8 @@ class SimulationParameters(Craft):
 
     @classmethod
     def of(cls, craft: Craft) -> Self:
-        """The parameters of this craft in the default water."""
-        return cls(**{one.name: getattr(craft, one.name) for one in fields(Craft)})
+        """Return the parameters of this craft in the default water."""
+        return cls(**{field.name: getattr(craft, field.name) for field in fields(Craft)})
 
     @property
     def fin_load(self) -> float:
@@ -74,16 +73,17 @@ class SimulationParameters(Craft):
         """
         published = SimulationParameters()
         own, usual = (
-            one.density * one.fin_normal * one.fin_area * one.fin_centre**3 for one in (self, published)
+            numbers.density * numbers.fin_normal * numbers.fin_area * numbers.fin_centre**3
+            for numbers in (self, published)
         )
         return own / usual
 
     @property
     def craft(self) -> Craft:
         """The numbers of the craft alone."""
-        return Craft(**{one.name: getattr(self, one.name) for one in fields(Craft)})
+        return Craft(**{field.name: getattr(self, field.name) for field in fields(Craft)})
 
     @property
     def weight(self) -> float:
-        """N."""
+        """The hull's weight, N."""
         return self.mass * self.gravity

@@ -53,7 +53,7 @@ class NoArguments:
 
 
 def changes(simulator: Simulator) -> dict[str, Change]:
-    """Returns the function of each request. On a ValueError nothing is changed.
+    """Return the function of each request. After a ValueError nothing has changed.
 
     `surroundings` changes nothing; its answer holds the requests that restore the present state.
     """
@@ -92,7 +92,7 @@ def changes(simulator: Simulator) -> dict[str, Change]:
             "current": _set_fields(current),
             "waves": _set_fields(waves),
             "trim": _set_fields(trim),
-            "beacons": {"positions": [list(one) for one in positions]},
+            "beacons": {"positions": [list(position) for position in positions]},
             "faults": [{"sensor": sensor, **_set_fields(fault)} for sensor, fault in faults.items()],
         }
 
@@ -101,7 +101,7 @@ def changes(simulator: Simulator) -> dict[str, Change]:
 
 
 def serve_requests(messages: ZenohTransport, requests: Mapping[str, Change], clock: Clock) -> Outbox:
-    """Serves these requests; returns an outbox for `truth`, of which it serves the blocks."""
+    """Serve these requests; return an outbox for `truth`, of which it serves the blocks."""
     cache = ReplayCache(messages.run, clock)
     for name, change in requests.items():
         messages.serve(f"simulator/{name}", change)
@@ -110,7 +110,7 @@ def serve_requests(messages: ZenohTransport, requests: Mapping[str, Change], clo
 
 
 def _require(question: Question, *names: str) -> None:
-    """Raises ConfigError unless the request names these, which have no defaults in it."""
+    """Raise ConfigError unless the request has these arguments, which have no defaults."""
     missing = [f"{name} is missing" for name in names if name not in question]
     if missing:
         raise ConfigError(*missing)

@@ -5,7 +5,15 @@ from math import cos, hypot, nan, pi, remainder, sin
 from random import Random
 from typing import NamedTuple
 
-from robot_runtime.simulation.water.faults import DEVICES, NO_FAULT, SENSORS, SimulatedFault, check_sensor
+from robot_runtime.simulation.water.faults import (
+    DEVICES,
+    LEAK,
+    NO_FAULT,
+    SENSORS,
+    FaultOfDevice,
+    SimulatedFault,
+    check_sensor,
+)
 from robot_runtime.simulation.water.fins import Four
 from robot_runtime.simulation.water.geometry import BodyState, Matrix, rotation, to_body, to_world
 from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Vector
@@ -35,7 +43,7 @@ class Sensor:
         self._interval = 1 / quality.rate
         self._gauss = Random(f"{seed} {name}").gauss
         self._chance = Random(f"{seed} {name} fault").random
-        self._offset = [one + self._gauss(0, quality.bias) for one in offset or (0.0,) * axes]
+        self._offset = [value + self._gauss(0, quality.bias) for value in offset or (0.0,) * axes]
         self._due = 0.0
         self._walk_due = WALK_PERIOD
         self._shown: Numbers | None = None
@@ -46,13 +54,13 @@ class Sensor:
         """True if its newest reading was lost, so that it repeats an older one."""
 
     def set_fault(self, fault: SimulatedFault, time: float) -> None:
-        """Sets the fault from `time` (s) on, in place of any other."""
+        """Set the fault from `time` (s) on, in place of any other."""
         self._fault = fault
         self._since = time
         self.repeats = False
 
     def read(self, time: float, actual: Numbers) -> Numbers:
-        """Returns the reading at this time (s) for these actual values. The first reading has no latency."""
+        """Return the reading at this time (s) for these actual values. The first reading has no latency."""
         if time > self._due - SAME_TIME:
             self._due = max(self._due + self._interval, time)
             reading = self._apply_fault(time, self._add_noise(time, actual))
@@ -78,7 +86,7 @@ class Sensor:
         )
 
     def _apply_fault(self, time: float, reading: Numbers) -> Numbers | None:
-        """Returns the reading with fault and quantization; None if it is lost."""
+        """Return the reading with fault and quantization; None if it is lost."""
         fault = self._fault
         if fault is not NO_FAULT:
             if fault.kind == "stuck" or (fault.kind == "dropout" and self._chance() < (fault.share or 0)):
@@ -115,7 +123,7 @@ class Reading(NamedTuple):
 
 
 class Sensors:
-    """Reads the hull's state. The same seed gives the same readings."""
+    """The sensors of the hull's state. The same seed gives the same readings."""
 
     def __init__(self, parameters: SimulationParameters, world: World, seed: int) -> None:
         self._parameters = parameters
@@ -128,7 +136,7 @@ class Sensors:
         self.start()
 
     def start(self) -> None:
-        """Restarts at time 0, with the same readings for the same motion; beacons and faults stay."""
+        """Restart at time 0, with the same readings for the same motion; beacons and faults stay."""
         parameters = self._parameters
         offsets = {
             "gyroscope": parameters.gyroscope_offset,
@@ -138,28 +146,32 @@ class Sensors:
             name: Sensor(name, quality, axes, self.seed, offsets.get(name))
             for name, (quality, axes) in _qualities(parameters).items()
         }
-        for name, fault in self.faults.items():
-            self._sensors[name].set_fault(fault, 0.0)
+        for name, sensor in self._sensors.items():
+            sensor.set_fault(self.faults[name], 0.0)
         self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
 
     def set_fault(self, sensor: str, fault: SimulatedFault, time: float) -> None:
-        """Sets a sensor's fault from `time` (s) on. Raises ValueError if that sensor cannot have it."""
+        """Set a sensor's fault from `time` (s) on. Raise ValueError if that sensor cannot have it."""
         check_sensor(sensor, fault)
         self.faults[sensor] = fault
-        self._sensors[sensor].set_fault(fault, time)
+        if sensor != LEAK:
+            self._sensors[sensor].set_fault(fault, time)
 
     def set_beacons(self, positions: tuple[Vector, ...]) -> None:
-        """Sets the positions (m) of all light beacons. Raises ValueError; see `check_beacons`."""
+        """Set the positions (m) of all light beacons. Raise ValueError; see `check_beacons`."""
         check_beacons(positions)
         self.beacons = positions
 
     @property
-    def broken_devices(self) -> frozenset[str]:
-        """The emulated board's devices that must not answer."""
-        return frozenset(DEVICES[name] for name, fault in self.faults.items() if fault.kind == "bus")
+    def device_faults(self) -> dict[str, FaultOfDevice]:
+        """The faults of the emulated board's devices, by their names: no answer, or a leak."""
+        faults: dict[str, FaultOfDevice] = {
+            DEVICES[name]: "absent" for name, fault in self.faults.items() if fault.kind == "bus"
+        }
+        return faults | {LEAK: "wet"} if self.faults[LEAK].kind == "wet" else faults
 
     def read(self, time: float, state: BodyState, acceleration: Vector, battery: float) -> Reading:
-        """Returns the readings at this time (s); `acceleration` is that over ground in world axes (m/s²)."""
+        """Return the readings at this time (s); `acceleration` is that over ground in world axes (m/s²)."""
         parameters, sensors = self._parameters, self._sensors
         matrix = rotation(state.attitude)
         north, east, down = acceleration
@@ -187,7 +199,7 @@ class Sensors:
         return self._world.pressure(time, (north + x, east + y, down + z))
 
     def _beacon_margins(self, state: BodyState, matrix: Matrix) -> tuple[float, float]:
-        """Returns the margins of the right and the left detector in range and view; above 0 a beacon is seen.
+        """Return the margins of the right and the left detector in range and view; above 0 a beacon is seen.
 
         A detector sees a beacon within its range and view; the brightest counts.
         """
@@ -216,7 +228,7 @@ def _encoder_error(encoder: Sensor, time: float) -> float:
 
 
 def _qualities(parameters: SimulationParameters) -> dict[str, tuple[SensorQuality, int]]:
-    """Returns the error model and the number of axes of each sensor."""
+    """Return the error model and the number of axes of each sensor."""
     return {
         "pressure": (parameters.pressure, 1),
         "gyroscope": (parameters.gyroscope, 3),

@@ -5,10 +5,12 @@ from collections.abc import Sequence
 from math import ceil
 from typing import NamedTuple
 
+from robot_runtime.contract.battery_pack import charge_at, resting_voltage
 from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.documents import Truth
+from robot_runtime.contract.power_budget import EFFICIENCY, electronics_power, motor_power
 from robot_runtime.simulation.water.body import Body
-from robot_runtime.simulation.water.faults import SimulatedFault
+from robot_runtime.simulation.water.faults import FaultOfDevice, SimulatedFault
 from robot_runtime.simulation.water.fins import FinDelay, Fins, Four
 from robot_runtime.simulation.water.geometry import rotation, to_world
 from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
@@ -26,8 +28,8 @@ from robot_runtime.simulation.water.world import World
 
 STEP_MAX = 0.005
 """s; at this step a position is off by less than 0.1 mm after 10 s of swimming."""
-DRIVE_MAX = 63
-"""The H-bridges' command at full voltage."""
+DRIVE_VOLTS = 0.08
+"""V of a motor for each step of its H-bridge's command (DRV8830 data sheet)."""
 
 
 class FinMotion(NamedTuple):
@@ -44,13 +46,13 @@ class FinMotion(NamedTuple):
 
     @classmethod
     def of(cls, numbers: Sequence[float]) -> "FinMotion":
-        """Makes it from 13 numbers: four angles, four speeds, four drives and the power, not 0 if on."""
+        """Return the motion in 13 numbers: four angles, speeds and drive, and the power (not 0 if on)."""
         a0, a1, a2, a3, s0, s1, s2, s3, d0, d1, d2, d3, power = numbers
         return cls((a0, a1, a2, a3), (s0, s1, s2, s3), (d0, d1, d2, d3), power != 0)
 
 
 class SimulationSetup(NamedTuple):
-    """All that can be set about water, hull and sensors."""
+    """All settings of water, hull and sensors."""
 
     basin: Basin
     current: Current
@@ -70,13 +72,14 @@ class Simulator:
         self._world = World(parameters)
         self._body = Body(parameters, Fins(parameters), self._world)
         self._sensors = Sensors(parameters, self._world, seed)
-        self._battery = parameters.battery_full
+        self._electronics = electronics_power()
+        self._charge_battery()
         self._angles: Four = (0.0, 0.0, 0.0, 0.0)
         self._delay = FinDelay(parameters.fin_delay)
         self._lock = threading.Lock()
 
     def advance(self, period: float, fins: FinMotion) -> Reading:
-        """Advances by `period` (s), at whose end the fins are as given, and reads the sensors."""
+        """Advance by `period` (s), at whose end the fins are as given, and read the sensors."""
         with self._lock:
             before = self._velocity()
             steps = ceil(period / STEP_MAX)
@@ -84,8 +87,8 @@ class Simulator:
             (a, b, c, d), speeds = self._delay.delay(period, fins.angles, fins.speeds)
             e, f, g, h = speeds
             for step in range(steps):
-                left = period - step * duration
-                start = (a - e * left, b - f * left, c - g * left, d - h * left)
+                remaining = period - step * duration
+                start = (a - e * remaining, b - f * remaining, c - g * remaining, d - h * remaining)
                 self._body.step(duration, start, speeds)
             self._angles = fins.angles
             self._drain(period, fins)
@@ -99,10 +102,10 @@ class Simulator:
             return self._sensors.read(self._body.time, self._body.state, acceleration, self._battery)
 
     def reset(self, start: StartPose = FLOATING, seed: int | None = None) -> None:
-        """Restarts at time 0, at rest, by default floating and heading north, with a full battery.
+        """Restart at time 0, at rest, by default floating and heading north, with a full battery.
 
         The sensors' noise restarts, too, with another `seed` if one is given. Water, trim, beacons and
-        faults stay as they are. Raises ValueError if floor or walls are in the way.
+        faults stay as they are. Raise ValueError if floor or walls are in the way.
         """
         with self._lock:
             check_start(start, self._world.basin, self._parameters.size)
@@ -111,41 +114,41 @@ class Simulator:
             self._start(start)
 
     def set_current(self, current: Current) -> None:
-        """Sets the current from now on."""
+        """Set the current from now on."""
         with self._lock:
             self._world.set_current(current, self._body.time)
 
     def set_waves(self, waves: Waves) -> None:
-        """Sets the waves. Raises ValueError if they would break in water of this depth."""
+        """Set the waves. Raise ValueError if they would break in water of this depth."""
         with self._lock:
             self._world.set_waves(waves)
 
     def set_trim(self, trim: Trim) -> None:
-        """Sets the trim of the hull."""
+        """Set the trim of the hull."""
         with self._lock:
             self._body.trim = trim
 
     def set_basin(self, basin: Basin) -> None:
-        """Sets floor and walls, and resets, because the hull may now be inside a wall.
+        """Set floor and walls, and reset, because the hull may now be inside a wall.
 
-        Raises ValueError if the present waves would break there.
+        Raise ValueError if the present waves would break there.
         """
         with self._lock:
             self._world.set_basin(basin)
             self._start()
 
     def set_beacons(self, positions: tuple[Vector, ...]) -> None:
-        """Sets the positions (m north, east, down) of all light beacons. Raises ValueError."""
+        """Set the positions (m north, east, down) of all light beacons. Raise ValueError."""
         with self._lock:
             self._sensors.set_beacons(positions)
 
     def set_fault(self, sensor: str, fault: SimulatedFault) -> None:
-        """Sets or clears the fault of a sensor. Raises ValueError if it cannot have this fault."""
+        """Set or clear the fault of a sensor. Raise ValueError if it cannot have this fault."""
         with self._lock:
             self._sensors.set_fault(sensor, fault, self._body.time)
 
     def surroundings(self) -> SimulationSetup:
-        """Returns the present value of everything that can be set."""
+        """Return the present value of everything that can be set."""
         with self._lock:
             world, sensors = self._world, self._sensors
             return SimulationSetup(
@@ -158,7 +161,7 @@ class Simulator:
             )
 
     def craft(self) -> Craft:
-        """Returns the numbers of the hull, with its present trim."""
+        """Return the numbers of the hull, with its present trim."""
         with self._lock:
             trim = self._body.trim
             if trim != Trim.of(self._craft):
@@ -166,13 +169,13 @@ class Simulator:
             return self._craft
 
     @property
-    def broken_devices(self) -> frozenset[str]:
-        """The emulated board's devices that must not answer: imu, pressure, encoder0 to encoder3."""
+    def device_faults(self) -> dict[str, FaultOfDevice]:
+        """The faults of the emulated board's devices: imu, pressure, encoder0 to encoder3, leak."""
         with self._lock:
-            return self._sensors.broken_devices
+            return self._sensors.device_faults
 
     def truth(self) -> Truth:
-        """Returns the true motion of the body."""
+        """Return the true motion of the body."""
         with self._lock:
             position, attitude, velocity, rate = self._body.state
             return Truth(
@@ -184,14 +187,21 @@ class Simulator:
         self._world.set_current(self._world.current)
         self._sensors.start()
         self._delay = FinDelay(self._parameters.fin_delay)
-        self._battery = self._parameters.battery_full
+        self._charge_battery()
+
+    def _charge_battery(self) -> None:
+        self._charge = charge_at(self._parameters.battery_full)
+        self._battery = resting_voltage(self._charge)
 
     def _velocity(self) -> Vector:
         state = self._body.state
         return to_world(rotation(state.attitude), state.velocity)
 
     def _drain(self, period: float, fins: FinMotion) -> None:
-        parameters = self._parameters
-        effort = sum(map(abs, fins.drives)) / (DRIVE_MAX * len(fins.drives)) if fins.powered else 0.0
-        loss = parameters.battery_idle + parameters.battery_motors * effort
-        self._battery = max(self._battery - loss * period, 0.0)
+        power = self._electronics
+        if fins.powered:
+            for drive, speed in zip(fins.drives, fins.speeds, strict=True):
+                power += motor_power(drive * DRIVE_VOLTS, speed) / EFFICIENCY
+        charge = power / self._battery * period / 3600
+        self._charge = max(self._charge - charge / self._parameters.battery_capacity, 0.0)
+        self._battery = resting_voltage(self._charge)

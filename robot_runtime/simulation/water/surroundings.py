@@ -79,11 +79,11 @@ class Trim:
 
     @classmethod
     def of(cls, craft: Craft) -> Self:
-        """The craft's own trim."""
+        """Return the craft's own trim."""
         return cls(craft.buoyancy, craft.buoyancy_forward, craft.buoyancy_right, craft.buoyancy_height)
 
     def on(self, craft: Craft) -> Craft:
-        """The craft with this trim."""
+        """Return the craft with this trim."""
         return replace(
             craft,
             buoyancy=self.buoyancy,
@@ -139,17 +139,17 @@ class Basin:
 
 
 def check_start(start: StartPose, basin: Basin, size: Vector) -> None:
-    """Raises ValueError if a hull of this size (m) would be in the floor or in a wall."""
+    """Raise ValueError if a hull of this size (m) would be in the floor or in a wall."""
     reach = max(size) / 2
     if start.down is not None and start.down + size[2] / 2 > basin.depth:
         raise ValueError(f"a start at {start.down:g} m is in the floor, which is at {basin.depth:g} m")
-    for name, place, side in (("north", start.north, basin.length), ("east", start.east, basin.width)):
-        if side is not None and abs(place) + reach > side / 2:
-            raise ValueError(f"a start {place:g} m {name} is in a wall, which is at {side / 2:g} m")
+    for name, coordinate, side in (("north", start.north, basin.length), ("east", start.east, basin.width)):
+        if side is not None and abs(coordinate) + reach > side / 2:
+            raise ValueError(f"a start {coordinate:g} m {name} is in a wall, which is at {side / 2:g} m")
 
 
 def check_beacons(positions: tuple[Vector, ...]) -> None:
-    """Raises ValueError on more than eight beacons, or one farther than 1000 m north, east or down."""
+    """Raise ValueError on more than eight beacons, or one farther than 1000 m north, east or down."""
     if len(positions) > BEACONS_MAX:
         raise ValueError(f"{len(positions)} beacons; there can be at most {BEACONS_MAX}")
     for position in positions:

@@ -12,7 +12,7 @@ NOWHERE: Vector = (0.0, 0.0, 0.0)
 
 
 class Flow(NamedTuple):
-    """The water at one place and moment, in world axes."""
+    """The water's motion at one position and moment, in world axes."""
 
     velocity: Vector
     """m/s north, east, down."""
@@ -49,31 +49,31 @@ class World:
         self._tune_waves(self._wave_number(self.waves, self.basin))
 
     def set_current(self, current: Current, time: float = 0.0) -> None:
-        """Sets the current from `time` (s) on."""
+        """Set the current from `time` (s) on."""
         self.current = current
         self._since = time
         self._calm = Flow((current.north, current.east, current.down), NOWHERE, 0.0)
 
     def set_waves(self, waves: Waves) -> None:
-        """Sets the waves. Raises ValueError if they would break in water of this depth."""
+        """Set the waves. Raise ValueError if they would break in water of this depth."""
         number = self._wave_number(waves, self.basin)
         self.waves = waves
         self._tune_waves(number)
 
     def set_basin(self, basin: Basin) -> None:
-        """Sets floor and walls. Raises ValueError if the present waves would break there."""
+        """Set floor and walls. Raise ValueError if the present waves would break there."""
         number = self._wave_number(self.waves, basin)
         self.basin = basin
         self._tune_waves(number)
 
     def flow(self, time: float, position: Vector) -> Flow:
-        """Returns the motion of the water at this time (s) and place (m)."""
+        """Return the motion of the water at this time (s) and position (m)."""
         if not self.waves.amplitude and not self.current.turning:
             return self._calm
         (north, east, down), (north_rate, east_rate, down_rate) = self._drift(time)
         if not self.waves.amplitude:
             return Flow((north, east, down), (north_rate, east_rate, down_rate), 0.0)
-        (near, far), phase = self._place(time, position)
+        (near, far), phase = self._decay(time, position)
         x, y = self._direction
         swing, bob = cos(phase), sin(phase)
         level, upright = self._speed * (near + far), self._speed * (near - far)
@@ -88,28 +88,28 @@ class World:
         return Flow(velocity, acceleration, self.waves.amplitude * swing)
 
     def pressure(self, time: float, position: Vector) -> float:
-        """Returns the absolute pressure, Pa: hydrostatic and of the wave; in air that of the surface."""
+        """Return the absolute pressure, Pa: hydrostatic and of the wave; in air that of the surface."""
         head = position[2]
         if self.waves.amplitude:
-            deep, phase = self._place(time, position)
+            deep, phase = self._decay(time, position)
             head += self.waves.amplitude * cos(phase) * (deep[0] + deep[1]) / (1 + self._echo)
         return self._surface_pressure + self._specific_weight * max(head, 0.0)
 
     def floating_depth(self, buoyancy: float) -> float:
-        """Returns the depth (m) of the centre of a floating hull at rest; a sinking one is just covered."""
+        """Return the depth (m) of the centre of a floating hull at rest; a sinking one is just covered."""
         return min(self._height / buoyancy, self._height) - self._height / 2
 
     def submerged(self, depth: float) -> float:
-        """Returns the share of the hull under water, 0 to 1, with its centre at this depth (m)."""
+        """Return the share of the hull under water, 0 to 1, with its centre at this depth (m)."""
         return min(max(depth / self._height + 0.5, 0.0), 1.0)
 
     def wave_drag(self, depth: float, sinking: float) -> float:
-        """Returns the force (N, downwards) of the waves of a hull that sinks through the surface (m/s)."""
+        """Return the force (N, downwards) of the waves of a hull that sinks through the surface (m/s)."""
         half = self._height / 2
         return -self._damping * sinking if -half < depth < half else 0.0
 
     def _drift(self, time: float) -> tuple[Vector, Vector]:
-        """Returns velocity and acceleration of the current."""
+        """Return velocity and acceleration of the current."""
         current = self.current
         if not current.turning:
             return self._calm.velocity, NOWHERE
@@ -118,15 +118,15 @@ class World:
         north, east = current.north * c - current.east * s, current.north * s + current.east * c
         return (north, east, current.down), (-current.turning * east, current.turning * north, 0.0)
 
-    def _place(self, time: float, position: Vector) -> tuple[tuple[float, float], float]:
-        """Returns e^(-kz) and e^(-k(2h-z)), from which all decays follow, and the phase (rad)."""
+    def _decay(self, time: float, position: Vector) -> tuple[tuple[float, float], float]:
+        """Return e^(-kz) and e^(-k(2h-z)), from which all decays follow, and the phase (rad)."""
         depth = min(max(position[2], 0.0), self.basin.depth)
         deep = exp(-self._number * depth), exp(-self._number * (2 * self.basin.depth - depth))
         x, y = self._direction
         return deep, self._number * (position[0] * x + position[1] * y) - self._frequency * time
 
     def _wave_number(self, waves: Waves, basin: Basin) -> float:
-        """Returns k (rad/m) of ω² = gk·tanh kh, by Newton's method. Raises ValueError if the wave breaks."""
+        """Return k (rad/m) of ω² = gk·tanh kh, by Newton's method. Raise ValueError if the wave breaks."""
         frequency = 2 * pi / waves.period
         deep = frequency**2 / self._gravity
         number = deep / sqrt(tanh(deep * basin.depth))

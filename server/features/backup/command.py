@@ -1,4 +1,4 @@
-"""`mucat backup` and `mucat restore`: everything that people have made, copied while a server records."""
+"""`mucat backup` and `mucat restore`: sessions, settings and own files, copied while a server records."""
 
 import os
 import shutil
@@ -17,8 +17,8 @@ from server.platform.database_copies import (
     FILES,
     Kind,
     copy_database,
+    new_copy_path,
     open_database,
-    place,
     sum_file,
     thin_out,
     write_checksum,
@@ -54,7 +54,7 @@ def backup(settings: Settings, file: Path | None) -> None:
 @click.argument("file", type=FILE)
 @with_settings
 def restore(settings: Settings, file: Path) -> None:
-    """Put a backup in the place of what is there.
+    """Replace the present database and files by a backup.
 
     FILE was written by `mucat backup`.
     """
@@ -65,13 +65,13 @@ def restore(settings: Settings, file: Path) -> None:
 
 
 def back_up(folder: DataFolder, config: Path, file: Path | None) -> str:
-    """Copy the database and the files that people have made; returns a sentence. Raises SetupError."""
+    """Copy the database and the users' files; return a sentence. Raise SetupError."""
     if not folder.database.is_file():
         raise SetupError(f"There is no database in {folder.path} yet, and so nothing to back up.")
     if file is not None and file.exists():
         raise SetupError(f"{file} exists already. Name another file.")
     try:
-        path = file or place(folder, "backup")
+        path = file or new_copy_path(folder, "backup")
         large: list[str] = []
         copy_database(folder.database, path, lambda copy: large.extend(store_files(copy, folder, config)))
         checksum = write_checksum(path)
@@ -87,7 +87,7 @@ def back_up(folder: DataFolder, config: Path, file: Path | None) -> str:
 def put_back(folder: DataFolder, file: Path) -> str:
     """Replace the database and the files of a claimed folder by a copy; the old ones are put aside.
 
-    The numbers of sessions go on after those of the replaced database. Raises SetupError.
+    The numbers of sessions go on after those of the replaced database. Raise SetupError.
     """
     revision = _examine(file)
     fresh, files = folder.database.with_name("restored.db"), folder.path / "restored"
@@ -97,7 +97,7 @@ def put_back(folder: DataFolder, file: Path) -> str:
         names = take_files(fresh, files)
         upgrade(fresh)
         carry_numbers(folder.database, fresh)
-        aside = _put_aside(folder) if folder.database.exists() else place(folder, "replaced")
+        aside = _put_aside(folder) if folder.database.exists() else new_copy_path(folder, "replaced")
         put_in_place(fresh, folder.database)
     except (sqlite3.DatabaseError, OSError, SetupError) as problem:
         fresh.unlink(missing_ok=True)
@@ -133,7 +133,7 @@ def _describe_aside(folder: DataFolder, aside: Path) -> str:
 
 
 def _thin_out(folder: DataFolder, kind: Kind, made: Path) -> str:
-    """Remove the oldest copies; returns a remark where they cannot be removed."""
+    """Remove the oldest copies; return a remark where they cannot be removed."""
     try:
         thin_out(folder, kind, made)
     except OSError as problem:
@@ -160,12 +160,12 @@ def _examine(file: Path) -> str:
 
 
 def _put_aside(folder: DataFolder) -> Path:
-    """Give the present database a second name, so that the copy takes its place in one step.
+    """Give the present database a second name, so that the copy replaces it in one step.
 
     A working database is first merged into one file. For a damaged one, the files beside it are saved too;
     they must not stay in place, or SQLite would take them for the copy's.
     """
-    aside = place(folder, "replaced")
+    aside = new_copy_path(folder, "replaced")
     logs = {path: _beside(aside, end) for end in LOGS if (path := _beside(folder.database, end)).exists()}
     for path, saved in logs.items():
         write_whole(saved, path.read_bytes(), 0o600)

@@ -9,7 +9,6 @@ import shutil
 import sqlite3
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import BinaryIO
 
 from starlette.responses import Response, StreamingResponse
@@ -17,10 +16,10 @@ from starlette.types import Receive, Scope, Send
 
 from robot_runtime.durable_files import make_folder
 from robot_runtime.errors import RefusedError
-from server.platform.database_copies import copy_database, place, remove_abandoned
+from server.platform.database_copies import copy_database, new_copy_path, remove_abandoned
 from server.platform.disk_space import DIVE_BYTES
 from server.platform.errors import InsufficientStorageError
-from server.platform.settings import DataFolder
+from server.platform.settings import Settings
 from server.platform.user_files import store_files
 
 PIECE_BYTES = 1 << 18
@@ -33,20 +32,20 @@ class DatabaseCopyError(InsufficientStorageError):
 class DatabaseDownloads:
     """Copies of a folder's database, made for download."""
 
-    def __init__(self, folder: DataFolder, config: Path) -> None:
-        self._folder = folder
-        self._config = config
-        self._path = folder.backups / "download.db"
+    def __init__(self, settings: Settings) -> None:
+        self._folder = settings.data
+        self._config = settings.config
+        self._path = settings.data.backups / "download.db"
         self._busy = False
 
     def recover(self) -> None:
-        """Remove copies and parts of copies that killed processes have left. Raises OSError."""
+        """Remove copies, and parts of copies, of killed processes. Raise OSError."""
         self._path.unlink(missing_ok=True)
         if self._folder.backups.is_dir():
             remove_abandoned(self._folder.backups)
 
     async def begin(self) -> Response:
-        """An answer that sends the database as it is now. Raises RefusedError, DatabaseCopyError."""
+        """Return an answer that sends the database as it is now. Raise RefusedError, DatabaseCopyError."""
         if self._busy:
             raise RefusedError("A backup is being copied or downloaded already. Wait until it is done.")
         self._busy = True
@@ -55,7 +54,7 @@ class DatabaseDownloads:
         except BaseException:
             self._busy = False
             raise
-        return FileDownload(file, place(self._folder, "backup").name, self._end)
+        return FileDownload(file, new_copy_path(self._folder, "backup").name, self._end)
 
     def _end(self) -> None:
         self._busy = False
@@ -82,7 +81,7 @@ class DatabaseDownloads:
 
 
 class FileDownload(StreamingResponse):
-    """Sends a file, then closes it and calls `ended`; also if the client leaves.
+    """An answer that sends a file, closes it and calls `ended`; also if the client leaves.
 
     The connection to a client that has stopped reading ends after `server.http.listener.USER_TIMEOUT_MS`.
     """
@@ -98,7 +97,7 @@ class FileDownload(StreamingResponse):
         self._ended = ended
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send piece by piece."""
+        """Send the file piece by piece."""
         try:
             await super().__call__(scope, receive, send)
         finally:

@@ -1,4 +1,4 @@
-"""The robot's board, reserved for what its own firmware does not do."""
+"""The robot's board, reserved for tasks that its own firmware cannot do."""
 
 from server.feature import Feature
 

@@ -12,7 +12,7 @@ from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
-    from server.features.board.reservation import RobotBoard
+    from server.board_reservation import RobotBoard
 
 
 @click.command()
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 def upload(settings: Settings, previous: bool) -> None:
     """Upload the robot's firmware to its board, and verify it.
 
-    What was on the board is stored as firmware-previous.hex in the data folder. The board's calibration
-    stays. Beside a running server, press the button on the System page.
+    The board's previous firmware is stored as firmware-previous.hex in the data folder. The board's
+    calibration stays. Beside a running server, press the button on the System page.
     """
     from robot_runtime.errors import RefusedError
     from robot_runtime.places import FIRMWARE_REMEDY
-    from server.features.board.reservation import RobotBoard
+    from server.board_reservation import RobotBoard
     from server.platform.pidfile import end_parts
 
     if settings.emulated_board:
@@ -52,7 +52,7 @@ def upload(settings: Settings, previous: bool) -> None:
 
 
 async def _upload(board: "RobotBoard", settings: Settings, firmware: Path, older: Path | None) -> None:
-    """Uploads the firmware; what was on the board before is stored as `older`, if that is given."""
+    """Upload the firmware; store the board's previous firmware as `older`, if that is given."""
     from server.features.board.firmware_upload import store_previous
 
     async with board.reserve("The upload of firmware", firmware):

@@ -1,4 +1,4 @@
-"""Uploads firmware to the robot's board on request: what is on it is stored, what is uploaded is verified."""
+"""The upload of firmware to the robot's board: the previous firmware is stored, the new one verified."""
 
 import asyncio
 import re
@@ -9,8 +9,8 @@ from pathlib import Path
 
 from robot_runtime.errors import RefusedError
 from robot_runtime.places import FIRMWARE_REMEDY
+from server.board_reservation import RobotBoard
 from server.features.board.previous_firmware import HexFileError, store_if_other
-from server.features.board.reservation import RobotBoard
 from server.features.board.schemas import PreviousFirmware, UploadChoice, UploadPhase, UploadState
 from server.platform.settings import Settings
 
@@ -27,12 +27,12 @@ class FirmwareUpload:
         self._board = board
         self._reserve = reserve
         self._phase: UploadPhase = "idle"
-        self._words = ""
+        self._state_text = ""
         self._problem = ""
         self._task: asyncio.Task[None] | None = None
 
     async def begin(self, choice: UploadChoice) -> None:
-        """Begin; `state` tells how it goes. Raises RefusedError where it cannot begin."""
+        """Begin; `state` returns the progress. Raise RefusedError where it cannot begin."""
         if self._task is not None and not self._task.done():
             raise RefusedError("Firmware is being uploaded. Wait for its end.")
         if not self._board.built.exists():
@@ -44,22 +44,22 @@ class FirmwareUpload:
         await asyncio.shield(reserved)
 
     async def close(self) -> None:
-        """Wait for the end of an upload: half a firmware is none."""
+        """Wait for the end of an upload: half a firmware does not run."""
         if self._task is not None:
             await asyncio.wait([self._task])
 
     def state(self) -> UploadState:
-        """Everything that pages show."""
+        """Return the state for the pages."""
         return UploadState(
             phase=self._phase,
             progress=self._progress(),
-            words=self._words,
+            words=self._state_text,
             problem=self._problem,
             previous=self._describe_previous(),
         )
 
     async def _run(self, choice: UploadChoice, reserved: "asyncio.Future[None]") -> None:
-        self._words = self._problem = ""
+        self._state_text = self._problem = ""
         program = self._data.firmware_previous if choice == "previous" else None
         try:
             async with self._reserve("The upload of firmware", program):
@@ -72,7 +72,9 @@ class FirmwareUpload:
                 self._problem = self._board.problem
             else:
                 name = "The previous firmware" if choice == "previous" else "The robot's firmware"
-                self._words = f"{name} is on the board, read back and compared. {self._words}".strip()
+                self._state_text = (
+                    f"{name} is on the board, read back and compared. {self._state_text}".strip()
+                )
         except RefusedError as problem:
             if reserved.done():
                 self._problem = str(problem)
@@ -88,27 +90,27 @@ class FirmwareUpload:
         self._phase = phase
 
     async def _store_previous(self) -> None:
-        self._words = await store_previous(self._board, self._data.run, self._data.firmware_previous)
+        self._state_text = await store_previous(self._board, self._data.run, self._data.firmware_previous)
 
     def _progress(self) -> float:
         if self._phase == "idle":
             return 0.0
-        said = ""
+        output = ""
         with suppress(OSError):
-            said = self._data.upload_progress.read_text(encoding="utf-8", errors="replace")
-        return read_progress(said, verified=self._phase == "uploading")
+            output = self._data.upload_progress.read_text(encoding="utf-8", errors="replace")
+        return read_progress(output, verified=self._phase == "uploading")
 
     def _describe_previous(self) -> PreviousFirmware | None:
         try:
-            found = self._data.firmware_previous.stat()
+            status = self._data.firmware_previous.stat()
         except FileNotFoundError:
             return None
-        since = datetime.fromtimestamp(found.st_mtime, UTC)
+        since = datetime.fromtimestamp(status.st_mtime, UTC)
         return PreviousFirmware(path=str(self._data.firmware_previous), since=since)
 
 
 async def store_previous(board: RobotBoard, folder: Path, previous: Path) -> str:
-    """Store the firmware that is on the board, with `folder` for what is unfinished; says what came of it."""
+    """Store the board's firmware, with unfinished files in `folder`; return the outcome as text."""
     read = folder / "firmware-read.hex"
     if problem := await board.read_out(read):
         return f"The firmware before it could not be read, so it is not stored: {problem}."
@@ -123,9 +125,9 @@ async def store_previous(board: RobotBoard, folder: Path, previous: Path) -> str
     return "The same was on it before." if content == "same" else "No firmware was on it before."
 
 
-def read_progress(said: str, *, verified: bool) -> float:
-    """The share, 0 to 1, of what avrdude has done, by its output; with `verified` it writes and reads."""
-    bars = [(name, len(marks)) for name, marks in re.findall(r"(Writing|Reading) \| (#*)", said)]
+def read_progress(output: str, *, verified: bool) -> float:
+    """Return avrdude's progress, 0 to 1, by its output; with `verified` it writes and reads back."""
+    bars = [(name, len(marks)) for name, marks in re.findall(r"(Writing|Reading) \| (#*)", output)]
     if not bars:
         return 0.0
     name, marks = bars[-1]

@@ -4,21 +4,21 @@ from collections.abc import Coroutine, Sequence
 from typing import Any, ClassVar
 
 from robot_runtime.clock import Clock
+from server.board_reservation import BoardReservation, RobotBoard
 from server.feature import Plug
 from server.features.board.firmware_upload import FirmwareUpload
-from server.features.board.reservation import BoardReservation, RobotBoard
-from server.features.sessions.provenance import ProvenanceWatch
 from server.health.monitor import HealthMonitor
 from server.health.occupation import Occupation
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.processes.supervisor import ProcessSupervisor
+from server.recording.provenance import ProvenanceWatch
 from server.services import Maker
 from server.stream.bridge import Bridge
 
 
 def make_board(settings: Settings, notices: Notices, provenance: ProvenanceWatch) -> RobotBoard:
-    """The robot's board."""
+    """Return the robot's board."""
     return RobotBoard(settings, notices.notify, provenance.read_firmware)
 
 
@@ -30,17 +30,17 @@ def make_reservation(
     clock: Clock,
     occupation: Occupation,
 ) -> BoardReservation:
-    """The reservation of the board."""
+    """Return the reservation of the board."""
     return BoardReservation(board, bridge, monitor, processes, clock, occupation.of_board)
 
 
 def make_upload(settings: Settings, board: RobotBoard, reservation: BoardReservation) -> FirmwareUpload:
-    """Uploads of firmware."""
+    """Return the upload of firmware."""
     return FirmwareUpload(settings, board, reservation.reserve)
 
 
 class BoardPlug(Plug):
-    """Starts the robot's processes, once its firmware is on the board."""
+    """The plug that starts the robot's processes, once its firmware is on the board."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_board, make_reservation, make_upload)
 
@@ -49,7 +49,7 @@ class BoardPlug(Plug):
         self._upload = upload
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
-        """Restore the firmware where it is away, and start the processes."""
+        """Restore the robot's firmware if the board holds another, and start the processes."""
         return (self._reservation.start_processes(),)
 
     async def stop(self) -> None:

@@ -18,9 +18,9 @@ class HexFileError(ValueError):
 
 
 def read_program(path: Path) -> bytes:
-    """The program in an Intel HEX file from address 0 on, without boot loader and erased end.
+    """Return the program in an Intel HEX file from address 0 on, without boot loader and erased end.
 
-    Raises HexFileError, and OSError.
+    Raise HexFileError, and OSError.
     """
     memory = bytearray([_ERASED]) * BOOT_LOADER
     for number, line in enumerate(path.read_text(encoding="ascii", errors="replace").split(), start=1):
@@ -37,7 +37,7 @@ def read_program(path: Path) -> bytes:
 
 
 def write_program(program: bytes, path: Path) -> None:
-    """Write a program as an Intel HEX file, durably. Raises OSError."""
+    """Write a program as an Intel HEX file, durably. Raise OSError."""
     lines = []
     for address in range(0, len(program), _LINE_BYTES):
         data = program[address : address + _LINE_BYTES]
@@ -52,9 +52,9 @@ def _write_record(record: bytes) -> str:
 
 
 def store_if_other(read: Path, built: Path, previous: Path) -> BoardContent:
-    """Stores what was read from the board, unless it is the firmware that was built, or none; returns which.
+    """Store the firmware read from the board, unless it is the built one or none; return the case.
 
-    So a second upload does not replace the older firmware by the newer one. Raises HexFileError, and OSError.
+    So a second upload does not replace the older firmware by the newer one. Raise HexFileError, and OSError.
     """
     program = read_program(read)
     if not program:

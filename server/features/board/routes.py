@@ -22,7 +22,7 @@ def get_firmware_upload(upload: Provided[FirmwareUpload]) -> UploadState:
 async def upload_firmware(
     monitor: Provided[HealthMonitor], upload: Provided[FirmwareUpload], order: UploadOrder
 ) -> UploadState:
-    """Upload firmware to the robot's board, and verify it; what is on the board is stored before."""
+    """Upload firmware to the robot's board, and verify it; its previous firmware is stored before."""
     monitor.require_disarmed("The robot's firmware is replaced.")
     await upload.begin(order.firmware)
     return upload.state()

@@ -1,4 +1,4 @@
-"""Uploads of firmware as pages see them."""
+"""Uploads of firmware in the interface."""
 
 from datetime import datetime
 from typing import Literal
@@ -29,6 +29,6 @@ class UploadState(BaseModel):
 
 
 class UploadOrder(RequestBody):
-    """The firmware to upload: the one that was built with this software, or the previous one."""
+    """The firmware to upload: the one built with this software, or the previous one."""
 
     firmware: UploadChoice

@@ -18,13 +18,12 @@ from robot_runtime.places import FIRMWARE_REMEDY
 from robot_runtime.simulation.boards.emulator_process import BoardError
 from robot_runtime.simulation.boards.firmware import bring_up_path
 from robot_runtime.simulation.boards.workbench import ALONG, BAROMETER, BATTERY, TIP_DOWN, Hands
-from server.features.board.reservation import RobotBoard
+from server.board_reservation import RobotBoard
 from server.features.bring_up.report import write_report
 from server.features.bring_up.schemas import (
     BeaconLevels,
     BenchHands,
     BringUpAction,
-    BringUpQuestion,
     BringUpResult,
     BringUpState,
     BringUpStep,
@@ -64,7 +63,7 @@ class BringUpRun:
         self._processes = processes
         self._run_name = ""
         self._phase: Phase = "idle"
-        self._words = ""
+        self._state_text = ""
         self._problem = ""
         self._bench: Bench | None = None
         self._hands: Hands | None = None
@@ -75,7 +74,7 @@ class BringUpRun:
         self._acting = asyncio.Lock()
 
     async def begin(self) -> None:
-        """Begin; `state` tells when the board is ready. Raises RefusedError where it cannot begin."""
+        """Begin; `state` shows when the board is ready. Raise RefusedError where it cannot begin."""
         if self._task is not None and not self._task.done():
             raise RefusedError("A bring-up is going on. End it first.")
         sketch = bring_up_path(self._settings.build, self._settings.link.baud)
@@ -84,24 +83,24 @@ class BringUpRun:
         self._over.clear()
         self._run_name = new_run()
         self._phase, self._problem = "starting", ""
-        self._words = "The robot is disarmed and its board reserved."
+        self._state_text = "The robot is disarmed and its board reserved."
         reserved: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._task = asyncio.create_task(self._run(reserved))
         await asyncio.shield(reserved)
 
     def end(self, run: str | None = None) -> None:
-        """End it; the robot's firmware is uploaded again meanwhile. Raises RunOverError."""
+        """End the bring-up; the robot's firmware is uploaded again meanwhile. Raise RunOverError."""
         require_run(run, self._run_name, "bring-up")
         self._over.set()
 
     async def close(self) -> None:
-        """End it and wait for its end."""
+        """End the bring-up and wait for its end."""
         self.end()
         if self._task is not None:
             await asyncio.wait([self._task])
 
     def see_stop(self) -> None:
-        """Stop the motor at a STOP; a button that is held then must be released and pressed again."""
+        """Stop the motor at a STOP; a held button must be released and pressed again."""
         if self._bench is not None and self._procedure is not None:
             with suppress(BenchError):
                 self._procedure.stop()
@@ -109,7 +108,7 @@ class BringUpRun:
     async def perform(
         self, step: str, action: str, inputs: Mapping[str, float | str], run: str | None = None
     ) -> None:
-        """Perform an action. Raises RefusedError where it cannot be done, RunOverError."""
+        """Perform an action. Raise RefusedError where it cannot be done, RunOverError."""
         require_run(run, self._run_name, "bring-up")
         procedure = self._procedure
         if procedure is None or self._phase != "ready":
@@ -124,7 +123,7 @@ class BringUpRun:
             await asyncio.to_thread(self._write_report, procedure)
 
     async def use_hands(self, order: HandsOrder) -> None:
-        """Do something to the emulated robot. Raises RefusedError where there are no hands at it."""
+        """Move or wire the emulated robot as a person's hands do. Raise RefusedError where there is none."""
         hands = self._hands
         if hands is None:
             raise RefusedError("Only an emulated robot whose bring-up goes on can be handled from here.")
@@ -137,24 +136,26 @@ class BringUpRun:
             if order.turn is not None:
                 angle = ALONG if order.turn.to == "along" else TIP_DOWN
                 await asyncio.to_thread(hands.turn, order.turn.fin, angle)
+            if order.leak is not None:
+                await asyncio.to_thread(hands.wet, order.leak)
             if order.mend:
                 await asyncio.to_thread(hands.mend)
         except BoardError as problem:
             raise RefusedError(str(problem)) from problem
 
     def report(self) -> str:
-        """The newest report. Raises NoReportError."""
+        """Return the newest report. Raise NoReportError."""
         try:
             return self._settings.data.bring_up.read_text(encoding="utf-8")
         except FileNotFoundError as problem:
             raise NoReportError("There was no bring-up yet, so there is no report.") from problem
 
     def state(self) -> BringUpState:
-        """Everything that pages show."""
+        """Return the state for the pages."""
         return BringUpState(
             run=self._run_name,
             phase=self._phase,
-            words=self._words,
+            words=self._state_text,
             problem=self._problem,
             steps=[self._describe(step) for step in STEPS],
             raw=self._raw(),
@@ -180,31 +181,31 @@ class BringUpRun:
         finally:
             if begun:
                 self._problem = " ".join(filter(None, (self._problem, self._board.problem)))
-            self._words = "The robot's firmware is on its board." if begun and not self._problem else ""
+            self._state_text = "The robot's firmware is on its board." if begun and not self._problem else ""
             self._phase = "idle"
             if not reserved.done():
                 reserved.set_exception(RefusedError("The bring-up ended before it began."))
 
     async def _work(self, port: str) -> None:
         try:
-            self._words = "The bring-up's sketch is uploaded to the board."
+            self._state_text = "The bring-up's sketch is uploaded to the board."
             sketch = bring_up_path(self._settings.build, self._settings.link.baud)
             if problem := await self._board.upload(sketch):
                 self._problem = f"The sketch is not on the board: {problem}."
                 return
-            self._words = "The board is expected to answer."
+            self._state_text = "The board is expected to answer."
             async with self._at_hand():
                 await self._measure(SerialBench(port, self._settings.link.baud))
         except (BenchError, BoardError) as problem:
             self._problem = str(problem)
         finally:
-            self._phase, self._words = "ending", "The robot's firmware is uploaded again."
+            self._phase, self._state_text = "ending", "The robot's firmware is uploaded again."
 
     async def _measure(self, bench: SerialBench) -> None:
         await asyncio.to_thread(bench.__enter__)
         try:
             self._bench, self._procedure = bench, BringUp(bench)
-            self._phase, self._words = "ready", "The board answers."
+            self._phase, self._state_text = "ready", "The board answers."
             await self._wait()
             await asyncio.to_thread(self._write_report, self._procedure)
         finally:
@@ -213,7 +214,7 @@ class BringUpRun:
 
     @asynccontextmanager
     async def _at_hand(self) -> AsyncIterator[None]:
-        """Take an emulated robot out of its water meanwhile, so that hands can turn it."""
+        """Hold an emulated robot out of its water meanwhile, so that hands can turn it."""
         if not self._settings.emulated_board:
             yield
             return
@@ -236,16 +237,16 @@ class BringUpRun:
     async def _wait(self) -> None:
         while not self._over.is_set():
             self._acted.clear()
-            waits = [asyncio.create_task(one.wait()) for one in (self._over, self._acted)]
+            waits = [asyncio.create_task(event.wait()) for event in (self._over, self._acted)]
             done, _ = await asyncio.wait(waits, timeout=IDLE_SECONDS, return_when=asyncio.FIRST_COMPLETED)
-            for one in waits:
-                one.cancel()
+            for task in waits:
+                task.cancel()
             if not done:
                 self._problem = "Nobody did anything for half an hour, so the bring-up ended."
                 return
 
     def _write_report(self, procedure: BringUp) -> None:
-        text = write_report(self._settings.robot, datetime.now(UTC), procedure)
+        text = write_report(self._settings.robot.name, datetime.now(UTC), procedure)
         try:
             write_whole(self._settings.data.bring_up, text.encode())
         except OSError as problem:
@@ -259,35 +260,10 @@ class BringUpRun:
             about=step.about,
             expected=step.expected,
             state=procedure.state(step.name) if procedure else "open",
-            actions=[
-                BringUpAction(
-                    name=action.name,
-                    label=action.label,
-                    kind=action.kind,
-                    inputs=[
-                        BringUpQuestion(
-                            name=one.name,
-                            label=one.label,
-                            unit=one.unit,
-                            minimum=one.minimum,
-                            maximum=one.maximum,
-                            choices=list(one.choices),
-                            optional=one.optional,
-                        )
-                        for one in action.inputs
-                    ],
-                )
-                for action in step.actions
-            ],
+            actions=[BringUpAction.model_validate(action, from_attributes=True) for action in step.actions],
             results=[
-                BringUpResult(
-                    what=one.what,
-                    expected=one.expected,
-                    measured=one.measured,
-                    verdict=one.verdict,
-                    advice=one.advice,
-                )
-                for one in (procedure.results(step.name) if procedure else [])
+                BringUpResult.model_validate(result, from_attributes=True)
+                for result in (procedure.results(step.name) if procedure else [])
             ],
         )
 
@@ -302,6 +278,7 @@ def _describe_hands(hands: Hands) -> BenchHands:
         pose=hands.bench.pose,
         depth_cm=hands.bench.depth * 100,
         lamp=hands.bench.lamp,
+        leak=hands.bench.leak,
         multimeter_volts=BATTERY,
         barometer_hpa=BAROMETER / 100,
     )
@@ -317,4 +294,5 @@ def _describe_raw(raw: Raw) -> RawReadings:
         temperature=raw.temperature if raw.pressure else None,
         battery_volts=raw.battery * BATTERY_VOLTS,
         beacons=BeaconLevels(right=bool(raw.beacons & 1), left=bool(raw.beacons & 2)),
+        leak=bool(raw.leak),
     )

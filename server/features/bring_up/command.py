@@ -18,7 +18,7 @@ from server.platform.terminal import echo
 if TYPE_CHECKING:
     from robot_runtime.experiments.bring_up.guide import Action, Question, Step
     from robot_runtime.experiments.bring_up.procedure import BringUp, Given
-    from server.features.board.reservation import RobotBoard
+    from server.board_reservation import RobotBoard
 
 HOLD_POSTS = 6
 HOLD_SECONDS = 0.1
@@ -54,10 +54,10 @@ def _perform(settings: Settings, sketch: Path) -> int:
     from robot_runtime.errors import RefusedError
     from robot_runtime.experiments.bring_up.bench import BenchError, SerialBench
     from robot_runtime.experiments.bring_up.procedure import BringUp
-    from server.features.board.reservation import RobotBoard
+    from server.board_reservation import RobotBoard
     from server.features.bring_up.report import write_report
 
-    board = RobotBoard(settings, lambda _kind, _severity, words: echo(words, err=True))
+    board = RobotBoard(settings, lambda _kind, _severity, text: echo(text, err=True))
     try:
         with asyncio.Runner() as runner, _reserved(runner, board) as arguments:
             echo("The bring-up's sketch is uploaded to the board.")
@@ -73,7 +73,7 @@ def _perform(settings: Settings, sketch: Path) -> int:
                 raise
             except BenchError as problem:
                 raise SetupError(str(problem)) from problem
-            report = write_report(settings.robot, datetime.now(UTC), procedure)
+            report = write_report(settings.robot.name, datetime.now(UTC), procedure)
             try:
                 write_whole(settings.data.bring_up, report.encode())
             except OSError as problem:
@@ -86,7 +86,7 @@ def _perform(settings: Settings, sketch: Path) -> int:
 
 @contextmanager
 def _reserved(runner: asyncio.Runner, board: "RobotBoard") -> Iterator[list[str]]:
-    """Reserves the board from the main thread: a prompt in any other one would not end at Ctrl-C."""
+    """Reserve the board from the main thread: a prompt in any other thread would not end at Ctrl-C."""
     reservation = board.reserve("The bring-up")
     arguments = runner.run(reservation.__aenter__())
     try:
@@ -112,7 +112,7 @@ def _guide(procedure: "BringUp") -> None:
 
 
 def _do_actions(procedure: "BringUp", step: "Step") -> bool:
-    """All actions of a step; True where the person wants to end."""
+    """Perform all actions of a step; return True where the person wants to end."""
     from robot_runtime.errors import RefusedError
     from robot_runtime.experiments.bring_up.guide import SKIP
 
@@ -145,7 +145,7 @@ def _act(procedure: "BringUp", step: "Step", action: "Action") -> None:
 
     given: Given = {}
     if action.inputs:
-        given = {one.name: value for one in action.inputs if (value := _ask(one)) is not None}
+        given = {question.name: value for question in action.inputs if (value := _ask(question)) is not None}
     if action.kind == "press":
         procedure.perform(step.name, action.name, given)
         return

@@ -2,8 +2,8 @@
 
 from typing import ClassVar
 
+from server.board_reservation import BoardReservation, RobotBoard
 from server.feature import Plug
-from server.features.board.reservation import BoardReservation, RobotBoard
 from server.features.bring_up.bring_up_run import BringUpRun
 from server.platform.settings import Settings
 from server.processes.supervisor import ProcessSupervisor
@@ -14,12 +14,12 @@ from server.stream.bridge import Bridge
 def make_bring_up(
     settings: Settings, board: RobotBoard, reservation: BoardReservation, processes: ProcessSupervisor
 ) -> BringUpRun:
-    """The bring-up of this robot."""
+    """Return the bring-up of this robot."""
     return BringUpRun(settings, board, reservation.reserve, processes)
 
 
 class BringUpPlug(Plug):
-    """Ends a bring-up at a STOP."""
+    """The plug that ends a bring-up at a STOP."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_bring_up,)
 

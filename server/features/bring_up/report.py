@@ -43,7 +43,7 @@ th {{ font-weight: 600; }}
 
 
 def write_report(robot: str, when: datetime, procedure: BringUp) -> str:
-    """The report: the calibration, then each step with what was expected and measured."""
+    """Return the report: the calibration, then each step with expected and measured values."""
     wrong = [step.title for step in STEPS if procedure.state(step.name) == "wrong"]
     skipped = [step.title for step in STEPS if procedure.state(step.name) == "skipped"]
     missing = [CALIBRATION_STEPS[name] for name in procedure.calibration().missing]
@@ -63,8 +63,8 @@ def write_report(robot: str, when: datetime, procedure: BringUp) -> str:
     return PAGE.format(title=escape(f"Bring-up of {robot}"), body="\n".join(parts))
 
 
-def _sentence(words: str, things: list[str], kind: Verdict = "wrong") -> str:
-    return f'<p class="{kind}">{words}: {escape("; ".join(things))}.</p>'
+def _sentence(text: str, things: list[str], kind: Verdict = "wrong") -> str:
+    return f'<p class="{kind}">{text}: {escape("; ".join(things))}.</p>'
 
 
 def _calibration(procedure: BringUp) -> str:
@@ -98,8 +98,8 @@ def _step(title: str, state: str, results: list[Result]) -> str:
     if not results:
         return head
     rows = "".join(
-        f'<tr><td class="{one.verdict}">{MARKS[one.verdict]}</td><td>{escape(one.what)}</td>'
-        f"<td>{escape(one.expected)}</td><td>{escape(one.measured)}<br>{escape(one.advice)}</td></tr>"
-        for one in results
+        f'<tr><td class="{result.verdict}">{MARKS[result.verdict]}</td><td>{escape(result.what)}</td>'
+        f"<td>{escape(result.expected)}</td><td>{escape(result.measured)}<br>{escape(result.advice)}</td></tr>"
+        for result in results
     )
     return f"{head}<table><tr><th></th><th>part</th><th>expected</th><th>measured</th></tr>{rows}</table>"

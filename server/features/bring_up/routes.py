@@ -1,4 +1,4 @@
-"""The bring-up: begin, act, look, end, report."""
+"""The bring-up: begin, act, state, end, report."""
 
 from fastapi.responses import HTMLResponse
 
@@ -38,14 +38,14 @@ def end_bring_up(bring_up: Provided[BringUpRun], run: MeantRun = None) -> BringU
 
 @router.operation("POST /actions", Need.CONTROL, REFUSED)
 async def act_in_bring_up(bring_up: Provided[BringUpRun], order: BringUpOrder) -> BringUpState:
-    """Perform an action of a step; this answers with its results."""
+    """Perform an action of a step, and return its results."""
     await bring_up.perform(order.step, order.action, order.inputs, order.run)
     return bring_up.state()
 
 
 @router.operation("POST /hands", Need.CONTROL, REFUSED)
 async def use_hands_in_bring_up(bring_up: Provided[BringUpRun], order: HandsOrder) -> BringUpState:
-    """Do something to the emulated robot as a person does with hands; there are none at a real one."""
+    """Move or wire the emulated robot as a person's hands do; refused for a real robot."""
     await bring_up.use_hands(order)
     return bring_up.state()
 

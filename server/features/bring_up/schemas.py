@@ -1,4 +1,4 @@
-"""The bring-up as pages see it."""
+"""The bring-up in the interface."""
 
 from typing import Literal
 
@@ -28,7 +28,7 @@ class BringUpQuestion(BaseModel):
 
 
 class BringUpAction(BaseModel):
-    """A button of a step. One to hold is posted every 100 ms while it is held, and with `stop` in the end."""
+    """A button of a step. A button to hold is posted every 100 ms while held, and with `stop` at the end."""
 
     name: str
     label: str
@@ -47,7 +47,7 @@ class BringUpResult(BaseModel):
 
 
 class BringUpStep(BaseModel):
-    """A step: what to do, and what came of it."""
+    """A step: its task and its results."""
 
     name: str
     title: str
@@ -81,7 +81,7 @@ class BeaconLevels(BaseModel):
 
 
 class RawReadings(BaseModel):
-    """The newest readings of all parts, as they say them."""
+    """The newest raw readings of all parts."""
 
     encoders: list[EncoderReading]
     imu: ImuRaw | None
@@ -89,15 +89,17 @@ class RawReadings(BaseModel):
     temperature: float | None = Field(description="°C")
     battery_volts: float
     beacons: BeaconLevels
+    leak: bool = Field(description="the leak sensor is wet")
 
 
 class BenchHands(BaseModel):
-    """The emulated robot on its workbench, as a person with it in their hands sees it."""
+    """The emulated robot on its workbench, as seen by the person at it."""
 
     fins: list[float] = Field(description="° from along the mount to the tip down, as they are")
     pose: Pose
     depth_cm: float = Field(description="of its pressure sensor in a bucket")
     lamp: Lamp = Field(description="the detector that has a lamp before it")
+    leak: bool = Field(description="the ends of its leak sensor are in water")
     multimeter_volts: float = Field(description="at the battery's plug")
     barometer_hpa: float
 
@@ -116,7 +118,7 @@ class BringUpState(BaseModel):
 
 
 class BringUpOrder(RequestBody):
-    """An action of a step, with what the person gives."""
+    """An action of a step, with the person's answers."""
 
     run: str | None = Field(default=None, max_length=40, description="the bring-up that is meant; null: any")
     step: str = Field(max_length=40)
@@ -132,10 +134,11 @@ class FinTurn(RequestBody):
 
 
 class HandsOrder(RequestBody):
-    """Something that hands do at the emulated robot; what is not named stays as it is."""
+    """An act of hands at the emulated robot; fields that are null leave their part unchanged."""
 
     turn: FinTurn | None = None
     pose: Pose | None = None
     depth_cm: float | None = Field(None, ge=0, le=200)
     lamp: Lamp | None = None
+    leak: bool | None = Field(None, description="put the ends of the leak sensor into water, or dry them")
     mend: bool = Field(False, description="make wiring and parts as the wiring table says")

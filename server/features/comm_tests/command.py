@@ -30,29 +30,30 @@ def commtest() -> None:
 @click.argument("file", type=FILE)
 @click.option(
     "--place",
+    "board",
     type=click.Choice(["emulated", "robot"]),
     help="Boards of its own in emulated time, or the robot's board in real time. Default: as robot.mode.",
 )
 @with_settings
-def run_document(settings: Settings, file: Path, place: Literal["emulated", "robot"] | None) -> int:
+def run_document(settings: Settings, file: Path, board: Literal["emulated", "robot"] | None) -> int:
     """Run the tests of a document (JSON)."""
     from server.features.comm_tests.shell_run import run_tests
     from server.platform.pidfile import end_parts
 
     text, tests = _read(file)
-    if place == "robot" and settings.emulated_board:
+    if board == "robot" and settings.emulated_board:
         raise SetupError(
             "The emulated robot's board runs only while the server does. Start the test from the page, or "
             "leave --place out."
         )
-    place = place or ("emulated" if settings.emulated_board else "robot")
+    board = board or ("emulated" if settings.emulated_board else "robot")
     with ExitStack() as claimed:
         try:
             claimed.enter_context(claim(settings.data))
         except SetupError as problem:
             raise SetupError(f"{problem} Beside a running server, start the test from its page.") from problem
         end_parts(settings.data.run)
-        return run_tests(text, tests, place, settings)
+        return run_tests(text, tests, board, settings)
 
 
 @commtest.command("list")
@@ -69,7 +70,7 @@ def list_runs(settings: Settings) -> None:
 @RUN
 @with_settings
 def show(settings: Settings, run: int) -> None:
-    """Show a run: configuration, rates, reasons."""
+    """Show a run: configuration, rate, reasons."""
     from server.features.comm_tests import tables
 
     with _open_runs(settings) as runs:
@@ -106,11 +107,11 @@ def export(settings: Settings, run: int, format: str, spreadsheet: "Spreadsheet"
     from server.platform.csv_cells import STYLES
 
     with _open_runs(settings) as runs:
-        found, cells = runs.find(run), runs.cells(run)
+        row, cells = runs.find(run), runs.cells(run)
     if format == "csv":
-        echo(tables.write_csv(found, cells, STYLES[spreadsheet]), nl=False)
+        echo(tables.write_csv(row, cells, STYLES[spreadsheet]), nl=False)
     else:
-        echo(tables.write_json(found, cells), nl=False)
+        echo(tables.write_json(row, cells), nl=False)
 
 
 @contextmanager

@@ -3,8 +3,8 @@
 from typing import ClassVar
 
 from robot_runtime.clock import Clock
+from server.board_reservation import BoardReservation
 from server.feature import Plug
-from server.features.board.reservation import BoardReservation
 from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import import_samples
@@ -22,12 +22,12 @@ def make_runner(
     reservation: BoardReservation,
     ends: RunEnds,
 ) -> CommTestRunner:
-    """Runs communication tests."""
+    """Return the runner of communication tests."""
     return CommTestRunner(settings, runs, clock, hub.notify, reservation.reserve, ends.see)
 
 
 class CommTestPlug(Plug):
-    """Has the shipped results in the database."""
+    """The plug that puts the shipped results into the database."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_runner,)
 
@@ -36,10 +36,10 @@ class CommTestPlug(Plug):
         self._runs = runs
 
     async def open(self) -> None:
-        """Mark runs that were cut off."""
+        """Mark interrupted runs."""
         await self._runs.mark_interrupted()
         await import_samples(self._runs)
 
     async def stop(self) -> None:
-        """Cancel what runs."""
+        """Cancel the running work."""
         await self._runner.close()

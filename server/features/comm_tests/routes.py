@@ -6,6 +6,7 @@ from fastapi.responses import Response
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.comm_test.document import CommTest
 from robot_runtime.experiments.comm_test.runner import estimate_seconds
+from server.driving.admission import require_control
 from server.features.comm_tests import tables
 from server.features.comm_tests.reference import TABLES, TITLES, read_table
 from server.features.comm_tests.runner import CommTestRunner, read_limited
@@ -23,7 +24,6 @@ from server.features.comm_tests.schemas import (
     ThesisTable,
 )
 from server.features.comm_tests.shipped import shipped_documents
-from server.features.lease.admission import require_control
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Identifier, MeantNumber, Operations
@@ -42,7 +42,7 @@ def list_test_documents() -> list[TestDocument]:
 
 @router.operation("POST /check", Need.VIEWER)
 def check_test_document(document: DocumentText) -> Check:
-    """Check a document: its problems field by field, or its tests with about how long they take."""
+    """Check a document: its problems field by field, or its tests with their estimated durations."""
     try:
         return Check(problems=[], tests=[_describe(test) for test in read_limited(document.text)])
     except ConfigError as problem:
@@ -65,7 +65,7 @@ async def start_test_run(
     comm_tests: Provided[CommTestRunner],
     body: CommTestStart,
 ) -> Started:
-    """Run the tests of a document one after the other; this answers when the first has begun."""
+    """Run the tests of a document one after the other; the answer comes when the first has begun."""
     if body.place == "robot":
         require_control(request)
     monitor.require_disarmed("A communication test builds and uploads programs.")
@@ -100,8 +100,8 @@ def download_test_run_csv(
 
     `spreadsheet` is the decimal sign of the spreadsheet that reads it.
     """
-    found = comm_tests.runs.find(run)
-    text = tables.write_csv(found, comm_tests.runs.cells(run), STYLES[spreadsheet])
+    row = comm_tests.runs.find(run)
+    text = tables.write_csv(row, comm_tests.runs.cells(run), STYLES[spreadsheet])
     return _file(text, "text/csv", f"comm_test_{run}.csv")
 
 
@@ -109,9 +109,9 @@ def download_test_run_csv(
     "GET /runs/{run}/json", Need.VIEWER, UnknownCommTestRunError, media_type="application/json", linked=True
 )
 def download_test_run_json(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
-    """Download everything that is known of a run, with its cells, as JSON."""
-    found = comm_tests.runs.find(run)
-    text = tables.write_json(found, comm_tests.runs.cells(run))
+    """Download a run with all its data and cells, as JSON."""
+    row = comm_tests.runs.find(run)
+    text = tables.write_json(row, comm_tests.runs.cells(run))
     return _file(text, "application/json", f"comm_test_{run}.json")
 
 

@@ -1,14 +1,11 @@
-"""Runs communication tests, one document at a time, in a process of its own.
+"""The runner of communication tests, one document at a time, in a process of its own.
 
 The process (`python -m robot_runtime.experiments.comm_test`) compiles, uploads and runs, and reports in lines
 of JSON, which become rows of the database and progress for the pages.
 """
 
 import asyncio
-import json
 import logging
-import sys
-import tempfile
 from collections import deque
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager, suppress
@@ -26,14 +23,10 @@ from server.features.comm_tests.schemas import Cell, Phase, Place
 from server.platform.runs import RunOverError
 from server.platform.settings import Settings
 from server.platform.store import StoreError
-from server.processes.exit_status import describe_status
-from server.processes.process import PipedProcess
+from server.processes.side_process import SideProcess
 
 log = logging.getLogger(__name__)
 
-LINE_BYTES_MAX = 100_000
-WORDS_MOST = 5
-"""Stored lines that are no JSON, which explain a failure."""
 TEST_SECONDS_MAX = 86_400.0
 """s of the tests' own time, all cells together, so that a reserved board is free again within a day."""
 CANCEL_SECONDS = 45.0
@@ -67,7 +60,7 @@ class Progress:
     phases: dict[int, Phase] = field(default_factory=dict)
 
     def describe(self, now: float) -> dict[str, Any]:
-        """The progress as sent to the pages; `remaining` is for the whole document, null while unknown."""
+        """Return the progress for the pages; `remaining` is for the whole document, null while unknown."""
         remaining = sum(map(sum, self.weights)) - self.done_weight
         return {
             "run": self.run,
@@ -83,7 +76,7 @@ class Progress:
         }
 
     def count(self, number: int, now: float) -> None:
-        """Count a cell of the test that runs as done."""
+        """Count a cell of the running test as done."""
         weight = self.weights[self.test][number]
         self.first = self.first or (now, weight)
         self.done += 1
@@ -100,7 +93,7 @@ class Progress:
 
 
 class CommTestRunner:
-    """Runs one document at a time; `notify` reports progress, `reserve` reserves the board.
+    """Runner of one document at a time; `notify` reports progress, `reserve` reserves the board.
 
     `ended` is called with number, name, end and problem of each test.
     """
@@ -121,7 +114,7 @@ class CommTestRunner:
         self._notify = notify
         self._reserve = reserve
         self._task: asyncio.Task[None] | None = None
-        self._process: PipedProcess | None = None
+        self._process: SideProcess | None = None
         self._cancelled = False
         self._begun: set[int] = set()
         """The runs of the newest document so far."""
@@ -131,10 +124,10 @@ class CommTestRunner:
         """True while a document runs."""
         return self._task is not None and not self._task.done()
 
-    async def start(self, text: str, place: Place) -> int:
-        """Run a document; returns the number of its first run as soon as that has begun.
+    async def start(self, text: str, board: Place) -> int:
+        """Run a document; return the number of its first run as soon as that has begun.
 
-        Raises ConfigError, RefusedError if it cannot be run now, StoreError.
+        Raise ConfigError, RefusedError if it cannot be run now, StoreError.
         """
         tests = read_limited(text)
         if self.busy:
@@ -142,7 +135,7 @@ class CommTestRunner:
         began: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._cancelled = False
         self._begun = set()
-        self._task = asyncio.create_task(self._run(tests, text, place, began))
+        self._task = asyncio.create_task(self._run(tests, text, board, began))
         return await asyncio.shield(began)
 
     async def wait(self) -> None:
@@ -153,7 +146,7 @@ class CommTestRunner:
     def cancel(self, run: int | None = None) -> None:
         """End the running document soon and in order; finished cells are stored.
 
-        Raises RunOverError if this run is none of the document that runs.
+        Raise RunOverError if this run is none of the document that runs.
         """
         if run is not None and not (self.busy and run in self._begun):
             raise RunOverError("communication test")
@@ -168,11 +161,11 @@ class CommTestRunner:
         self.cancel()
         await self.wait()
 
-    async def _run(self, tests: list[CommTest], text: str, place: Place, began: asyncio.Future[int]) -> None:
+    async def _run(self, tests: list[CommTest], text: str, board: Place, began: asyncio.Future[int]) -> None:
         weights = [[estimate_seconds(test, cell) for cell in test.cells] for test in tests]
-        progress = Progress(tests, place, self._clock.now(), weights)
+        progress = Progress(tests, board, self._clock.now(), weights)
         try:
-            if place == "robot":
+            if board == "robot":
                 async with self._reserve(f"The communication test “{tests[0].name}”") as arguments:
                     await self._perform(progress, text, arguments, began)
             else:
@@ -195,54 +188,33 @@ class CommTestRunner:
                 began.set_exception(RefusedError("The communication test ended before its first run."))
 
     async def _perform(
-        self, progress: Progress, text: str, arguments: list[str], began: asyncio.Future[int]
+        self, progress: Progress, text: str, board: list[str], began: asyncio.Future[int]
     ) -> None:
-        command = [
-            sys.executable,
-            "-m",
-            "robot_runtime.experiments.comm_test",
-            "--build",
-            str(self._settings.build),
-        ]
-        command += ["--where", progress.place, "--with-parent", *arguments]
-        output = _Lines()
-        with tempfile.TemporaryFile() as document:
-            document.write(text.encode())
-            document.seek(0)
-            if self._cancelled:
-                raise RefusedError("The communication test was cancelled before its first run.")
-            self._process = PipedProcess(command, output.feed, document)
-        ending = asyncio.create_task(self._wait_for(self._process, output))
-        try:
-            while (line := await output.next()) is not None:
-                await self._take(progress, line, output.words, began)
-            status = await ending
-        finally:
-            ending.cancel()
-            self._process.close()
-            self._process = None
-        words = " / ".join(output.words)
+        arguments = ["--build", str(self._settings.build), "--where", progress.place, "--with-parent"]
+        if self._cancelled:
+            raise RefusedError("The communication test was cancelled before its first run.")
+        with SideProcess(
+            "robot_runtime.experiments.comm_test", [*arguments, *board], text.encode()
+        ) as process:
+            self._process = process
+            try:
+                async for event in process.documents():
+                    await self._take(progress, event, process.last_lines, began)
+                end = await process.describe_end()
+            finally:
+                self._process = None
         if progress.run is not None:
             state: End = "cancelled" if self._cancelled else "failed"
-            await self._end(progress, state, f"It broke off ({describe_status(status)}). {words}".strip())
+            await self._end(progress, state, f"It broke off: it {end}")
         elif not began.done():
-            why = "It was cancelled." if self._cancelled else words or f"It {describe_status(status)}."
+            why = "It was cancelled." if self._cancelled else " / ".join(process.last_lines) or f"It {end}"
             raise CommTestError(f"The communication test could not begin. {why}")
 
-    async def _wait_for(self, process: PipedProcess, output: "_Lines") -> int | None:
-        status = await process.wait()
-        output.end()
-        return status
-
     async def _take(
-        self, progress: Progress, line: bytes, words: deque[str], began: asyncio.Future[int]
+        self, progress: Progress, event: dict[str, Any], last_lines: deque[str], began: asyncio.Future[int]
     ) -> None:
-        event = _read_event(line)
-        if event is None:
-            words.append(line.decode(errors="replace").strip())
-            return
         try:
-            cell = await self._apply(progress, event, words, began)
+            cell = await self._apply(progress, event, last_lines, began)
         except (LookupError, TypeError, ValueError) as problem:
             raise CommTestError(
                 f"The test process sent a message that is not valid: {problem!r}"
@@ -252,16 +224,16 @@ class CommTestRunner:
         self._notify({"op": "comm_test", "active": active, "cell": shown})
 
     async def _apply(
-        self, progress: Progress, event: dict[str, Any], words: deque[str], began: asyncio.Future[int]
+        self, progress: Progress, event: dict[str, Any], last_lines: deque[str], began: asyncio.Future[int]
     ) -> Cell | None:
-        """Process an event of the test process; returns a finished cell."""
+        """Process an event of the test process; return a finished cell."""
         match event.get("event"):
             case "started":
                 progress.test = int(event["test"])
                 progress.done, progress.phases = 0, {}
-                test, place, host = progress.tests[progress.test], progress.place, str(event["host"])
+                test, board, host = progress.tests[progress.test], progress.place, str(event["host"])
                 progress.run = await self.runs.start(
-                    test, place, str(event["firmware"]), event["tools"], host
+                    test, board, str(event["firmware"]), event["tools"], host
                 )
                 self._begun.add(progress.run)
                 if not began.done():
@@ -277,7 +249,7 @@ class CommTestRunner:
             case "ended" if progress.run is not None:
                 await self._end(progress, event["state"], str(event["problem"]))
             case "refused":
-                words.extend(map(str, event["problems"]))
+                last_lines.extend(map(str, event["problems"]))
         return None
 
     async def _end(self, progress: Progress, state: End, problem: str) -> None:
@@ -285,11 +257,11 @@ class CommTestRunner:
         await self.runs.end(progress.run, state, problem)
         self._ended(progress.run, progress.tests[progress.test].name, state, problem)
         progress.run = None
-        progress.done_weight = sum(sum(one) for one in progress.weights[: progress.test + 1])
+        progress.done_weight = sum(sum(cells) for cells in progress.weights[: progress.test + 1])
 
 
 def read_limited(text: str) -> list[CommTest]:
-    """The tests of a document that may be run here. Raises ConfigError."""
+    """Return the tests of a document within this server's limits. Raise ConfigError."""
     tests = read_document(text)
     seconds = sum(estimate_seconds(test, cell) for test in tests for cell in test.cells)
     if seconds > TEST_SECONDS_MAX:
@@ -298,39 +270,3 @@ def read_limited(text: str) -> list[CommTest]:
             f"{TEST_SECONDS_MAX / 3600:g} can be run at once. Take fewer numbers, or shorter delays"
         )
     return tests
-
-
-class _Lines:
-    """Splits the output of a process into lines; `words` are the last lines that are no events."""
-
-    def __init__(self) -> None:
-        self.words: deque[str] = deque(maxlen=WORDS_MOST)
-        self._lines: asyncio.Queue[bytes | None] = asyncio.Queue()
-        self._partial = b""
-
-    def feed(self, data: bytes) -> None:
-        """Process printed bytes."""
-        *whole, self._partial = (self._partial + data).split(b"\n")
-        self._partial = self._partial[-LINE_BYTES_MAX:]
-        for line in whole:
-            if line.strip():
-                self._lines.put_nowait(line[-LINE_BYTES_MAX:])
-
-    def end(self) -> None:
-        """Mark the end of the output."""
-        self.feed(b"\n")
-        self._lines.put_nowait(None)
-
-    async def next(self) -> bytes | None:
-        """The next line; None after the last."""
-        return await self._lines.get()
-
-
-def _read_event(line: bytes) -> dict[str, Any] | None:
-    if not line.startswith(b"{"):
-        return None
-    try:
-        event = json.loads(line)
-    except ValueError:
-        return None
-    return event if isinstance(event, dict) else None

@@ -34,26 +34,26 @@ class CommTestRuns:
         self._reader = store
 
     def list(self) -> Sequence[CommTestRun]:
-        """All runs, newest first."""
+        """Return all runs, newest first."""
         with self._reader.read() as database:
             return database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
 
     def find(self, run: int) -> CommTestRun:
-        """A run. Raises UnknownCommTestRunError."""
+        """Return a run. Raise UnknownCommTestRunError."""
         with self._reader.read() as database:
-            found = database.get(CommTestRun, run)
-        if found is None:
+            row = database.get(CommTestRun, run)
+        if row is None:
             raise UnknownCommTestRunError(f"There is no run {run}; choose one from the list of runs.")
-        return found
+        return row
 
     def cells(self, run: int) -> Sequence[CommTestCell]:
-        """The cells of a run, in the order in which they were run."""
+        """Return the cells of a run, in the order in which they were run."""
         with self._reader.read() as database:
             query = select(CommTestCell).where(col(CommTestCell.run_id) == run)
             return database.exec(query.order_by(col(CommTestCell.number))).all()
 
     def summaries(self) -> Sequence[RunSummary]:
-        """The newest runs with their figures, newest first; at most `LISTED_MOST`."""
+        """Return the newest runs with their figures, newest first; at most `LISTED_MOST`."""
         newest = select(CommTestRun).order_by(desc(col(CommTestRun.id))).limit(LISTED_MOST)
         figures = select(
             col(CommTestCell.run_id),
@@ -68,7 +68,7 @@ class CommTestRuns:
             return [RunSummary(**_summary(run, *known.get(run.id or 0, (0, None, None)))) for run in runs]
 
     def whole(self, run: CommTestRun) -> CommTestRunDetails:
-        """A run with its configuration and its cells."""
+        """Return a run with its configuration and its cells."""
         cells = [_cell(cell) for cell in self.cells(run.id or 0)]
         rates = [cell.rate for cell in cells]
         mean, low = (sum(rates) / len(rates), min(rates)) if rates else (None, None)
@@ -90,7 +90,7 @@ class CommTestStore(CommTestRuns):
         self._store = store
 
     async def start(
-        self, test: CommTest, place: Place, firmware: str, tools: Mapping[str, str], host: str
+        self, test: CommTest, board: Place, firmware: str, tools: Mapping[str, str], host: str
     ) -> int:
         """Add a run that begins now, and return its number."""
         values = {
@@ -107,13 +107,13 @@ class CommTestStore(CommTestRuns):
             "started": time.time(),
             "state": "running",
             "problem": "",
-            "place": place,
+            "place": board,
             "sample": "",
         }
         return await self._store.write(lambda connection: insert_row(connection, CommTestRun, values))
 
     async def add(self, run: int, number: int, values: Mapping[str, Any]) -> Cell:
-        """Store a cell as the test process reports it. Raises ValueError if it is not valid."""
+        """Store a cell as the test process reports it. Raise ValueError if it is not valid."""
         cell = CommTestCell.model_validate({**values, "run_id": run, "number": number})
         await self._store.execute(insert(CommTestCell).values(cell.model_dump(exclude={"id"})))
         return _cell(cell)

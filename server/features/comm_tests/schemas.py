@@ -46,7 +46,7 @@ class Started(BaseModel):
 
 
 class CheckedTest(BaseModel):
-    """A test of a document that can be run; `seconds` is about how long its cells take in the test's time."""
+    """A runnable test of a document; `seconds` is its cells' estimated duration in the test's time."""
 
     id: int
     name: str

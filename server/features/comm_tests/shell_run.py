@@ -7,7 +7,7 @@ from typing import Any
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.experiments.comm_test.document import CommTest
-from server.features.board.reservation import RobotBoard
+from server.board_reservation import RobotBoard
 from server.features.comm_tests import tables
 from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
@@ -18,26 +18,26 @@ from server.platform.shell_store import open_writer
 from server.platform.terminal import echo
 
 
-def run_tests(text: str, tests: list[CommTest], place: Place, settings: Settings) -> int:
+def run_tests(text: str, tests: list[CommTest], board: Place, settings: Settings) -> int:
     """Run the tests of a document in a claimed folder, and print the rates.
 
-    Exit status: 1 if a run did not complete. Raises SetupError if it cannot start.
+    Exit status: 1 if a run did not complete. Raise SetupError if it cannot start.
     """
     with open_writer(settings.data) as store:
-        return asyncio.run(_perform(text, tests, place, settings, CommTestStore(store)))
+        return asyncio.run(_perform(text, tests, board, settings, CommTestStore(store)))
 
 
 async def _perform(
-    text: str, tests: list[CommTest], place: Place, settings: Settings, runs: CommTestStore
+    text: str, tests: list[CommTest], board: Place, settings: Settings, runs: CommTestStore
 ) -> int:
     await runs.mark_interrupted()
     progress = _Progress(tests)
-    board = RobotBoard(settings, lambda _kind, _severity, words: echo(words, err=True))
-    comm_tests = CommTestRunner(settings, runs, SteadyClock(), progress.notify, board.reserve)
+    robot_board = RobotBoard(settings, lambda _kind, _severity, text: echo(text, err=True))
+    comm_tests = CommTestRunner(settings, runs, SteadyClock(), progress.notify, robot_board.reserve)
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, comm_tests.cancel)
-    first = await comm_tests.start(text, place)
+    first = await comm_tests.start(text, board)
     await comm_tests.wait()
     return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)
 
@@ -46,15 +46,15 @@ def _conclude(done: Sequence[CommTestRun], expected: int, runs: CommTestStore) -
     for run in done:
         echo(f"\n{tables.show_cells(runs.cells(run.id or 0))}")
         if run.state == "cancelled":
-            words = f"run {run.id} was cancelled; its finished cells are stored"
-            echo(f"mucat: {words}", err=True)
+            text = f"run {run.id} was cancelled; its finished cells are stored"
+            echo(f"mucat: {text}", err=True)
         elif run.state != "complete":
             echo(f"mucat: run {run.id} failed: {run.problem}", err=True)
     return 0 if len(done) == expected and all(run.state == "complete" for run in done) else 1
 
 
 class _Progress:
-    """Prints the progress of the tests."""
+    """The printed progress of the tests."""
 
     def __init__(self, tests: list[CommTest]) -> None:
         self._tests = tests
@@ -65,8 +65,8 @@ class _Progress:
         if active and active["run"] != self._run:
             self._run = active["run"]
             test = self._tests[active["test"]]
-            words = f"run {self._run}: {test.name}, framing {test.framing}, {test.direction}"
-            echo(f"{words}, {active['cells']} cells")
+            text = f"run {self._run}: {test.name}, framing {test.framing}, {test.direction}"
+            echo(f"{text}, {active['cells']} cells")
         if active and cell:
             where = f"{cell['baud']:>6} baud, Arduino {cell['arduino_delay']:g} s, Pi {cell['pi_delay']:g} s"
             times = f"{_clock(active['elapsed'])} elapsed"

@@ -27,7 +27,7 @@ DOCUMENTS = {
 
 
 def shipped_documents() -> list[TestDocument]:
-    """The shipped documents, the thesis's own example first."""
+    """Return the shipped documents, the thesis's own example first."""
     folder = files(__package__) / "documents"
     sources = {name: THESIS if name == "figure10" else folder / f"{name}.json" for name in DOCUMENTS}
     return [
@@ -38,7 +38,7 @@ def shipped_documents() -> list[TestDocument]:
 
 
 async def import_samples(runs: CommTestStore, folder: Traversable | None = None) -> None:
-    """Store the missing sample runs; unreadable ones are left out. Raises StoreError.
+    """Store the missing sample runs; unreadable ones are left out. Raise StoreError.
 
     Each file is what `mucat commtest export --format json` writes; its name is the sample's.
     """
@@ -55,14 +55,14 @@ async def import_samples(runs: CommTestStore, folder: Traversable | None = None)
 
 
 def _samples(folder: Traversable) -> Iterator[tuple[str, Traversable]]:
-    for file in sorted(folder.iterdir(), key=lambda one: one.name):
+    for file in sorted(folder.iterdir(), key=lambda path: path.name):
         name, dot, suffix = file.name.rpartition(".")
         if dot and suffix == "json":
             yield name, file
 
 
 def _read_sample(whole: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """A run's columns and those of its cells. Raises ValueError, KeyError, TypeError."""
+    """Return a run's columns and those of its cells. Raise ValueError, KeyError, TypeError."""
     texts = {name: json.dumps(whole[name], ensure_ascii=False) for name in ("document", "tools")}
     run = CommTestRun.model_validate({**whole, **texts, "cells": len(whole["cells"])})
     cells = [CommTestCell.model_validate({**cell, "run_id": 0}) for cell in whole["cells"]]

@@ -13,21 +13,21 @@ COLUMNS = [name for name in CommTestCell.model_fields if name not in ("id", "run
 
 
 def places(cells: Sequence[CommTestCell]) -> dict[GridPlace, float]:
-    """The rates of cells by their place in the grid."""
+    """Return the rates of cells by their position in the grid."""
     return {(cell.baud, cell.arduino_delay, cell.pi_delay): cell.rate for cell in cells}
 
 
 def show_cells(cells: Sequence[CommTestCell]) -> str:
-    """A table as in the thesis's Figure 18, with the causes of errors."""
+    """Return a table as in the thesis's Figure 18, with the causes of errors."""
     rows = [
-        [*_place((cell.baud, cell.arduino_delay, cell.pi_delay)), f"{cell.rate:.2f}", cell.causes]
+        [*_delays((cell.baud, cell.arduino_delay, cell.pi_delay)), f"{cell.rate:.2f}", cell.causes]
         for cell in cells
     ]
     return _table(["baud", "Arduino delay (s)", "Pi delay (s)", "rate", "what went wrong"], rows)
 
 
 def show_run(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
-    """A run with its configuration, its table and the explanations of errors."""
+    """Return a run with its configuration, its table and the explanations of errors."""
     facts = {
         "run": f"{run.id}, {run.name}",
         "state": run.state + (f": {run.problem}" if run.problem else ""),
@@ -53,7 +53,7 @@ def show_run(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
 
 
 def show_list(runs: Sequence[CommTestRun]) -> str:
-    """One line for each run."""
+    """Return one line for each run."""
     rows = [
         [str(run.id), _moment(run.started), run.state, run.framing, run.direction, str(run.cells), run.name]
         for run in runs
@@ -62,28 +62,28 @@ def show_list(runs: Sequence[CommTestRun]) -> str:
 
 
 def show_comparison(columns: Mapping[str, Mapping[GridPlace, float]]) -> str:
-    """The rates of the first column's cells, and those of the other columns with the differences."""
+    """Return the rates of the first column's cells, and those of the other columns with the differences."""
     first, *others = columns
     header = ["baud", "Arduino delay (s)", "Pi delay (s)", first]
     for name in others:
         header += [name, "difference"]
     rows = []
-    for place in columns[first]:
-        base = columns[first][place]
-        row = [*_place(place), f"{base:.2f}"]
+    for cell in columns[first]:
+        base = columns[first][cell]
+        row = [*_delays(cell), f"{base:.2f}"]
         for name in others:
-            rate = columns[name].get(place)
+            rate = columns[name].get(cell)
             row += ["-", "-"] if rate is None else [f"{rate:.2f}", f"{rate - base:+.2f}"]
         rows.append(row)
     return _table(header, rows)
 
 
 def write_csv(run: CommTestRun, cells: Sequence[CommTestCell], style: CsvStyle) -> str:
-    """A line for each cell, with the run's number, framing and direction; delays and seconds in s."""
+    """Return a line for each cell, with the run's number, framing and direction; delay and seconds in s."""
     lines: list[Sequence[object]] = [["run", "framing", "direction", *COLUMNS]]
     for cell in cells:
         values = (getattr(cell, name) for name in COLUMNS)
-        lines.append([run.id, run.framing, run.direction, *(_csv_value(one) for one in values)])
+        lines.append([run.id, run.framing, run.direction, *(_csv_value(value) for value in values)])
     return style.mark + style.write(lines)
 
 
@@ -92,7 +92,7 @@ def _csv_value(value: object) -> object:
 
 
 def write_json(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
-    """The run with its configuration and its cells."""
+    """Return the run with its configuration and its cells."""
     whole: dict[str, Any] = run.model_dump()
     whole["document"] = json.loads(run.document)
     whole["tools"] = json.loads(run.tools)
@@ -100,8 +100,8 @@ def write_json(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
-def _place(place: GridPlace) -> list[str]:
-    baud, arduino_delay, pi_delay = place
+def _delays(cell: GridPlace) -> list[str]:
+    baud, arduino_delay, pi_delay = cell
     return [str(baud), f"{arduino_delay:g}", f"{pi_delay:g}"]
 
 

@@ -18,7 +18,7 @@ BYTES_MAX = 1_000_000_000
 
 
 def main() -> int:
-    """Answer until the standard input ends."""
+    """Answer tasks until the standard input ends."""
     end_with_parent()
     give_way(NICENESS)
     limit_memory(BYTES_MAX)

@@ -46,10 +46,10 @@ def report(
     """Compare sessions in an HTML file."""
     from pydantic import ValidationError
 
-    from server.features.comparison.alignment import Align
-    from server.features.comparison.comparer import Comparer
-    from server.features.comparison.report import write_report
-    from server.features.comparison.schemas import (
+    from server.analysis.alignment import Align
+    from server.analysis.comparer import Comparer
+    from server.analysis.report import write_report
+    from server.analysis.schemas import (
         DEFAULT_SIGNALS,
         REPORT_POINTS,
         SESSIONS_MAX,

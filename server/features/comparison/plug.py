@@ -1,22 +1,11 @@
 """The plug of comparisons."""
 
-from typing import ClassVar
-
 from server.feature import Plug
 from server.features.comparison.worker import ComparisonWorker
-from server.platform.settings import Settings
-from server.services import Maker
-
-
-def make_worker(settings: Settings) -> ComparisonWorker:
-    """The process that compares."""
-    return ComparisonWorker(settings.data.database)
 
 
 class ComparisonPlug(Plug):
-    """Has the process ready where there is memory to spare."""
-
-    makers: ClassVar[tuple[Maker, ...]] = (make_worker,)
+    """The plug that starts the process early where memory allows it."""
 
     def __init__(self, worker: ComparisonWorker) -> None:
         self._worker = worker

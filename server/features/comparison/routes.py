@@ -7,14 +7,14 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, Response
 from pydantic import ValidationError
 
-from server.features.comparison.schemas import Comparison, ComparisonQuery, Lines, LinesQuery, ReportQuery
-from server.features.comparison.signals import Signal
+from server.analysis.schemas import Comparison, ComparisonQuery, Lines, LinesQuery, ReportQuery
+from server.analysis.signals import Signal
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
-from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
 from server.http.heavy_requests import ReadingTurn, TooManyHeavyError, Turn, while_connected
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
+from server.recording.session import UnknownSessionError
 
 router = Operations(prefix="/api", tags=["comparison"])
 
@@ -49,7 +49,7 @@ async def get_comparison_report(
     response_model=list[Signal],
 )
 async def list_signals(worker: Provided[ComparisonWorker], session: Identifier) -> Response:
-    """List the signals of a session: the columns of its topics, and numbers of its documents."""
+    """List the signals of a session: the columns of its topics, and numbers in its documents."""
     return _json(await worker.ask("signals", str(session)))
 
 

@@ -1,4 +1,4 @@
-"""The tasks of the process that compares, and their answers."""
+"""The tasks of the comparing process, and their answers."""
 
 import json
 import sys
@@ -8,10 +8,10 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from server.features.comparison.comparer import Comparer
-from server.features.comparison.report import write_report
-from server.features.comparison.schemas import ComparisonQuery, LinesQuery, ReportQuery
-from server.features.comparison.signals import Signal
+from server.analysis.comparer import Comparer
+from server.analysis.report import write_report
+from server.analysis.schemas import ComparisonQuery, LinesQuery, ReportQuery
+from server.analysis.signals import Signal
 from server.platform.errors import ApiError, UnavailableError
 from server.platform.store import Reader
 
@@ -21,22 +21,22 @@ Task = Callable[[Comparer, str], bytes]
 
 
 def compare(comparer: Comparer, query: str) -> bytes:
-    """A comparison, as JSON."""
+    """Return a comparison, as JSON."""
     return comparer.compare(ComparisonQuery.model_validate_json(query)).model_dump_json().encode()
 
 
 def lines(comparer: Comparer, query: str) -> bytes:
-    """The lines of a part, as JSON."""
+    """Return the lines of a part, as JSON."""
     return comparer.lines(LinesQuery.model_validate_json(query)).model_dump_json().encode()
 
 
 def signals(comparer: Comparer, query: str) -> bytes:
-    """The signals of the session of this number, as JSON."""
+    """Return the signals of the session of this number, as JSON."""
     return TypeAdapter(list[Signal]).dump_json(comparer.signals(json.loads(query)))
 
 
 def report(comparer: Comparer, query: str) -> bytes:
-    """A report, as HTML."""
+    """Return a report, as HTML."""
     asked = ReportQuery.model_validate_json(query)
     return write_report(comparer.compare(asked.parse()), asked.shown).encode()
 
@@ -45,7 +45,7 @@ TASKS: Mapping[str, Task] = {"compare": compare, "lines": lines, "signals": sign
 
 
 def answer_all(database: Path, tasks: Iterable[bytes]) -> None:
-    """Answers each task, a line of JSON, on the standard output."""
+    """Answer each task, a line of JSON, on the standard output."""
     reader = Reader(database)
     comparer = Comparer(reader)
     for line in tasks:

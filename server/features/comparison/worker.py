@@ -1,4 +1,4 @@
-"""Runs `python -m server.features.comparison`: comparing costs seconds, which the server has for others."""
+"""The process `python -m server.features.comparison`: a comparison would block the server for seconds."""
 
 import asyncio
 import json
@@ -11,6 +11,7 @@ from typing import Literal
 
 from robot_runtime.transport.lifetime import memory_bytes
 from server.platform.errors import UnavailableError
+from server.platform.settings import DataFolder
 from server.processes.exit_status import describe_status
 
 Task = Literal["compare", "lines", "signals", "report"]
@@ -36,13 +37,13 @@ class ComparisonError(UnavailableError):
 
 
 class ComparisonWorker:
-    """The process of a server that compares: started when it is needed, and kept for its caches.
+    """A server's process for comparisons: started when needed, and left running for its caches.
 
-    It answers one task after the other. A report has a process of its own, so that nobody waits for it.
+    It answers one task after the other. A report has a process of its own, so that no task waits for it.
     """
 
-    def __init__(self, database: Path) -> None:
-        self._database = database
+    def __init__(self, folder: DataFolder) -> None:
+        self._database = folder.database
         self._turn = asyncio.Lock()
         self._process: Process | None = None
         self._idle: asyncio.TimerHandle | None = None
@@ -50,7 +51,7 @@ class ComparisonWorker:
         self._leaving: asyncio.Task[None] | None = None
 
     def prepare(self) -> None:
-        """Start the process now where the computer has memory to spare; it stays then."""
+        """Start the process now, to stay, where the computer has enough memory."""
         if memory_bytes() >= ROOMY_BYTES:
             self._preparing = asyncio.create_task(self._prepare())
 
@@ -62,7 +63,7 @@ class ComparisonWorker:
                     self._process = await _start(self._database)
 
     async def ask(self, task: Task, query: str) -> bytes:
-        """The answer to a query, both as JSON. Raises ComparisonError."""
+        """Return the answer to a query, both as JSON. Raise ComparisonError."""
         async with self._turn:
             if self._idle is not None:
                 self._idle.cancel()
@@ -75,7 +76,7 @@ class ComparisonWorker:
         return _read(*answer)
 
     async def report(self, query: str) -> bytes:
-        """A report as HTML, by its query as JSON. Raises ComparisonError."""
+        """Return a report as HTML, by its query as JSON. Raise ComparisonError."""
         process = await _start(self._database)
         async with _ending_if_unfinished(process):
             answer = await _ask(process, "report", query, REPORT_SECONDS_MAX)
@@ -110,7 +111,10 @@ async def _start(database: Path) -> Process:
 
 
 async def _ask(process: Process, task: Task, query: str, seconds: float) -> tuple[int, bytes]:
-    """Status and body of the answer. Raises ComparisonError where the process ends, or takes too long."""
+    """Return status and body of the answer.
+
+    Raise ComparisonError where the process ends or takes too long.
+    """
     assert process.stdin is not None
     assert process.stdout is not None
     try:
@@ -139,7 +143,7 @@ def _read(status: int, body: bytes) -> bytes:
 
 @asynccontextmanager
 async def _ending_if_unfinished(process: Process) -> AsyncIterator[None]:
-    """Ends a process whose answer was not read to its end: the next one would read its rest."""
+    """End a process whose answer was not read to its end: the next one would read its rest."""
     try:
         yield
     except BaseException:

@@ -1,4 +1,4 @@
-"""The doctor: checks of the computer that the robot runs on, each with the command that mends it."""
+"""The doctor: checks of the robot's computer, each with the command that solves its problem."""
 
 from server.feature import Feature
 

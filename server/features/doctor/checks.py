@@ -2,8 +2,9 @@
 
 from collections.abc import Callable
 
+from robot_runtime.contract.buoyancy import RESERVE
 from server.features.doctor.findings import Finding, Reporter
-from server.features.doctor.machine import BRLTTY, MODEM_MANAGER, SERVICE, Machine
+from server.features.doctor.machine import BRLTTY, MODEM_MANAGER, SERVICE, WARM, Machine
 from server.platform.disk_space import DIVE_BYTES
 from server.platform.supply_voltage import UNDERVOLTAGE_NOW, UNDERVOLTAGE_SINCE
 from server.platform.wall_clock import is_set
@@ -25,7 +26,7 @@ Check = Callable[[Machine], Finding | None]
 
 
 def check_configuration(machine: Machine) -> Finding | None:
-    """The configuration can be used."""
+    """Check that the configuration can be used."""
     report = Reporter("configuration", "Configuration")
     if machine.configuration_problem:
         then = ", then: sudo systemctl restart mucat-runtime mucat" if SERVICE in machine.units else ""
@@ -34,30 +35,30 @@ def check_configuration(machine: Machine) -> Finding | None:
 
 
 def check_versions(machine: Machine) -> Finding | None:
-    """Python and the operating system are of versions that µ-CAT was tried on."""
+    """Check that Python and the operating system are of versions tested with µ-CAT."""
     report = Reporter("versions", "Versions")
-    found = f"Python {machine.python[0]}.{machine.python[1]}, {machine.system or 'unknown system'}"
+    versions = f"Python {machine.python[0]}.{machine.python[1]}, {machine.system or 'unknown system'}"
     if machine.python < PYTHON_LEAST:
-        return report.wrong(f"{found}: µ-CAT needs Python 3.11.", "Install Raspberry Pi OS 12 or newer.")
+        return report.wrong(f"{versions}: µ-CAT needs Python 3.11.", "Install Raspberry Pi OS 12 or newer.")
     if machine.bits == 32:
-        text = f"{found}, {machine.architecture}: a 32-bit system, without rendered water and MCAP files."
+        text = f"{versions}, {machine.architecture}: a 32-bit system, without rendered water and MCAP files."
         return report.look(text, "On a 64-bit Raspberry Pi, install the 64-bit Raspberry Pi OS.")
-    return report.ok(f"{found}, {machine.architecture}.")
+    return report.ok(f"{versions}, {machine.architecture}.")
 
 
 def check_libraries(machine: Machine) -> Finding | None:
-    """The libraries with compiled parts can be imported."""
+    """Check that the libraries with compiled parts can be imported."""
     report = Reporter("libraries", "Libraries")
     if machine.broken_libraries is None:
         return None
     if machine.broken_libraries:
-        words = "; ".join(f"{name}: {why}" for name, why in sorted(machine.broken_libraries.items()))
-        return report.wrong(f"Cannot be imported: {words}.", REINSTALL)
+        reasons = "; ".join(f"{name}: {why}" for name, why in sorted(machine.broken_libraries.items()))
+        return report.wrong(f"Cannot be imported: {reasons}.", REINSTALL)
     return report.ok("All can be imported.")
 
 
 def check_data(machine: Machine) -> Finding | None:
-    """The data folder can be written, and its disk has room."""
+    """Check that the data folder can be written, and that its disk has room."""
     report = Reporter("data", "Data folder")
     if machine.disk_read_only:
         text = f"The disk of {machine.data} is read-only: the card may be worn out or damaged."
@@ -77,7 +78,7 @@ def check_data(machine: Machine) -> Finding | None:
 
 
 def check_database(machine: Machine) -> Finding | None:
-    """The database can be read, and this version knows it."""
+    """Check that the database can be read, and that this version knows it."""
     report = Reporter("database", "Database")
     if machine.database_problem:
         return report.wrong(machine.database_problem, "mucat restore FILE; docs/run/backup.md")
@@ -85,7 +86,7 @@ def check_database(machine: Machine) -> Finding | None:
 
 
 def check_firmware(machine: Machine) -> Finding | None:
-    """The firmware for this speed is on the computer."""
+    """Check that the firmware for this speed is on the computer."""
     report = Reporter("firmware", "Firmware file")
     if not machine.firmware_there:
         text = f"There is no {machine.firmware}, so that the board cannot get its firmware."
@@ -94,7 +95,7 @@ def check_firmware(machine: Machine) -> Finding | None:
 
 
 def check_port(machine: Machine) -> Finding | None:
-    """The serial port is there, and opens at the line's speed."""
+    """Check that the serial port exists, and opens at the line's speed."""
     report = Reporter("port", "Serial port")
     if machine.mode == "emulated":
         return None
@@ -111,7 +112,7 @@ def check_port(machine: Machine) -> Finding | None:
 
 
 def check_port_takers(machine: Machine) -> Finding | None:
-    """No other program opens a USB adapter as soon as it is plugged in."""
+    """Check that no other program opens a USB adapter as soon as it is plugged in."""
     report = Reporter("port_takers", "Other programs at the port")
     name = machine.port_target or machine.port.removeprefix("/dev/")
     if machine.mode == "emulated" or not name.startswith(("ttyUSB", "ttyACM", "serial/by-")):
@@ -130,13 +131,13 @@ def check_port_takers(machine: Machine) -> Finding | None:
 
 
 def check_uart(machine: Machine) -> Finding | None:
-    """The Pi's serial port is the full UART: the small one follows the processor's clock."""
+    """Check that the Pi's serial port is the full UART: the small one follows the processor's clock."""
     report = Reporter("uart", "UART")
     name = machine.port_target or machine.port.removeprefix("/dev/")
     if not machine.model or machine.mode == "emulated" or not name.startswith(PI_LINES):
         return None
     lines = {line.split("#")[0].replace(" ", "") for line in machine.boot_settings.splitlines()}
-    missing = [one for one in ("enable_uart=1", "dtoverlay=disable-bt") if one not in lines]
+    missing = [setting for setting in ("enable_uart=1", "dtoverlay=disable-bt") if setting not in lines]
     if name == "ttyS0":
         text = f"{machine.port} is the small UART (ttyS0), whose speed follows the processor's clock."
         named = "" if machine.port_target else 'Set link.port in robot.toml to "/dev/serial0"; '
@@ -153,7 +154,7 @@ def check_uart(machine: Machine) -> Finding | None:
 
 
 def check_console(machine: Machine) -> Finding | None:
-    """Neither kernel nor login prompt writes to the board's line."""
+    """Check that neither kernel nor login prompt writes to the board's line."""
     report = Reporter("console", "Console")
     if machine.mode == "emulated" or not machine.port_there:
         return None
@@ -178,7 +179,7 @@ def check_console(machine: Machine) -> Finding | None:
 
 
 def check_board(machine: Machine) -> Finding | None:
-    """The board answers, with the definitions of this version."""
+    """Check that the board answers, with the definitions of this version."""
     report = Reporter("board", "Board")
     if machine.mode == "emulated":
         return None
@@ -195,18 +196,18 @@ def check_board(machine: Machine) -> Finding | None:
 
 
 def check_groups(machine: Machine) -> Finding | None:
-    """The user of the service may use line, pins and camera."""
+    """Check that the service's user may use line, pins and camera."""
     report = Reporter("groups", "Groups")
     if machine.mode == "emulated" or machine.user == "root":
         return None
     needed = [
-        one
-        for one in GROUPS
-        if one == "dialout"
-        or (one == "gpio" and machine.reset.startswith("gpio:"))
-        or (one == "video" and machine.camera == "pi")
+        group
+        for group in GROUPS
+        if group == "dialout"
+        or (group == "gpio" and machine.reset.startswith("gpio:"))
+        or (group == "video" and machine.camera == "pi")
     ]
-    missing = [one for one in needed if one not in machine.groups]
+    missing = [group for group in needed if group not in machine.groups]
     if missing:
         text = f"{machine.user} is not in {', '.join(missing)}."
         return report.wrong(text, f"sudo usermod -aG {','.join(missing)} {machine.user}, then start again")
@@ -214,7 +215,7 @@ def check_groups(machine: Machine) -> Finding | None:
 
 
 def check_reset(machine: Machine) -> Finding | None:
-    """The reset line is one of the Pi's own pins."""
+    """Check that the reset line is one of the Pi's own pins."""
     report = Reporter("reset", "Reset line")
     if machine.mode == "emulated" or not machine.reset.startswith("gpio:"):
         return None
@@ -230,7 +231,7 @@ def check_reset(machine: Machine) -> Finding | None:
 
 
 def check_camera(machine: Machine) -> Finding | None:
-    """The Raspberry Pi's camera is connected, and its library there."""
+    """Check that the Raspberry Pi's camera is connected, and its library installed."""
     report = Reporter("camera", "Camera")
     if machine.camera != "pi":
         return None
@@ -245,8 +246,27 @@ def check_camera(machine: Machine) -> Finding | None:
     return report.ok(", ".join(machine.cameras))
 
 
+def check_buoyancy(machine: Machine) -> Finding | None:
+    """Check that a real robot was weighed, and that it comes up in fresh water that is warm."""
+    report = Reporter("buoyancy", "Buoyancy")
+    if machine.mode != "robot":
+        return None
+    if not machine.reserve:
+        return report.look(
+            "The reserve of buoyancy is not known: STOP relies on it to bring the robot up.",
+            "Weigh and trim it (docs/run/hardware/trim.md), then set craft.reserve in robot.toml",
+        )
+    text = f"{machine.reserve:.0f} g as weighed, {machine.warm_reserve:.0f} g in fresh water of {WARM:g} °C"
+    if machine.warm_reserve <= 0:
+        return report.look(f"{text}: there it sinks.", "Trim it again in fresh water before it dives there")
+    least = 1000 * RESERVE * machine.mass / 2
+    if machine.reserve < least:
+        return report.look(f"{text}: less than {least:.0f} g.", "Trim it: docs/run/hardware/trim.md")
+    return report.ok(f"{text}.")
+
+
 def check_clock(machine: Machine) -> Finding | None:
-    """The clock is right; a Raspberry Pi has none of its own while it is off."""
+    """Check that the clock is right; a Raspberry Pi has no clock while it is off."""
     report = Reporter("clock", "Clock")
     if not is_set(machine.now):
         return report.look(
@@ -262,7 +282,7 @@ def check_clock(machine: Machine) -> Finding | None:
 
 
 def check_voltage(machine: Machine) -> Finding | None:
-    """The supply of the Raspberry Pi holds its voltage."""
+    """Check that the supply of the Raspberry Pi holds its voltage."""
     report = Reporter("voltage", "Supply")
     if machine.throttled is None:
         return None
@@ -280,7 +300,7 @@ def check_voltage(machine: Machine) -> Finding | None:
 
 
 def check_memory_limit(machine: Machine) -> Finding | None:
-    """The kernel can limit the server's memory."""
+    """Check that the kernel can limit the server's memory."""
     report = Reporter("memory_limit", "Memory limit")
     if SERVICE not in machine.units:
         return None
@@ -293,11 +313,11 @@ def check_memory_limit(machine: Machine) -> Finding | None:
 
 
 def check_swap(machine: Machine) -> Finding | None:
-    """A small computer has compressed swap, which spares the card."""
+    """Check that a small computer has compressed swap, which spares the SD card."""
     report = Reporter("swap", "Compressed swap")
     if machine.memory >= SMALL_MEMORY:
         return None
-    if any("zram" in one for one in machine.swaps):
+    if any("zram" in swap for swap in machine.swaps):
         return report.ok(f"{machine.memory / 1e6:.0f} MB of memory, and zram.")
     return report.look(
         f"{machine.memory / 1e6:.0f} MB of memory, without compressed swap.",
@@ -306,7 +326,7 @@ def check_swap(machine: Machine) -> Finding | None:
 
 
 def check_address(machine: Machine) -> Finding | None:
-    """The page's address is free for the server."""
+    """Check that the page's address is free for the server."""
     report = Reporter("address", "Address of the page")
     if machine.server_runs:
         return report.ok(f"The server answers at {machine.address}.")
@@ -319,13 +339,17 @@ def check_address(machine: Machine) -> Finding | None:
 
 
 def check_service(machine: Machine) -> Finding | None:
-    """The installed service goes on when a part of it is killed."""
+    """Check that the installed service goes on when a part of it is killed."""
     report = Reporter("service", "Service")
     unit = machine.units.get(SERVICE)
     if unit is None:
         return None
     lines = {line.strip() for line in unit.splitlines()}
-    missing = [one for one in ("ExitType=cgroup", "OOMPolicy=continue", "Restart=always") if one not in lines]
+    missing = [
+        setting
+        for setting in ("ExitType=cgroup", "OOMPolicy=continue", "Restart=always")
+        if setting not in lines
+    ]
     if missing:
         text = f"{SERVICE} lacks {', '.join(missing)}: a part that is killed would end all of it."
         return report.wrong(text, "sudo mucat install")
@@ -333,7 +357,7 @@ def check_service(machine: Machine) -> Finding | None:
 
 
 def check_runtime(machine: Machine) -> Finding | None:
-    """The runtime that is a service of its own has this version and configuration."""
+    """Check that a runtime service has this version and configuration."""
     report = Reporter("runtime", "Runtime")
     if SERVICE not in machine.units:
         return None
@@ -346,7 +370,7 @@ def check_runtime(machine: Machine) -> Finding | None:
 
 
 def check_events(machine: Machine) -> Finding | None:
-    """The broker and the address that are told of events can be reached."""
+    """Check that the broker for events can be reached."""
     report = Reporter("events", "Events to other programs")
     if not machine.events_named:
         return None
@@ -371,6 +395,7 @@ CHECKS: tuple[Check, ...] = (
     check_board,
     check_groups,
     check_reset,
+    check_buoyancy,
     check_camera,
     check_clock,
     check_voltage,
@@ -385,5 +410,5 @@ CHECKS: tuple[Check, ...] = (
 
 
 def examine(machine: Machine) -> list[Finding]:
-    """The findings of all checks that apply."""
+    """Return the findings of all checks that apply."""
     return [finding for check in CHECKS if (finding := check(machine)) is not None]

@@ -1,4 +1,4 @@
-"""`mucat doctor`: looks through the computer, and says what is wrong and how it is mended."""
+"""`mucat doctor`: examines the computer, and prints its problems with their remedies."""
 
 import json
 import os
@@ -24,7 +24,7 @@ from server.platform.terminal import echo
 @config_option
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON, for programs.")
 def doctor(data: Path | None, config: Path | None, *, as_json: bool) -> int:
-    """Look through this computer: what is wrong, what it means, and what mends it.
+    """Examine this computer: its problems, their meaning and their remedies.
 
     It changes nothing. The exit status is 1 where something is wrong.
     """
@@ -35,7 +35,7 @@ def doctor(data: Path | None, config: Path | None, *, as_json: bool) -> int:
             f"This user may not read {problem.filename}. On an installed robot: sudo mucat doctor"
         ) from problem
     if as_json:
-        echo(json.dumps([asdict(one) for one in findings], indent=2))
+        echo(json.dumps([asdict(finding) for finding in findings], indent=2))
     else:
         print_findings(findings, echo)
     return 1 if worst(findings) == "wrong" else 0
@@ -52,7 +52,7 @@ def _look(config: Path | None, data: Path | None) -> Machine:
 
 
 def _ask_health(settings: Settings) -> dict[str, tuple[str, str]]:
-    """State and text of each part, by the running server; empty without one."""
+    """Return state and text of each part, by the running server; empty without one."""
     if runner_of(settings.data) is None:
         return {}
     try:

@@ -1,4 +1,4 @@
-"""The doctor of a running server: looks at its start, and whenever somebody asks."""
+"""The doctor of a running server: it examines the computer at the start and on request."""
 
 import asyncio
 import logging
@@ -25,19 +25,21 @@ class Examination:
         self._findings: list[Finding] = []
 
     async def at_start(self) -> None:
-        """Look at what is quickly seen, and report what is wrong."""
-        for one in await self._examine(thorough=False):
+        """Perform the quick checks, and report problems."""
+        for finding in await self._examine(thorough=False):
             # The link has only just been opened: its own alarm comes when it fails.
-            if one.verdict == "wrong" and one.name != "board":
-                log.warning("%s: %s Remedy: %s", one.title, one.text, one.mend)
-                self._notices.notify("doctor", "caution", f"{one.title}: {one.text} Remedy: {one.mend}")
+            if finding.verdict == "wrong" and finding.name != "board":
+                log.warning("%s: %s Remedy: %s", finding.title, finding.text, finding.mend)
+                self._notices.notify(
+                    "doctor", "caution", f"{finding.title}: {finding.text} Remedy: {finding.mend}"
+                )
 
     async def repeat(self) -> list[Finding]:
-        """Look again, at everything; one at a time."""
+        """Perform all checks again; one examination at a time."""
         return await self._examine(thorough=True)
 
     def newest(self) -> list[Finding]:
-        """The newest findings."""
+        """Return the newest findings."""
         return self._findings
 
     async def _examine(self, *, thorough: bool) -> list[Finding]:

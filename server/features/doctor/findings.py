@@ -10,7 +10,7 @@ Verdict = Literal["ok", "look", "wrong"]
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """The outcome of one check: a sentence about what was found, and the command or act that mends it."""
+    """The outcome of one check: a sentence, and the command or act that solves the problem."""
 
     name: str
     title: str
@@ -20,34 +20,34 @@ class Finding:
 
 
 class Reporter:
-    """Makes the findings of one check, which all have its name and title."""
+    """Maker of the findings of one check, which all have its name and title."""
 
     def __init__(self, name: str, title: str) -> None:
         self._name = name
         self._title = title
 
     def ok(self, text: str) -> Finding:
-        """A good finding."""
+        """Return a good finding."""
         return Finding(self._name, self._title, "ok", text)
 
     def look(self, text: str, mend: str) -> Finding:
-        """Something worth a look."""
+        """Return a finding that deserves attention."""
         return Finding(self._name, self._title, "look", text, mend)
 
     def wrong(self, text: str, mend: str) -> Finding:
-        """Something that is wrong."""
+        """Return a finding about a problem."""
         return Finding(self._name, self._title, "wrong", text, mend)
 
 
 def worst(findings: Iterable[Finding]) -> Verdict:
-    """The gravest verdict; "ok" without findings."""
+    """Return the gravest verdict; "ok" without findings."""
     order: tuple[Verdict, ...] = ("ok", "look", "wrong")
-    return max((one.verdict for one in findings), key=order.index, default="ok")
+    return max((finding.verdict for finding in findings), key=order.index, default="ok")
 
 
 def print_findings(findings: Iterable[Finding], echo: Callable[[str], None]) -> None:
-    """Print each finding, and below it the command that mends it."""
-    for one in findings:
-        echo(f"{one.verdict:6}{one.title}: {one.text}")
-        if one.mend:
-            echo(f"      → {one.mend}")
+    """Print each finding, and below it the command that solves the problem."""
+    for finding in findings:
+        echo(f"{finding.verdict:6}{finding.title}: {finding.text}")
+        if finding.mend:
+            echo(f"      → {finding.mend}")

@@ -1,4 +1,4 @@
-"""The computer as the doctor sees it: plain facts, read once, which the checks judge."""
+"""The facts about the computer, read once, for the doctor's checks."""
 
 import fcntl
 import grp
@@ -29,13 +29,15 @@ IMPORT_SECONDS = 120.0
 LIBRARIES = ("zenoh", "numpy", "cv2", "pydantic_core", "sqlalchemy", "serial", "cobs")
 """Modules with compiled parts, and those that speak with the board: importing them shows a wrong wheel."""
 SERVICE = "mucat.service"
+WARM = 25.0
+"""°C of the warmest fresh water that a robot is expected in."""
 BRLTTY, MODEM_MANAGER = "brltty", "ModemManager"
 NOTHING_HEARD: Mapping[str, tuple[str, str]] = {}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
-    """The facts. An empty text, None or an empty list is a thing that this computer does not have.
+    """The facts. An empty text, None or an empty list stands for a missing part of this computer.
 
     Sizes in bytes, times in s since 1970 (UTC).
     """
@@ -86,6 +88,12 @@ class Machine:
     reset: str = "dtr"
     reset_label: str = ""
     reset_problem: str = ""
+    mass: float = 3.0
+    """kg, of the craft in force."""
+    reserve: float = 0.0
+    """g of buoyancy, as weighed; 0: not known."""
+    warm_reserve: float = 0.0
+    """g of it that are left in warm fresh water."""
     camera: str = "pi"
     camera_library: bool = True
     cameras: tuple[str, ...] = ()
@@ -115,23 +123,26 @@ def read_machine(
 ) -> Machine:
     """Read the facts of this computer; nothing is changed. `heard`: state and text of parts, by the server.
 
-    Only a thorough look imports the libraries, in another process, and opens a serial port that nobody uses.
+    Only a thorough examination imports the libraries, in another process, and opens an unused serial port.
     """
     from robot_runtime.link.port import list_ports
     from server.platform.folder_lock import runner_of
     from server.platform.pidfile import running_parts
 
     link, events = heard.get("link", ("", "")), heard.get("events", ("", ""))
-    boot = next((one for one in ("boot/firmware", "boot") if (root / one / "config.txt").exists()), "")
-    units = {one.name: _read(one) for one in (root / "etc/systemd/system").glob("mucat*.*")}
+    boot = next(
+        (folder for folder in ("boot/firmware", "boot") if (root / folder / "config.txt").exists()), ""
+    )
+    units = {file.name: _read(file) for file in (root / "etc/systemd/system").glob("mucat*.*")}
     user = _service_user(units.get(SERVICE, ""))
     port, serial0 = Path(settings.link.port), root / "dev/serial0"
     runtime = running_parts(settings.data.run).get("runtime")
     serves = runner_of(settings.data) is not None
     reset_label, reset_problem = _read_reset(settings.link.reset)
     firmware = _firmware(settings)
+    mass, reserve, warm_reserve = _read_weighing(settings)
     return Machine(
-        mode=settings.mode if not settings.emulated_board else "emulated",
+        mode=settings.robot.mode if not settings.emulated_board else "emulated",
         python=sys.version_info[:2],
         system=_pretty_name(_read(root / "etc/os-release")),
         architecture=platform.machine(),
@@ -167,6 +178,9 @@ def read_machine(
         reset=settings.link.reset,
         reset_label=reset_label,
         reset_problem=reset_problem,
+        mass=mass,
+        reserve=reserve,
+        warm_reserve=warm_reserve,
         camera=_camera(settings),
         camera_library=_has_picamera(),
         cameras=_list_cameras(root),
@@ -176,8 +190,8 @@ def read_machine(
         memory_cgroup=_has_memory_cgroup(root),
         memory=os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"),
         swaps=tuple(line.split()[0] for line in _read(root / "proc/swaps").splitlines()[1:] if line),
-        address=(_announced(settings) if serves else "") or f"{settings.host}:{settings.port}",
-        address_problem="" if serves else _try_address(settings.host, settings.port),
+        address=(_announced(settings) if serves else "") or f"{settings.server.host}:{settings.server.port}",
+        address_problem="" if serves else _try_address(settings.server.host, settings.server.port),
         server_runs=serves,
         runtime_outdated=runtime is not None and runtime.fingerprint != _fingerprint(settings),
         units=units,
@@ -192,41 +206,41 @@ def _read(path: Path) -> str:
 
 
 def _announced(settings: Settings) -> str:
-    """Host and port of the running server, which may be others than the configuration's."""
+    """Return host and port of the running server, which may differ from the configuration's."""
     return _read(settings.data.address).strip().partition("://")[2]
 
 
 def _existing(path: Path) -> Path:
-    """The path, or the nearest of its parents that exists."""
+    """Return the path, or the nearest of its parents that exists."""
     while not path.exists():
         path = path.parent
     return path
 
 
 def _is_read_only(path: Path, mounts: str) -> bool:
-    """True for a disk that cannot be written, also where the kernel has given it up after a failed write.
+    """Return True for a disk that cannot be written, also where the kernel disabled it after a failed write.
 
     From Linux 6.15 on only the options of such a mount, its fourth word, say so.
     """
     if os.statvfs(path).f_flag & os.ST_RDONLY:
         return True
-    found = [line.split() for line in mounts.splitlines()]
-    above = [words for words in found if len(words) > 3 and path.is_relative_to(words[1])]
+    entries = [line.split() for line in mounts.splitlines()]
+    above = [entry for entry in entries if len(entry) > 3 and path.is_relative_to(entry[1])]
     # Of several at one place the last one covers the others.
-    nearest = sorted(above, key=lambda words: len(Path(words[1]).parts))[-1:]
-    return any("emergency_ro" in words[3].split(",") for words in nearest)
+    nearest = sorted(above, key=lambda entry: len(Path(entry[1]).parts))[-1:]
+    return any("emergency_ro" in entry[3].split(",") for entry in nearest)
 
 
 def _pretty_name(release: str) -> str:
-    found = re.search(r'^PRETTY_NAME="?([^"\n]*)', release, re.MULTILINE)
-    return found[1] if found else ""
+    match = re.search(r'^PRETTY_NAME="?([^"\n]*)', release, re.MULTILINE)
+    return match[1] if match else ""
 
 
 def _service_user(unit: str) -> str:
-    """The user of the installed service, or the present one without a service."""
-    found = re.search(r"^User=(\S+)", unit, re.MULTILINE)
-    if found:
-        return found[1]
+    """Return the user of the installed service, or the present one without a service."""
+    match = re.search(r"^User=(\S+)", unit, re.MULTILINE)
+    if match:
+        return match[1]
     with suppress(KeyError):
         return pwd.getpwuid(os.geteuid()).pw_name
     return str(os.geteuid())
@@ -247,14 +261,14 @@ def _firmware(settings: Settings) -> Path:
 
 
 def _fingerprint(settings: Settings) -> str:
-    """The fingerprint of a runtime that would be started now."""
+    """Return the fingerprint that a runtime would have if it were started now."""
     from server.processes.supervisor import plan
 
-    return next(one.fingerprint() for one in plan(settings) if one.name == "runtime")
+    return next(command.fingerprint() for command in plan(settings) if command.name == "runtime")
 
 
 def _try_libraries() -> dict[str, str]:
-    """Import each library in another process; returns the errors by library."""
+    """Import each library in another process; return the errors by library."""
     program = (
         "import importlib, sys\n"
         "for name in sys.argv[1:]:\n"
@@ -265,7 +279,7 @@ def _try_libraries() -> dict[str, str]:
         "    else:\n"
         "        print(name, flush=True)\n"
     )
-    found = dict.fromkeys(LIBRARIES, "the process that imports it was ended")
+    errors = dict.fromkeys(LIBRARIES, "the process that imports it was ended")
     try:
         done = subprocess.run(
             [sys.executable, "-c", program, *LIBRARIES],
@@ -278,12 +292,12 @@ def _try_libraries() -> dict[str, str]:
         return dict.fromkeys(LIBRARIES, f"it takes more than {IMPORT_SECONDS:g} s")
     for line in done.stdout.splitlines():
         name, _, problem = line.partition(" ")
-        found[name] = problem
-    return {name: problem for name, problem in found.items() if problem}
+        errors[name] = problem
+    return {name: problem for name, problem in errors.items() if problem}
 
 
 def _try_database(settings: Settings) -> str:
-    """Reason why this version cannot use the database; empty if it can, or there is none yet."""
+    """Return the reason why this version cannot use the database; empty if it can, or there is none yet."""
     import sqlite3
 
     from server.platform.schema import explain, read_revision, refuse_unknown
@@ -301,7 +315,7 @@ def _try_database(settings: Settings) -> str:
 
 
 def _try_port(port: Path, baud: int) -> str:
-    """Reason why the port cannot be opened at this speed; empty if it can, or is not there."""
+    """Return the reason why the port cannot be opened at this speed; empty if it can, or does not exist."""
     from robot_runtime.link.link_driver import PortError
     from robot_runtime.link.port import Port
 
@@ -315,27 +329,27 @@ def _try_port(port: Path, baud: int) -> str:
 
 
 def _has_login(root: Path, port: Path) -> bool:
-    """True where a login prompt is started on this port."""
+    """Return True where a login prompt is started on this port."""
     names = {port.name, port.resolve().name}
     wants = (root / "etc/systemd/system").glob("*.wants/serial-getty@*.service")
-    return any(one.name.removeprefix("serial-getty@").removesuffix(".service") in names for one in wants)
+    return any(unit.name.removeprefix("serial-getty@").removesuffix(".service") in names for unit in wants)
 
 
 def _find_port_takers(root: Path) -> tuple[str, ...]:
-    """brltty by its udev rule, unless an empty one of /etc stands for it; ModemManager where it runs."""
+    """Return brltty if its udev rule is active (no empty one in /etc), and ModemManager if it runs."""
     rules = {
-        one.name: one
+        file.name: file
         for folder in ("lib", "usr/lib", "etc")
-        for one in (root / folder / "udev/rules.d").glob(f"*{BRLTTY}*.rules")
+        for file in (root / folder / "udev/rules.d").glob(f"*{BRLTTY}*.rules")
     }
-    found = [BRLTTY] if any(_read(one).strip() for one in rules.values()) else []
-    if any(_read(one).strip() == MODEM_MANAGER for one in (root / "proc").glob("[0-9]*/comm")):
-        found.append(MODEM_MANAGER)
-    return tuple(found)
+    takers = [BRLTTY] if any(_read(rule).strip() for rule in rules.values()) else []
+    if any(_read(file).strip() == MODEM_MANAGER for file in (root / "proc").glob("[0-9]*/comm")):
+        takers.append(MODEM_MANAGER)
+    return tuple(takers)
 
 
 def _read_reset(spec: str) -> tuple[str, str]:
-    """Label of the reset line's chip, and why it cannot be read; both empty for another kind of reset."""
+    """Return the label of the reset line's chip, and the reason if it cannot be read; else both empty."""
     kind, _, where = spec.partition(":")
     chip = where.rpartition(":")[0]
     if kind != "gpio" or not chip:
@@ -363,6 +377,23 @@ def _camera(settings: Settings) -> str:
         return ""
 
 
+def _read_weighing(settings: Settings) -> tuple[float, float, float]:
+    """Return mass (kg), reserve (g) and that in warm fresh water; without a configuration no reserve."""
+    from robot_runtime.config import craft_in_force, load
+    from robot_runtime.contract.buoyancy import reserve_elsewhere, water_density
+    from robot_runtime.contract.limits import ConfigError
+
+    try:
+        config = load(settings.config)
+        mass = craft_in_force(config, settings.config, settings.data.path).mass
+    except ConfigError:
+        return 3.0, 0.0, 0.0
+    trim = config.craft
+    weighed = water_density(trim.temperature, trim.salinity)
+    warm = reserve_elsewhere(mass, trim.reserve, weighed, water_density(WARM))
+    return mass, trim.reserve, warm
+
+
 def _has_picamera() -> bool:
     from importlib.util import find_spec
 
@@ -370,8 +401,8 @@ def _has_picamera() -> bool:
 
 
 def _list_cameras(root: Path) -> tuple[str, ...]:
-    names = (_read(one).strip() for one in (root / "sys/class/video4linux").glob("*/name"))
-    return tuple(sorted({one for one in names if one.startswith(("unicam", "rp1-cfe"))}))
+    names = (_read(file).strip() for file in (root / "sys/class/video4linux").glob("*/name"))
+    return tuple(sorted({name for name in names if name.startswith(("unicam", "rp1-cfe"))}))
 
 
 def _has_memory_cgroup(root: Path) -> bool:
@@ -385,7 +416,7 @@ def _has_memory_cgroup(root: Path) -> bool:
 
 
 def _try_address(host: str, port: int) -> str:
-    """Reason why the server cannot listen there; empty if it can."""
+    """Return the reason why the server cannot listen there; empty if it can."""
     with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

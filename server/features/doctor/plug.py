@@ -8,11 +8,11 @@ from server.features.doctor.examination import Examination
 
 
 class DoctorPlug(Plug):
-    """Looks at the computer at the server's start."""
+    """The plug that examines the computer at the server's start."""
 
     def __init__(self, examination: Examination) -> None:
         self._examination = examination
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
-        """Look once."""
+        """Examine the computer once."""
         return (self._examination.at_start(),)

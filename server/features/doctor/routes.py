@@ -1,4 +1,4 @@
-"""The doctor's findings, and another look."""
+"""The doctor's findings, and another examination."""
 
 from server.features.doctor.examination import Examination
 from server.features.doctor.findings import Finding
@@ -13,7 +13,7 @@ router = Operations(prefix="/api/doctor", tags=["health"])
 
 @router.operation("GET", Need.OPERATOR)
 def get_findings(examination: Provided[Examination]) -> list[Finding]:
-    """Return what the doctor found when it looked last: at the server's start, or when it was asked to."""
+    """Return the doctor's last findings: of the server's start, or of the last examination."""
     return examination.newest()
 
 
@@ -21,7 +21,7 @@ def get_findings(examination: Provided[Examination]) -> list[Finding]:
 async def examine_again(
     _: Turn, monitor: Provided[HealthMonitor], examination: Provided[Examination]
 ) -> list[Finding]:
-    """Look through the computer again, and return the findings.
+    """Examine the computer again, and return the findings.
 
     The libraries are imported in a process of their own, which takes seconds on a Raspberry Pi.
     """

@@ -13,4 +13,5 @@ FEATURE = Feature(
     ),
     commands={"certificate": "server.features.doors.certificates:certificate"},
     plug="server.features.doors.plug:DoorsPlug",
+    prepare="server.features.doors.ros2_certificates:prepare_ros2",
 )

@@ -1,4 +1,4 @@
-"""CBOR (RFC 8949) of a message: what JSON has, and bytes. cbor2 has no armv6 wheel."""
+"""CBOR (RFC 8949) of a message: JSON's types, and bytes. cbor2 has no armv6 wheel."""
 
 from collections.abc import Mapping
 from struct import pack
@@ -10,7 +10,7 @@ _DOUBLE = b"\xfb"
 
 
 def encode_cbor(value: Any) -> bytes:
-    """The CBOR of a value. Raises TypeError, or OverflowError on a whole number beyond 64 bits."""
+    """Return the CBOR of a value. Raise TypeError, or OverflowError on a whole number beyond 64 bits."""
     parts: list[bytes] = []
     _encode(value, parts)
     return b"".join(parts)
@@ -32,13 +32,13 @@ def _encode(value: Any, parts: list[bytes]) -> None:
         parts.append(_head(_BYTES, len(value)) + value)
     elif isinstance(value, Mapping):
         parts.append(_head(_MAP, len(value)))
-        for key, one in value.items():
+        for key, item in value.items():
             _encode(str(key), parts)
-            _encode(one, parts)
+            _encode(item, parts)
     elif isinstance(value, list | tuple):
         parts.append(_head(_ARRAY, len(value)))
-        for one in value:
-            _encode(one, parts)
+        for item in value:
+            _encode(item, parts)
     else:
         raise TypeError(f"{type(value).__name__} has no CBOR here")
 

@@ -32,7 +32,8 @@ def issue(settings: Settings, name: str, destination: Path | None) -> None:
     folder = destination or Path(f"mucat-{name}")
     Authority(settings).issue(name, folder)
     echo(f"Copy the folder {folder} to the other computer, and remove it here. There:")
-    echo(f"  mucat simulator --connect tls/ADDRESS:PORT --certificate {folder.name} --robot {settings.robot}")
+    robot = settings.robot.name
+    echo(f"  mucat simulator --connect tls/ADDRESS:PORT --certificate {folder.name} --robot {robot}")
     _say_restart(settings)
 
 
@@ -73,7 +74,7 @@ def ros2(settings: Settings, name: str, scope: str, days: int, destination: Path
 
 
 def override(folder: str, listen: str) -> str:
-    """The environment variable with which rmw_zenoh connects by the certificate in this folder."""
+    """Return the environment variable with which rmw_zenoh connects by the certificate in this folder."""
     values = {
         "connect/endpoints": [f"tls/ADDRESS:{listen.rpartition(':')[2]}"],
         "transport/link/tls": {
@@ -84,8 +85,8 @@ def override(folder: str, listen: str) -> str:
             "verify_name_on_connect": False,
         },
     }
-    said = ";".join(f"{key}={json.dumps(value, separators=(',', ':'))}" for key, value in values.items())
-    return f"ZENOH_CONFIG_OVERRIDE='{said}'"
+    text = ";".join(f"{key}={json.dumps(value, separators=(',', ':'))}" for key, value in values.items())
+    return f"ZENOH_CONFIG_OVERRIDE='{text}'"
 
 
 @certificate.command()
@@ -102,10 +103,10 @@ def revoke(settings: Settings, name: str) -> None:
 @with_settings
 def list_certificates(settings: Settings) -> None:
     """List the simulators' certificates in force."""
-    found = Authority(settings).issued()
-    for one in found:
-        echo(f"{one.issued:%Y-%m-%d %H:%M} UTC  {one.name}")
-    if not found:
+    issued = Authority(settings).issued()
+    for entry in issued:
+        echo(f"{entry.issued:%Y-%m-%d %H:%M} UTC  {entry.name}")
+    if not issued:
         echo("There is none: mucat certificate issue NAME makes one.")
 
 

@@ -1,11 +1,11 @@
-"""Channels: what a door's clients subscribe to; each sample is converted and encoded once for all of them."""
+"""Channels, to which a door's clients subscribe; each sample is converted and encoded once for all."""
 
 import base64
 import json
 import struct
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import isfinite
 from typing import Any
 
@@ -13,8 +13,8 @@ from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import TIME, TOPICS, Kind
 from robot_runtime.transport.blocks import Block, read_rows
 from server.features.doors.cbor import encode_cbor
-from server.features.doors.png import encode_png
 from server.features.doors.ros2_messages import ros2_types
+from server.interchange.pose_tracker import Pose, PoseTracker
 
 Value = Record | Mapping[str, Any] | bytes
 """A record of a topic of rows, a document, or a picture's JPEG file."""
@@ -42,7 +42,7 @@ Convert = Callable[[Sample], Fields | None]
 
 @dataclass(frozen=True, slots=True)
 class DoorChannel:
-    """A stream of messages. `sources` are the topics that it is made of.
+    """A stream of messages. `sources` are the topics from which it is made.
 
     `latched`: a new subscriber gets the newest message at once. `lossless`: no message is skipped, and a
     client that falls too far behind is disconnected. `hidden`: it is part of the protocol, and not listed.
@@ -58,7 +58,7 @@ class DoorChannel:
 
     @property
     def of_pictures(self) -> bool:
-        """True where its messages hold a picture."""
+        """True where the channel's messages hold a picture."""
         return any(source in _PICTURES for source in self.sources)
 
 
@@ -82,7 +82,7 @@ class ChannelMessage:
 
     @cached_property
     def cbor(self) -> bytes:
-        """The same in CBOR, with bytes as they are."""
+        """The message in CBOR, with bytes unchanged."""
         return encode_cbor({"op": "publish", "topic": self.channel.name, "msg": self.fields})
 
     @cached_property
@@ -90,14 +90,20 @@ class ChannelMessage:
         """The message as ROS 2 serialises it."""
         return ros2_types().encode(self.channel.type, self.fields)
 
-    @cached_property
-    def png(self) -> str:
-        """The same as a picture, as rosbridge compresses it."""
-        return encode_json({"op": "png", "data": encode_png(self.publication.encode())})
+
+def convert_poses(message: Callable[[int, Pose], Fields]) -> Convert:
+    """Return a channel's conversion to messages of a time and a pose, with a tracker of its own."""
+    tracker = PoseTracker()
+
+    def convert(sample: Sample) -> Fields | None:
+        pose = tracker.see(sample.source, sample.time, partial(getattr, sample.value))
+        return None if pose is None else message(sample.time, pose)
+
+    return convert
 
 
 def encode_json(value: object) -> str:
-    """The JSON of a message, in ASCII, with bytes in base64, and null for NaN and infinity."""
+    """Return the JSON of a message, in ASCII, with bytes in base64, and null for NaN and infinity."""
     try:
         return json.dumps(value, default=_encode_bytes, allow_nan=False, separators=(",", ":"))
     except ValueError:
@@ -105,31 +111,31 @@ def encode_json(value: object) -> str:
 
 
 def finite(value: Any) -> Any:
-    """The value with None for each NaN and infinity, which JSON lacks."""
+    """Return the value with None for each NaN and infinity, which JSON lacks."""
     if isinstance(value, float):
         return value if isfinite(value) else None
     if isinstance(value, Mapping):
-        return {key: finite(one) for key, one in value.items()}
+        return {key: finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [finite(one) for one in value]
+        return [finite(item) for item in value]
     return value
 
 
 def read_samples(block: Block) -> list[tuple[float, Value]]:
-    """The times (s, steady clock) and samples of a block. Raises ValueError where it is damaged."""
+    """Return the times (s, steady clock) and samples of a block. Raise ValueError where it is damaged."""
     if block.topic.kind is Kind.ROWS:
         return [(time, record) for time, record in read_rows(block)]
     try:
         if block.topic.kind is Kind.PICTURE:
             payload = block.payload
             return [(TIME.unpack_from(payload)[0], payload[JPEG_START:])]
-        return [(float(one["time"]), one) for one in json.loads(block.payload)]
+        return [(float(document["time"]), document) for document in json.loads(block.payload)]
     except (LookupError, TypeError, RecursionError, struct.error) as problem:
         raise ValueError(f"a block of {block.topic.name} is damaged: {problem!r}") from problem
 
 
 def sources_of(channels: Iterable[DoorChannel]) -> frozenset[str]:
-    """The topics that these channels are made of."""
+    """Return the topics from which these channels are made."""
     return frozenset(source for channel in channels for source in channel.sources)
 
 

@@ -7,13 +7,13 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.commands import RobotCommand, http_commands
+from robot_runtime.contract.commands import RobotCommand, StopCommand, http_commands
 from robot_runtime.errors import RefusedError
+from server.driving.arbiter import ControlArbiter
+from server.driving.checked_commands import CheckedCommands, explain_unknown_command
+from server.driving.clients import ControlClient
+from server.driving.drive_filter import DriveCommand
 from server.features.doors.ros_axes import stick_axes
-from server.features.lease.arbiter import ControlArbiter
-from server.features.lease.clients import ControlClient
-from server.features.lease.driving import DriveCommand
-from server.features.operate.performing import CheckedCommands, explain_unknown_command
 from server.http.audit import AuditLog
 from server.http.sign_in.access import Access
 from server.http.sign_in.policy import Need, refusal
@@ -23,7 +23,7 @@ from server.platform.store import StoreError
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 COMMANDS: dict[str, type[RobotCommand]] = {cls.policy.name: cls for cls in http_commands()}
-TAKE, RELEASE, STOP = "take_control", "release_control", "stop"
+TAKE, RELEASE, STOP = "take_control", "release_control", StopCommand.policy.name
 REFUSALS = (RefusedError, ApiError, StoreError)
 
 
@@ -56,10 +56,10 @@ class DoorCommands:
         self._under_way: set[asyncio.Task[str]] = set()
 
     async def perform(self, pilot: "DoorPilot", name: str, fields: Mapping[str, Any]) -> str:
-        """Perform a command, or take or release control; returns a sentence for the program.
+        """Perform a command, or take or release control; return a sentence for the program.
 
-        What was begun, and its entry in the audit log, is finished also where the program has left.
-        Raises RefusedError, ApiError, StoreError, each with a text for a person.
+        A command that has begun, and its entry in the audit log, are finished even if the program leaves.
+        Raise RefusedError, ApiError, StoreError, each with a text for a person.
         """
         task = asyncio.create_task(self._perform_recorded(pilot, name, fields))
         self._under_way.add(task)
@@ -68,11 +68,11 @@ class DoorCommands:
         return await asyncio.shield(task)
 
     async def set_parameters(self, pilot: "DoorPilot", values: Mapping[str, Any]) -> str:
-        """Set parameters of the robot by their names. Raises as `perform`."""
+        """Set parameters of the robot by their names. Raise as `perform`."""
         return await self.perform(pilot, "parameters", {"values": dict(values)})
 
     def drive(self, pilot: "DoorPilot", linear: list[float], angular: list[float]) -> None:
-        """Pass a Twist on as the position of the sticks. Raises ForbiddenError, NotInControlError."""
+        """Pass a Twist on as the position of the sticks. Raise ForbiddenError, NotInControlError."""
         try:
             self._require(pilot, Need.CONTROL)
         except ApiError as problem:
@@ -92,7 +92,7 @@ class DoorCommands:
         self._arbiter.drive(pilot.owner, command)
 
     def note_refusal(self, pilot: "DoorPilot", action: str, why: str) -> None:
-        """Write into the audit log that something was refused."""
+        """Write a refusal into the audit log."""
         self._record(pilot, action, why, "refused")
 
     async def _perform_recorded(self, pilot: "DoorPilot", name: str, fields: Mapping[str, Any]) -> str:
@@ -108,7 +108,7 @@ class DoorCommands:
 
     async def _perform(self, pilot: "DoorPilot", name: str, fields: Mapping[str, Any]) -> str:
         if name == STOP:
-            await self._bridge.command(STOP, {})
+            await self._bridge.stop()
             return "The robot is disarmed."
         if name == TAKE:
             over = fields.get("over", False)
@@ -126,7 +126,7 @@ class DoorCommands:
             raise InvalidCallError(explain_unknown_command(name))
         self._require(pilot, cls.policy.need)
         await self._commands.perform(pilot.owner.identity.name, read_command(cls, fields))
-        return f"Done: {cls.policy.words or cls.policy.name}."
+        return f"Done: {cls.policy.label or cls.policy.name}."
 
     def _require(self, pilot: "DoorPilot", need: Need) -> None:
         reason = refusal(self._access.refresh(pilot.owner.identity), need)
@@ -139,12 +139,12 @@ class DoorCommands:
         self, pilot: "DoorPilot", action: str, about: str, outcome: Outcome, operation: str = ""
     ) -> None:
         noticed = {"arm": "commandArm", STOP: "stopRobot"}.get(operation, "")
-        said = f"{self._door} {about}".strip()
-        self._audit.record(pilot.owner.identity, pilot.address, action, said, outcome, noticed)
+        details = f"{self._door} {about}".strip()
+        self._audit.record(pilot.owner.identity, pilot.address, action, details, outcome, noticed)
 
 
 class DoorPilot:
-    """A client of a door as the control lease knows it, with the count of its driving commands."""
+    """A door's client for the control lease, with the count of its driving commands."""
 
     def __init__(self, owner: ControlClient, address: str) -> None:
         self.owner = owner
@@ -155,11 +155,11 @@ class DoorPilot:
 
 
 def read_command(cls: type[RobotCommand], fields: Mapping[str, Any]) -> RobotCommand:
-    """The command with these fields. Raises InvalidCallError, which names the first field that is wrong."""
+    """Return the command with these fields. Raise InvalidCallError, which names the first wrong field."""
     try:
         command: RobotCommand = TypeAdapter(cls).validate_python(dict(fields))
     except ValidationError as problem:
         first = problem.errors(include_url=False)[0]
-        place = ".".join(map(str, first["loc"])) or cls.policy.name
-        raise InvalidCallError(f"{cls.policy.name}: {place}: {first['msg']}.") from problem
+        path = ".".join(map(str, first["loc"])) or cls.policy.name
+        raise InvalidCallError(f"{cls.policy.name}: {path}: {first['msg']}.") from problem
     return command

@@ -38,6 +38,6 @@ class DoorsConfig:
 
     @property
     def ros2_address(self) -> tuple[str, int]:
-        """Returns the host and port of the door for ROS 2."""
+        """The host and port of the door for ROS 2."""
         host, _, port = self.ros2_listen.removeprefix("tls/").rpartition(":")
         return host.strip("[]"), int(port)

@@ -7,11 +7,9 @@ from typing import Any
 
 from server.features.doors.channels import ChannelMessage, DoorChannel, encode_json
 from server.features.doors.commands import REFUSALS, STOP, DoorCommands, DoorPilot
-from server.features.doors.foxglove_channels import CLOCK, PARAMETERS, schema_text
+from server.features.doors.foxglove_channels import CHANGED, CLOCK, schema_text
 from server.features.doors.foxglove_services import SERVICES, advertise_services
-from server.features.doors.graph import Graph, draw_graph, list_changes
 from server.features.doors.house import Door, Doors
-from server.features.doors.layouts import ASSETS, read_asset
 from server.features.doors.ros_channels import type_name
 from server.features.doors.session import (
     NAME_MAX,
@@ -31,10 +29,8 @@ CAPABILITIES = (
     "parametersSubscribe",
     "services",
     "time",
-    "connectionGraph",
-    "assets",
 )
-MESSAGE, TIME, SERVICE_ANSWER, ASSET = range(1, 5)
+MESSAGE, TIME, SERVICE_ANSWER = range(1, 4)
 PUBLISHED, SERVICE_CALL = 1, 2
 ERROR = 2
 """The status level."""
@@ -43,11 +39,10 @@ _MESSAGE = Struct("<BIQ")
 _TIME = Struct("<BQ")
 _PUBLISHED = Struct("<BI")
 _SERVICE = Struct("<BIII")
-_ASSET = Struct("<BIBI")
 
 
 class FoxgloveSession(DoorSession):
-    """Acts on a program's messages; `doors` passes the samples on to it."""
+    """A program's session; `doors` passes the samples on to it."""
 
     def __init__(
         self, client: DoorClient, pilot: DoorPilot, doors: Doors, door: Door, commands: DoorCommands
@@ -57,7 +52,7 @@ class FoxgloveSession(DoorSession):
         self._doors = doors
         self._door = door
         self._commands = commands
-        channels = [one for one in door.publisher.channels.values() if not one.hidden]
+        channels = [channel for channel in door.publisher.channels.values() if not channel.hidden]
         self._channels: dict[int, DoorChannel] = dict(enumerate(channels, 1))
         self._published: dict[int, str] = {}
         """The topics that the program publishes, by its own numbers."""
@@ -66,7 +61,6 @@ class FoxgloveSession(DoorSession):
         self._watched: set[str] = set()
         """The parameters whose changes it wants to know."""
         self._known: dict[str, Any] = {}
-        self._graph: Graph | None = None
         self._operations: dict[str, Callable[[dict[str, Any]], None]] = {
             "subscribe": self._subscribe,
             "unsubscribe": self._unsubscribe,
@@ -76,19 +70,12 @@ class FoxgloveSession(DoorSession):
             "setParameters": self._set_parameters,
             "subscribeParameterUpdates": self._watch_parameters,
             "unsubscribeParameterUpdates": self._forget_parameters,
-            "subscribeConnectionGraph": lambda _: self._watch_graph(),
-            "unsubscribeConnectionGraph": lambda _: self._forget_graph(),
-            "fetchAsset": self._fetch_asset,
         }
 
     async def run(self, receive: Callable[[], Awaitable[str | bytes | None]]) -> None:
-        """Greet the program, and act on its messages until it leaves. Raises EvictedError."""
+        """Greet the program, and act on its messages until it leaves. Raise EvictedError."""
         self._greet()
-        self._doors.changed.append(self._send_graph)
-        try:
-            await self.listen(receive, self.act, lambda text: self._say(ERROR, text))
-        finally:
-            self._doors.changed.remove(self._send_graph)
+        await self.listen(receive, self.act, lambda text: self._say(ERROR, text))
 
     def _greet(self) -> None:
         self._answer(
@@ -116,25 +103,25 @@ class FoxgloveSession(DoorSession):
         self._answer(op="advertiseServices", services=advertise_services())
         # Now, and not the sample's time: where time goes back, programs empty their charts and logs.
         self._follow(CLOCK, lambda _: [_TIME.pack(TIME, self._doors.utc_ns())])
-        self._follow(PARAMETERS, lambda _: self._parameter_changes())
+        self._follow(CHANGED, lambda _: self._parameter_changes())
 
     def _follow(self, name: str, form: Callable[[ChannelMessage], list[bytes | str]]) -> None:
-        """Send something with each message of a hidden channel."""
+        """Send data with each message of a hidden channel."""
         subscription = DoorSubscription(self._door.publisher.channels[name], form)
         self.client.subscriptions[name] = subscription
         self._door.publisher.subscribe(self.client, subscription)
 
     def act(self, message: str | bytes) -> None:
-        """Act on a message. Raises UnusableMessageError."""
+        """Act on a message. Raise UnusableMessageError."""
         if isinstance(message, bytes):
             self._act_on_bytes(message)
             return
-        said = mapping_of(read_json(message, "A message of text"), "A message")
-        name = said.get("op")
+        request = mapping_of(read_json(message, "A message of text"), "A message")
+        name = request.get("op")
         operation = self._operations.get(name) if isinstance(name, str) else None
         if operation is None:
             raise UnusableMessageError(f"Unknown op {json.dumps(name)[:80]}.")
-        operation(said)
+        operation(request)
 
     def _act_on_bytes(self, data: bytes) -> None:
         try:
@@ -150,10 +137,10 @@ class FoxgloveSession(DoorSession):
         except error as problem:
             raise UnusableMessageError("A binary message is cut off.") from problem
 
-    def _subscribe(self, said: dict[str, Any]) -> None:
+    def _subscribe(self, request: dict[str, Any]) -> None:
         try:
-            for one in _list(said, "subscriptions"):
-                self._subscribe_one(mapping_of(one, "A subscription"))
+            for entry in _list(request, "subscriptions"):
+                self._subscribe_one(mapping_of(entry, "A subscription"))
         finally:
             # Those before one that is refused hold.
             self._doors.count_audience()
@@ -171,18 +158,18 @@ class FoxgloveSession(DoorSession):
         self._door.publisher.greet(self.client, subscription, self._doors.newest())
         self._door.publisher.subscribe(self.client, subscription)
 
-    def _unsubscribe(self, said: dict[str, Any]) -> None:
+    def _unsubscribe(self, request: dict[str, Any]) -> None:
         try:
-            for number in _list(said, "subscriptionIds"):
+            for number in _list(request, "subscriptionIds"):
                 subscription = self.client.subscriptions.pop(_whole(number), None)
                 if subscription is not None:
                     self._door.publisher.unsubscribe(subscription)
         finally:
             self._doors.count_audience()
 
-    def _advertise(self, said: dict[str, Any]) -> None:
-        for one in _list(said, "channels"):
-            asked = mapping_of(one, "A channel")
+    def _advertise(self, request: dict[str, Any]) -> None:
+        for entry in _list(request, "channels"):
+            asked = mapping_of(entry, "A channel")
             number, topic = _number(asked, "id"), text_of(asked.get("topic"), "topic")
             if topic not in TAKEN_IN:
                 self._unusable[number] = topic
@@ -194,8 +181,8 @@ class FoxgloveSession(DoorSession):
             self._published[number] = topic
         self._note_published()
 
-    def _unadvertise(self, said: dict[str, Any]) -> None:
-        for number in _list(said, "channelIds"):
+    def _unadvertise(self, request: dict[str, Any]) -> None:
+        for number in _list(request, "channelIds"):
             self._published.pop(_whole(number), None)
             self._unusable.pop(number, None)
         self._note_published()
@@ -205,8 +192,6 @@ class FoxgloveSession(DoorSession):
             self._published.clear()
             self._unusable.clear()
             raise UnusableMessageError(f"A program may advertise {SUBSCRIPTIONS_MAX} channels.")
-        self._door.published[self.client] = frozenset(self._published.values())
-        self._doors.note_change()
 
     def _take_published(self, number: int, payload: bytes) -> None:
         topic = self._published.get(number)
@@ -257,21 +242,23 @@ class FoxgloveSession(DoorSession):
     def _fail_call(self, service: int, call: int, why: str) -> None:
         self._answer(op="serviceCallFailure", serviceId=service, callId=call, message=why)
 
-    def _get_parameters(self, said: dict[str, Any]) -> None:
-        self._send_parameters(_names(said), said.get("id"))
+    def _get_parameters(self, request: dict[str, Any]) -> None:
+        self._send_parameters(_names(request), request.get("id"))
 
-    def _set_parameters(self, said: dict[str, Any]) -> None:
-        given = [mapping_of(one, "A parameter") for one in _list(said, "parameters")]
-        values = {text_of(one.get("name"), "name"): _typed(one.get("value")) for one in given}
+    def _set_parameters(self, request: dict[str, Any]) -> None:
+        given = [mapping_of(entry, "A parameter") for entry in _list(request, "parameters")]
+        values = {
+            text_of(parameter.get("name"), "name"): _typed(parameter.get("value")) for parameter in given
+        }
         if not values:
             raise UnusableMessageError("setParameters needs one parameter at least.")
-        self.begin(self._perform_set(values, said.get("id")))
+        self.begin(self._perform_set(values, request.get("id")))
 
     async def _perform_set(self, values: dict[str, Any], identifier: object) -> None:
-        whole = {name for name, one in self._doors.parameters().items() if one["type"] == "whole"}
+        whole = {name for name, parameter in self._doors.parameters().items() if parameter["type"] == "whole"}
         values = {
-            name: int(one) if name in whole and isinstance(one, float) and one.is_integer() else one
-            for name, one in values.items()
+            name: int(value) if name in whole and isinstance(value, float) and value.is_integer() else value
+            for name, value in values.items()
         }
         try:
             await self._commands.set_parameters(self._pilot, values)
@@ -282,56 +269,32 @@ class FoxgloveSession(DoorSession):
         if identifier is not None:
             self._send_parameters([*values], identifier)
 
-    def _watch_parameters(self, said: dict[str, Any]) -> None:
+    def _watch_parameters(self, request: dict[str, Any]) -> None:
         current = self._doors.parameters()
         # The names of the robot's parameters alone: nobody fills the memory with others.
-        added = (set(_names(said)) & current.keys()) - self._watched
+        added = (set(_names(request)) & current.keys()) - self._watched
         self._watched |= added
         # What the program has not been sent yet of the others stays so.
         self._known |= {name: current[name]["value"] for name in added}
 
-    def _forget_parameters(self, said: dict[str, Any]) -> None:
-        self._watched -= set(_names(said))
+    def _forget_parameters(self, request: dict[str, Any]) -> None:
+        self._watched -= set(_names(request))
 
     def _parameter_changes(self) -> list[bytes | str]:
         current = self._doors.parameters()
         changed = [
-            _parameter(one)
-            for name, one in current.items()
-            if name in self._watched and self._known.get(name) != one["value"]
+            _parameter(parameter)
+            for name, parameter in current.items()
+            if name in self._watched and self._known.get(name) != parameter["value"]
         ]
-        self._known = {name: one["value"] for name, one in current.items()}
+        self._known = {name: parameter["value"] for name, parameter in current.items()}
         return [encode_json({"op": "parameterValues", "parameters": changed})] if changed else []
 
     def _send_parameters(self, names: list[str], identifier: object) -> None:
-        """The values of these parameters; of all where none is named."""
+        """Send the values of these parameters; of all where none is named."""
         current = self._doors.parameters()
-        listed = [_parameter(one) for name, one in current.items() if not names or name in names]
+        listed = [_parameter(parameter) for name, parameter in current.items() if not names or name in names]
         self._answer(op="parameterValues", parameters=listed, **_with(identifier))
-
-    def _watch_graph(self) -> None:
-        self._graph = Graph()
-        self._send_graph()
-
-    def _forget_graph(self) -> None:
-        self._graph = None
-
-    def _send_graph(self) -> None:
-        if self._graph is None:
-            return
-        graph = draw_graph(self._door)
-        changes = list_changes(self._graph, graph)
-        self._graph = graph
-        if any(changes.values()):
-            self._answer(op="connectionGraphUpdate", **changes)
-
-    def _fetch_asset(self, said: dict[str, Any]) -> None:
-        uri, number = text_of(said.get("uri"), "uri"), _number(said, "requestId")
-        if uri in ASSETS:
-            self.client.answer(_ASSET.pack(ASSET, number, 0, 0) + read_asset(uri))
-            return
-        why = f"There is no asset {uri}; there are {', '.join(ASSETS)}.".encode()
-        self.client.answer(_ASSET.pack(ASSET, number, 1, len(why)) + why)
 
     def _say(self, level: int, text: str, identifier: str = "") -> None:
         self._answer(op="status", level=level, message=text, **_with(identifier or None))
@@ -341,17 +304,17 @@ class FoxgloveSession(DoorSession):
 
 
 def choose_subprotocol(offered: list[str]) -> str | None:
-    """The subprotocol to speak; None where none that is offered is known."""
-    return next((one for one in offered if one in SUBPROTOCOLS), None)
+    """Return the first known subprotocol among the offered ones; None without one."""
+    return next((protocol for protocol in offered if protocol in SUBPROTOCOLS), None)
 
 
 def _form(number: int) -> Callable[[ChannelMessage], list[bytes | str]]:
     return lambda message: [_MESSAGE.pack(MESSAGE, number, message.time) + message.json.encode()]
 
 
-def _parameter(one: Mapping[str, Any]) -> dict[str, Any]:
-    number = one["type"] == "number"
-    return {"name": one["name"], "value": one["value"], **({"type": "float64"} if number else {})}
+def _parameter(parameter: Mapping[str, Any]) -> dict[str, Any]:
+    number = parameter["type"] == "number"
+    return {"name": parameter["name"], "value": parameter["value"], **({"type": "float64"} if number else {})}
 
 
 def _typed(value: Any) -> Any:
@@ -364,19 +327,19 @@ def _with(identifier: object) -> dict[str, str]:
     return {"id": identifier[:NAME_MAX]} if isinstance(identifier, str) else {}
 
 
-def _list(said: dict[str, Any], name: str) -> list[Any]:
-    value = said.get(name)
+def _list(request: dict[str, Any], name: str) -> list[Any]:
+    value = request.get(name)
     if not isinstance(value, list):
         raise UnusableMessageError(f"{name} must be a list.")
     return value
 
 
-def _names(said: dict[str, Any]) -> list[str]:
-    return [text_of(one, "A parameter's name") for one in _list(said, "parameterNames")]
+def _names(request: dict[str, Any]) -> list[str]:
+    return [text_of(entry, "A parameter's name") for entry in _list(request, "parameterNames")]
 
 
-def _number(said: dict[str, Any], name: str) -> int:
-    return _whole(said.get(name), name)
+def _number(request: dict[str, Any], name: str) -> int:
+    return _whole(request.get(name), name)
 
 
 def _whole(value: object, name: str = "id") -> int:

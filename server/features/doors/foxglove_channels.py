@@ -9,21 +9,39 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
+from robot_runtime.contract.chunks import MICRO, describe_topics
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import TOPICS, Kind
-from server.features.doors.channels import HEALTH, Convert, DoorChannel, Fields, Sample
-from server.features.doors.pose_tracker import SOURCES, PoseTracker
+from robot_runtime.contract.topics import (
+    BALANCED,
+    CONTROL,
+    MASK,
+    OBSERVER,
+    PARAMETERS,
+    PICTURE,
+    TOPICS,
+    Kind,
+)
+from server.features.doors.channels import HEALTH, DoorChannel, Fields, Sample, convert_poses
 from server.features.doors.ros_channels import DIAGNOSTICS, LINES, diagnostics
-from server.features.exports.mcap_file import DEBUG_LEVEL_OFFSET, INFO, SEVERITIES
-from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
-from server.features.exports.plain_schema import without_null
-from server.features.exports.pose import BODY, LEVEL, WORLD, stamp
-from server.features.exports.values import MICRO
-from server.features.sessions.chunks import describe_topics
+from server.interchange.foxglove_messages import (
+    body_transform,
+    compressed_image,
+    log_line,
+    pose_in_frame,
+    world_transform,
+)
+from server.interchange.mcap_schemas import WELL_KNOWN, topic_schema
+from server.interchange.plain_schema import without_null
+from server.interchange.pose_tracker import POSE_TOPICS
 
-CLOCK, PARAMETERS = "clock", "changed parameters"
+CLOCK, CHANGED = "clock", "changed parameters"
 """Hidden channels: the moments at which the time is sent, and changes of parameters."""
-PICTURES = {"picture": "/camera", "observer": "/observer", "mask": "/mask", "balanced": "/balanced"}
+PICTURES = {
+    PICTURE.name: "/camera",
+    OBSERVER.name: "/observer",
+    MASK.name: "/mask",
+    BALANCED.name: "/balanced",
+}
 _TEXT = {"type": "string"}
 _WHOLE = {"type": "integer"}
 _PAIR = {"type": "object", "properties": {"key": _TEXT, "value": _TEXT}}
@@ -49,7 +67,7 @@ DIAGNOSTICS_SCHEMA: dict[str, Any] = {
 
 
 def foxglove_channels(simulated: bool) -> list[DoorChannel]:
-    """All channels of the Foxglove door; a real robot has no true motion."""
+    """Return all channels of the Foxglove door; a real robot has no true motion."""
     own = [
         DoorChannel(
             f"/{topic.name}",
@@ -63,23 +81,23 @@ def foxglove_channels(simulated: bool) -> list[DoorChannel]:
         if topic.kind is not Kind.PICTURE and (simulated or topic.sender != "simulator")
     ]
     pictures = [
-        DoorChannel(name, "foxglove.CompressedImage", (one,), _picture) for one, name in PICTURES.items()
+        DoorChannel(name, "foxglove.CompressedImage", (topic,), _picture) for topic, name in PICTURES.items()
     ]
     return [
         *own,
         *pictures,
         DoorChannel("/log", "foxglove.Log", LINES, _log, lossless=True),
-        DoorChannel("/tf", "foxglove.FrameTransform", SOURCES, _transforms()),
+        DoorChannel("/tf", "foxglove.FrameTransform", POSE_TOPICS, convert_poses(body_transform)),
         DoorChannel("/tf_static", "foxglove.FrameTransform", (HEALTH,), _level, latched=True),
-        DoorChannel("/pose", "foxglove.PoseInFrame", SOURCES, _poses()),
+        DoorChannel("/pose", "foxglove.PoseInFrame", POSE_TOPICS, convert_poses(pose_in_frame)),
         DoorChannel("/diagnostics", DIAGNOSTICS, (HEALTH,), diagnostics, latched=True),
-        DoorChannel(CLOCK, "", ("control", HEALTH), _tick, hidden=True),
-        DoorChannel(PARAMETERS, "", ("parameters",), _tick, hidden=True),
+        DoorChannel(CLOCK, "", (CONTROL.name, HEALTH), _tick, hidden=True),
+        DoorChannel(CHANGED, "", (PARAMETERS.name,), _tick, hidden=True),
     ]
 
 
 def schema_text(channel: DoorChannel) -> str:
-    """The JSON Schema of a channel's messages."""
+    """Return the JSON Schema of a channel's messages."""
     if channel.type == DIAGNOSTICS:
         return json.dumps(DIAGNOSTICS_SCHEMA)
     if channel.type in WELL_KNOWN:
@@ -113,67 +131,19 @@ def _document(sample: Sample) -> Fields:
 
 
 def _tick(_: Sample) -> Fields:
-    """Nothing: that it comes is enough."""
+    """Return no samples: the channel only triggers an update."""
     return {}
 
 
 def _picture(sample: Sample) -> Fields:
-    return {"timestamp": stamp(sample.time), "frame_id": "camera", "data": sample.value, "format": "jpeg"}
+    assert isinstance(sample.value, bytes)
+    return compressed_image(sample.time, sample.value)
 
 
 def _log(sample: Sample) -> Fields:
-    value = sample.value
-    assert isinstance(value, Mapping)
-    if sample.source == "debug":
-        level = int(value["level"]) + DEBUG_LEVEL_OFFSET
-    else:
-        level = SEVERITIES.get(str(value.get("severity", "")), INFO)
-    return {
-        "timestamp": stamp(sample.time),
-        "level": level,
-        "message": value["text"],
-        "name": value.get("kind", sample.source),
-        "file": sample.source,
-        "line": 0,
-    }
-
-
-def _transforms() -> Convert:
-    tracker = PoseTracker()
-
-    def convert(sample: Sample) -> Fields | None:
-        found = tracker.see(sample)
-        return None if found is None else _transform(sample.time, LEVEL, BODY, *map(list, found))
-
-    return convert
-
-
-def _poses() -> Convert:
-    tracker = PoseTracker()
-
-    def convert(sample: Sample) -> Fields | None:
-        found = tracker.see(sample)
-        if found is None:
-            return None
-        position, turn = found
-        pose = {
-            "position": dict(zip("xyz", position, strict=True)),
-            "orientation": dict(zip("wxyz", turn, strict=True)),
-        }
-        return {"timestamp": stamp(sample.time), "frame_id": LEVEL, "pose": pose}
-
-    return convert
+    assert isinstance(sample.value, Mapping)
+    return log_line(sample.time, sample.source, sample.value)
 
 
 def _level(sample: Sample) -> Fields:
-    return _transform(sample.time, WORLD, LEVEL, [0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0])
-
-
-def _transform(time: int, parent: str, child: str, place: list[float], turn: list[float]) -> Fields:
-    return {
-        "timestamp": stamp(time),
-        "parent_frame_id": parent,
-        "child_frame_id": child,
-        "translation": dict(zip("xyz", place, strict=True)),
-        "rotation": dict(zip("wxyz", turn, strict=True)),
-    }
+    return world_transform(sample.time)

@@ -7,7 +7,7 @@ from pydantic import TypeAdapter
 
 from server.features.doors.commands import COMMANDS, TAKE
 from server.features.doors.rosapi import NODE, command_services
-from server.features.exports.plain_schema import simplify
+from server.interchange.plain_schema import simplify
 
 _TYPES = command_services()
 SERVICES: dict[int, str] = dict(enumerate((name.removeprefix(f"{NODE}/") for name in _TYPES), 1))
@@ -18,7 +18,7 @@ ANSWER = {"type": "object", "properties": {"success": {"type": "boolean"}, "mess
 
 
 def advertise_services() -> list[dict[str, Any]]:
-    """The services as `advertiseServices` lists them."""
+    """Return the services as `advertiseServices` lists them."""
     return [
         {
             "id": number,
@@ -38,7 +38,7 @@ def _request_schema(name: str) -> dict[str, Any]:
 
 
 def _definitions(of: str, name: str, schema: dict[str, Any]) -> dict[str, Any]:
-    """The schema, and the same as programs read it that are older than the protocol's `request`."""
+    """Return the schema, also in the form for programs older than the protocol's `request`."""
     text = json.dumps(schema)
     whole = {
         "encoding": "json",

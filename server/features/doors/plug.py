@@ -3,13 +3,13 @@
 from typing import Any, ClassVar
 
 from robot_runtime.clock import Clock
+from server.driving.arbiter import ControlArbiter
+from server.driving.changes import Changes
+from server.driving.checked_commands import CheckedCommands
 from server.feature import Plug
 from server.features.doors.commands import DoorCommands
 from server.features.doors.house import Doors
 from server.features.doors.ros2_door import Ros2Door
-from server.features.lease.arbiter import ControlArbiter
-from server.features.operate.performing import CheckedCommands
-from server.features.parameters.changes import Changes
 from server.http.audit import AuditLog
 from server.http.sign_in.access import Access, SocketClosers
 from server.platform.settings import Settings
@@ -29,13 +29,13 @@ def make_ros2(
     commands: CheckedCommands,
     bridge: Bridge,
 ) -> Ros2Door:
-    """The door for ROS 2."""
+    """Return the door for ROS 2."""
     performed = DoorCommands("/ros2", clock, access, commands, bridge, arbiter, audit)
     return Ros2Door(settings, access, arbiter, audit, doors, performed)
 
 
 class DoorsPlug(Plug):
-    """Passes everything that the pages see on to the doors."""
+    """The plug that passes the pages' data on to the doors."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_ros2,)
 

@@ -1,4 +1,4 @@
-"""A door's publisher: converts samples for the channels that somebody subscribes to."""
+"""A door's publisher: it converts samples for the subscribed channels."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable
@@ -11,7 +11,7 @@ Evict = Callable[[DoorClient, EvictedError], None]
 
 
 class Publisher:
-    """The channels of one door, and who subscribes to them."""
+    """The channels of one door, and their subscribers."""
 
     def __init__(self, channels: Iterable[DoorChannel], evict: Evict) -> None:
         self.channels = {channel.name: channel for channel in channels}
@@ -34,16 +34,18 @@ class Publisher:
             self._subscribed.pop(subscription.channel.name, None)
 
     def sources(self) -> frozenset[str]:
-        """The topics that somebody's channels are made of."""
+        """Return the topics of the subscribed channels."""
         return sources_of(self.channels[name] for name in self._subscribed)
 
     def listens(self, source: str) -> bool:
-        """True where a sample of this source goes to somebody."""
+        """Return True where a sample of this source has a subscriber."""
         return any(channel.name in self._subscribed for channel in self._by_source.get(source, ()))
 
     def publish(self, source: str, samples: Iterable[Sample]) -> None:
         """Convert samples of one topic, and queue the messages for the subscribers."""
-        channels = [one for one in self._by_source.get(source, ()) if one.name in self._subscribed]
+        channels = [
+            channel for channel in self._by_source.get(source, ()) if channel.name in self._subscribed
+        ]
         for sample in samples:
             for channel in channels:
                 fields = channel.convert(sample)

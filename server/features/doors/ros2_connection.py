@@ -20,7 +20,7 @@ MakeNode = Callable[[Ros2Session], tuple[Ros2Node, Path]]
 
 
 class Ros2Connection:
-    """Serves a program that was admitted, from its Zenoh session's beginning to its end."""
+    """The connection of an admitted program, from its Zenoh session's beginning to its end."""
 
     def __init__(
         self,
@@ -38,14 +38,14 @@ class Ros2Connection:
         self._publish: Callable[[bytes], None] = lambda _: None
 
     async def send(self, data: bytes | str) -> None:
-        """Publish a message, as soon as the program has read enough of what was sent before."""
+        """Publish a message, as soon as the program has read enough of the earlier ones."""
         assert isinstance(data, bytes)
         await self._writer.drain()
         self._publish(data)
         await asyncio.sleep(0)  # lets the bytes pass on
 
     async def listen(self, client: DoorClient, make_node: MakeNode) -> None:
-        """Serve the program until it leaves. Raises OSError."""
+        """Serve the program until it leaves. Raise OSError."""
         client.owner = self._pilot.owner.number
         session = Ros2Session(client, self._pilot, self._doors, self._commands, self._writer.drain)
         async with _open_node(make_node, session) as (node, path):
@@ -53,13 +53,13 @@ class Ros2Connection:
             reader, writer = await asyncio.open_unix_connection(path)
             pump_in = _pump_in(self._reader, writer, client.budget.open_stream())
             parts = (pump_in, _pump(reader, self._writer), session.run(node))
-            work = [asyncio.create_task(one) for one in parts]
+            work = [asyncio.create_task(part) for part in parts]
             try:
                 await asyncio.wait(work, return_when=asyncio.FIRST_COMPLETED)
             finally:
                 self._publish = lambda _: None
-                for one in work:
-                    one.cancel()
+                for task in work:
+                    task.cancel()
                 await asyncio.gather(*work, return_exceptions=True)
                 writer.close()
 
@@ -77,8 +77,8 @@ async def _open_node(make: MakeNode, session: Ros2Session) -> AsyncIterator[tupl
 async def _close(opening: asyncio.Future[tuple[Ros2Node, Path]]) -> None:
     node, path = await opening
     await asyncio.to_thread(node.close)
-    for left in (path, path.with_name(f"{path.name}.lock")):
-        left.unlink(missing_ok=True)
+    for file in (path, path.with_name(f"{path.name}.lock")):
+        file.unlink(missing_ok=True)
 
 
 async def _complete(work: Coroutine[Any, Any, None]) -> None:
@@ -99,7 +99,7 @@ async def _complete(work: Coroutine[Any, Any, None]) -> None:
 
 
 async def _pump(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-    """Pass bytes on until the end, at the speed at which they are read."""
+    """Pass on bytes until the end, at the reader's speed."""
     with suppress(OSError):
         while data := await reader.read(CHUNK_BYTES):
             writer.write(data)
@@ -107,7 +107,7 @@ async def _pump(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> N
 
 
 async def _pump_in(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, allowance: Allowance) -> None:
-    """The same from a program, with a limit of bytes per second."""
+    """Pass on a program's bytes until the end, with a limit of bytes per second."""
     with suppress(OSError):
         while data := await reader.read(CHUNK_BYTES):
             writer.write(data)

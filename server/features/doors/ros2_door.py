@@ -14,22 +14,21 @@ from collections.abc import Coroutine
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY
+from server.driving.arbiter import ControlArbiter
 from server.features.doors.commands import DoorCommands, DoorPilot
 from server.features.doors.config import DoorsConfig
 from server.features.doors.house import Doors
+from server.features.doors.ros2_certificates import check_ros2
 from server.features.doors.ros2_connection import CHUNK_BYTES, Ros2Connection
-from server.features.doors.ros2_messages import NO_ROSBAGS, has_rosbags
 from server.features.doors.ros2_names import Endpoint, Ros2Names
 from server.features.doors.ros2_node import Ros2Node
 from server.features.doors.ros2_session import Ros2Session, ros2_endpoints
-from server.features.lease.arbiter import ControlArbiter
 from server.http.audit import AuditLog
 from server.http.listener import open_socket
 from server.http.sign_in.access import Access
 from server.http.sign_in.devices import SignInEndedError
 from server.http.sign_in.identity import Identity
-from server.platform.settings import Settings, SetupError
+from server.platform.settings import Settings
 from server.stream.hub import EvictedError
 from server.stream.socket_ends import end_after
 
@@ -41,33 +40,8 @@ STRANGERS_MAX = 10
 ACCEPT_PAUSE = 1.0
 
 
-def check_ros2(settings: Settings) -> ssl.SSLContext:
-    """Returns the settings of TLS for this door. Raises SetupError where it cannot be opened."""
-    if not has_rosbags():
-        raise SetupError(NO_ROSBAGS)
-    folder = settings.data.zenoh
-    missing = [name for name in (AUTHORITY, CERTIFICATE, KEY) if not (folder / name).is_file()]
-    if missing:
-        raise SetupError(
-            f"doors.ros2 needs the certificates of the robot's Zenoh, and {folder} lacks "
-            f"{', '.join(missing)}. Restore the folder from a copy; or remove it, and issue all "
-            "certificates again."
-        )
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    try:
-        context.load_cert_chain(folder / CERTIFICATE, folder / KEY)
-        context.load_verify_locations(folder / AUTHORITY)
-    except (OSError, ssl.SSLError) as problem:
-        raise SetupError(
-            f"doors.ros2 needs the certificates of the robot's Zenoh, and those in {folder} cannot be used: "
-            f"{problem}."
-        ) from problem
-    context.verify_mode = ssl.CERT_REQUIRED
-    return context
-
-
 class Ros2Door:
-    """Listens while the server runs, where `doors.ros2` is set."""
+    """The listener of ROS 2 programs while the server runs, where `doors.ros2` is set."""
 
     def __init__(
         self,
@@ -93,7 +67,7 @@ class Ros2Door:
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def open(self) -> None:
-        """Listen, if the door is open. Raises SetupError."""
+        """Listen, if the door is open. Raise SetupError."""
         if not self._door.open:
             return
         context = check_ros2(self._settings)
@@ -133,7 +107,7 @@ class Ros2Door:
                 await asyncio.sleep(0)
 
     async def _serve(self, connection: socket.socket, address: str, context: ssl.SSLContext) -> None:
-        """Serve a connection that is counted as a stranger's."""
+        """Serve a connection, counted as a stranger's."""
         try:
             reader, writer = await _shake_hands(connection, context)
         except (OSError, TimeoutError):  # without a certificate of this robot

@@ -19,7 +19,7 @@ Fields = Mapping[str, Any]
 
 
 def has_rosbags() -> bool:
-    """True where the package rosbags is installed."""
+    """Return True where the package rosbags is installed."""
     return find_spec("rosbags") is not None
 
 
@@ -39,23 +39,19 @@ class Ros2Types:
         self._store = get_typestore(Stores.ROS2_JAZZY)
         constants, event = self._store.fielddefs[EVENT_INFO]
         # ROS 2 makes a uint8 of a char before it hashes the type; rosbags hashes the char.
-        self._store.fielddefs[EVENT_INFO] = constants, [(name, _without_char(one)) for name, one in event]
+        self._store.fielddefs[EVENT_INFO] = constants, [(name, _without_char(kind)) for name, kind in event]
         self._store.register(_trigger(Nodetype))
 
-    def knows(self, kind: str) -> bool:
-        """True for a type of ROS 2; the robot's own types are none."""
-        return kind in self._store.fielddefs
-
     def hash(self, kind: str) -> str:
-        """The hash of a type's definition (RIHS01, REP 2011)."""
+        """Return the hash of a type's definition (RIHS01, REP 2011)."""
         return self._store.hash_rihs01(kind)
 
     def encode(self, kind: str, fields: Fields) -> bytes:
-        """The CDR of a message with these fields, little-endian."""
+        """Return the CDR of a message with these fields, little-endian."""
         return bytes(self._store.serialize_cdr(self._build(kind, fields), kind, little_endian=True))
 
     def decode(self, kind: str, data: bytes) -> dict[str, Any]:
-        """The fields of a message. Raises ValueError where the bytes are none of this type."""
+        """Return the fields of a message. Raise ValueError where the bytes are not of this type."""
         from rosbags.serde import SerdeError
 
         if data[:2] not in (b"\0\0", b"\0\1"):
@@ -84,7 +80,7 @@ class Ros2Types:
             return self._build(inner, value)
         (element, name), _ = inner
         if element == self._kinds.NAME:
-            return [self._build(name, one) for one in value]
+            return [self._build(name, item) for item in value]
         if name[0] == "string":
             return list(value)
         if isinstance(value, bytes):
@@ -94,7 +90,7 @@ class Ros2Types:
 
 @cache
 def ros2_types() -> Ros2Types:
-    """The types, loaded once; this takes a while. Raises ImportError without rosbags."""
+    """Return the types, loaded once, slowly. Raise ImportError without rosbags."""
     return Ros2Types()
 
 
@@ -104,12 +100,12 @@ PLACEHOLDER = "structure_needs_at_least_one_member"
 
 def _without_char(definition: Any) -> Any:
     if isinstance(definition, tuple):
-        return tuple(_without_char(one) for one in definition)
+        return tuple(_without_char(item) for item in definition)
     return "uint8" if definition == "char" else definition
 
 
 def _trigger(kinds: Any) -> dict[str, Any]:
-    """The definitions of std_srvs/srv/Trigger, which rosbags lacks, and of the types that it implies."""
+    """Return the definitions of std_srvs/srv/Trigger, which rosbags lacks, and of its implied types."""
     request, response, event = (f"{TRIGGER}_{part}" for part in ("Request", "Response", "Event"))
 
     def of(name: str) -> Any:

@@ -27,19 +27,19 @@ Kind = Literal["NN", "MP", "MS", "SS"]
 
 @dataclass(frozen=True, slots=True)
 class Attachment:
-    """Travels with a message or a call; the answer to a call repeats its sequence number and `gid`."""
+    """The attachment of a message or a call; the answer to a call repeats its sequence number and `gid`."""
 
     sequence: int
     time: int
     gid: bytes
 
     def to_bytes(self) -> bytes:
-        """The attachment as it travels."""
+        """Return the attachment's bytes."""
         return ATTACHMENT.pack(self.sequence, self.time, GID_BYTES, self.gid)
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "Attachment":
-        """Reads an attachment. Raises UnusableMessageError."""
+        """Read an attachment. Raise UnusableMessageError."""
         try:
             sequence, time, size, gid = ATTACHMENT.unpack(data)
         except error:
@@ -86,24 +86,24 @@ class Ros2Names:
     namespace: str
 
     def full_name(self, name: str) -> str:
-        """The name that other nodes use."""
+        """Return the name that other nodes use."""
         return self.namespace + name
 
     def key(self, endpoint: Endpoint) -> str:
-        """The key of a topic's messages, or of a service's calls."""
+        """Return the key of a topic's messages, or of a service's calls."""
         name = self.full_name(endpoint.name).strip("/")
         return f"{self.domain}/{name}/{endpoint.wire_type}/{endpoint.hash}"
 
     def any_type(self, endpoint: Endpoint) -> str:
-        """The same with a type and hash of any kind."""
+        """Return the key for any type and hash."""
         return f"{self.domain}/{self.full_name(endpoint.name).strip('/')}/*/*"
 
     def node_token(self, session: str) -> str:
-        """The liveliness token of the node."""
+        """Return the liveliness token of the node."""
         return self._token(session, NODE_NUMBER, "NN")
 
     def token(self, session: str, number: int, endpoint: Endpoint) -> str:
-        """The liveliness token of a topic or service, the node's entity of this number."""
+        """Return the liveliness token of a topic or service, the node's entity of this number."""
         name = _mangle(self.full_name(endpoint.name))
         own = f"{name}/{endpoint.wire_type}/{endpoint.hash}/{endpoint.quality}"
         return f"{self._token(session, number, endpoint.kind)}/{own}"
@@ -114,7 +114,7 @@ class Ros2Names:
 
 
 def gid_of(token: str) -> bytes:
-    """An identifier of the sender with this token."""
+    """Return an identifier of the sender with this token."""
     return sha256(token.encode()).digest()[:GID_BYTES]
 
 

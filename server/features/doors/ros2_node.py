@@ -48,7 +48,7 @@ class Incoming:
 
 
 class Ros2Node:
-    """Declares the robot's topics and services, publishes, and passes on what comes in.
+    """The robot's topics and services, which publishes messages and passes on received ones.
 
     `receive` and `match` (somebody subscribes to a topic, or nobody does) are called by Zenoh's threads.
     Only `socket` leads into the session: there is nothing of the robot's own Zenoh in it.
@@ -79,13 +79,13 @@ class Ros2Node:
             raise OSError(f"Zenoh refuses a declaration: {describe_problem(problem)}") from problem
 
     def publish(self, name: str, payload: bytes) -> None:
-        """Send a message of this topic; one that finds Zenoh's queue full is dropped."""
+        """Send a message of this topic; it is dropped where Zenoh's queue is full."""
         self._publishers[name].put(payload)
 
     def answer(self, call: Incoming, payload: bytes) -> None:
         """Answer a call.
 
-        Raises UnusableMessageError without the attachment that it repeats, OSError after the session's end.
+        Raise UnusableMessageError without the attachment that it repeats, OSError after the session's end.
         """
         asked = Attachment.from_bytes(call.attachment)
         assert call.query is not None
@@ -171,7 +171,7 @@ class _Ros2Publisher:
 
 
 def read_payload(data: "zenoh.ZBytes | None") -> bytes | None:
-    """The bytes; none where nothing came, None where it is too much."""
+    """Return the bytes, which may be empty; None where there are too many."""
     if data is None:
         return b""
     return data.to_bytes() if len(data) <= PAYLOAD_MAX else None

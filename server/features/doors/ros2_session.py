@@ -1,4 +1,4 @@
-"""The session of one connected program of ROS 2: what it subscribes to, publishes and calls."""
+"""The session of one connected program of ROS 2: its subscriptions, messages and calls."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterable
@@ -28,7 +28,7 @@ FIELDS: dict[str, dict[str, Any]] = {
 
 
 def ros2_endpoints(channels: Iterable[DoorChannel]) -> list[Endpoint]:
-    """The topics and services of the robot's node."""
+    """Return the topics and services of the robot's node."""
     types = ros2_types()
 
     def published(channel: DoorChannel) -> Endpoint:
@@ -43,9 +43,10 @@ def ros2_endpoints(channels: Iterable[DoorChannel]) -> list[Endpoint]:
 
 
 class Ros2Session(DoorSession):
-    """Acts on what a program sends; `doors` passes the samples on to it.
+    """A program's session; `doors` passes the samples on to it.
 
-    What is not valid is refused and counted, and disconnects nobody: behind a router there are other nodes.
+    Invalid messages are refused and counted, but disconnect no program: a router may have other nodes behind
+    it.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class Ros2Session(DoorSession):
         self._channels = [*self._door.publisher.channels]
 
     async def run(self, node: Ros2Node) -> None:
-        """Act on what comes in, for ever."""
+        """Act on received messages and calls, for ever."""
         try:
             while True:
                 self.act(await self._waiting.get(), node)
@@ -87,15 +88,15 @@ class Ros2Session(DoorSession):
             self.client.refused += 1
 
     def receive(self, incoming: Incoming) -> None:
-        """Take in a message from any thread."""
+        """Queue a message, from any thread."""
         self._loop.call_soon_threadsafe(self._queue, incoming)
 
     def match(self, endpoint: Endpoint, subscribed: bool) -> None:
-        """Note from any thread whether somebody subscribes to a topic."""
+        """Store a topic's state of subscription, from any thread."""
         self._loop.call_soon_threadsafe(self._note_match, endpoint.name, subscribed)
 
     def unpack(self, data: bytes) -> tuple[str, bytes]:
-        """The topic and the CDR of what is queued for the program."""
+        """Return the topic and the CDR of a message queued for the program."""
         return self._channels[int.from_bytes(data[:2], "little")], data[2:]
 
     def _queue(self, incoming: Incoming) -> None:

@@ -14,10 +14,25 @@ from robot_runtime.contract.packets import (
     StatusFlag,
 )
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import TOPICS, Kind
-from server.features.doors.channels import HEALTH, DoorChannel, Fields, Sample
-from server.features.doors.pose_tracker import SOURCES, PoseTracker
+from robot_runtime.contract.topics import (
+    BALANCED,
+    BEACON,
+    CONTROL,
+    DEBUG,
+    DEPTH,
+    IMU,
+    MASK,
+    MOTOR,
+    OBSERVER,
+    PICTURE,
+    STATUS,
+    TOPICS,
+    TRUTH,
+    Kind,
+)
+from server.features.doors.channels import HEALTH, DoorChannel, Fields, Sample, convert_poses
 from server.features.doors.ros_axes import BASE, ODOM, quaternion, vector
+from server.interchange.pose_tracker import POSE_TOPICS, Pose
 
 BILLION = 1_000_000_000
 FIN_NAMES = ["fin_front_right", "fin_back_right", "fin_back_left", "fin_front_left"]
@@ -26,48 +41,39 @@ UNKNOWN_COVARIANCE = [0.0] * 9
 LOG_LEVELS = {"info": 20, "caution": 30, "alarm": 40}
 DEBUG_LEVELS = (10, 20, 30, 40)
 HEALTH_LEVELS = {"ok": 0, "starting": 1, "absent": 0, "failed": 2, "unknown": 3}
-PICTURES = {"picture": "camera", "observer": "observer", "mask": "camera", "balanced": "camera"}
+PICTURES = {
+    PICTURE.name: "camera",
+    OBSERVER.name: "observer",
+    MASK.name: "camera",
+    BALANCED.name: "camera",
+}
 
 
 def stamp(time: int) -> dict[str, int]:
-    """A time (ns, UTC) as builtin_interfaces/Time."""
+    """Return a time (ns, UTC) as builtin_interfaces/Time."""
     seconds, rest = divmod(time, BILLION)
     return {"sec": seconds, "nanosec": rest}
 
 
 def header(time: int, frame: str = BASE) -> Fields:
-    """A std_msgs/Header."""
+    """Return a std_msgs/Header."""
     return {"stamp": stamp(time), "frame_id": frame}
 
 
 def type_name(named: str) -> str:
-    """A type's name as ROS 2 writes it; ROS 1 leaves `msg` out."""
+    """Return a type's name as ROS 2 writes it; ROS 1 leaves `msg` out."""
     package, _, rest = named.partition("/")
     return named if "/" in rest else f"{package}/msg/{rest}"
 
 
-class _Poses:
-    """The channels that need the position beside the attitude; each has one of its own."""
+def _transform(time: int, pose: Pose) -> Fields:
+    turned = {"translation": vector(pose.position), "rotation": quaternion(pose.attitude)}
+    return {"transforms": [{"header": header(time, ODOM), "child_frame_id": BASE, "transform": turned}]}
 
-    def __init__(self) -> None:
-        self._tracker = PoseTracker()
 
-    def transform(self, sample: Sample) -> Fields | None:
-        """A tf2_msgs/TFMessage."""
-        found = self._tracker.see(sample)
-        if found is None:
-            return None
-        turned = {"translation": vector(found[0]), "rotation": quaternion(found[1])}
-        head = header(sample.time, ODOM)
-        return {"transforms": [{"header": head, "child_frame_id": BASE, "transform": turned}]}
-
-    def pose(self, sample: Sample) -> Fields | None:
-        """A geometry_msgs/PoseStamped."""
-        found = self._tracker.see(sample)
-        if found is None:
-            return None
-        pose = {"position": vector(found[0]), "orientation": quaternion(found[1])}
-        return {"header": header(sample.time, ODOM), "pose": pose}
+def _pose(time: int, pose: Pose) -> Fields:
+    placed = {"position": vector(pose.position), "orientation": quaternion(pose.attitude)}
+    return {"header": header(time, ODOM), "pose": placed}
 
 
 def _imu(sample: Sample) -> Fields:
@@ -103,7 +109,7 @@ def _temperature(sample: Sample) -> Fields:
 
 
 def _battery(sample: Sample) -> Fields:
-    """Not measured is NaN, as sensor_msgs/BatteryState asks for."""
+    """Return a sensor_msgs/BatteryState, in which a value that is not measured is NaN."""
     value = sample.value
     assert isinstance(value, Status)
     low = bool(value.flags & StatusFlag.BATTERY_LOW)
@@ -180,7 +186,7 @@ def _picture(sample: Sample) -> Fields:
 def _log(sample: Sample) -> Fields:
     value = sample.value
     assert isinstance(value, Mapping)
-    if sample.source == "debug":
+    if sample.source == DEBUG.name:
         level = DEBUG_LEVELS[max(0, min(3, int(value["level"])))]
     else:
         level = LOG_LEVELS.get(str(value.get("severity", "")), LOG_LEVELS["info"])
@@ -196,26 +202,26 @@ def _log(sample: Sample) -> Fields:
 
 
 def diagnostics(sample: Sample) -> Fields:
-    """A diagnostic_msgs/DiagnosticArray of the health of the robot's parts."""
+    """Return a diagnostic_msgs/DiagnosticArray of the health of the robot's parts."""
     value = sample.value
     assert isinstance(value, Mapping)
     return {
         "header": header(sample.time, ""),
         "status": [
             {
-                "level": HEALTH_LEVELS.get(one["state"], 3),
-                "name": f"mucat: {one['name']}",
-                "message": one["text"],
+                "level": HEALTH_LEVELS.get(part["state"], 3),
+                "name": f"mucat: {part['name']}",
+                "message": part["text"],
                 "hardware_id": "mucat",
-                "values": [{"key": "state", "value": one["state"]}],
+                "values": [{"key": "state", "value": part["state"]}],
             }
-            for one in value["parts"]
+            for part in value["parts"]
         ],
     }
 
 
 def _own(sample: Sample) -> Fields:
-    """A topic of ours as it is: our axes and names, the stamp beside it."""
+    """Return a topic of ours unchanged: our axes and names, with a stamp."""
     value = sample.value
     assert not isinstance(value, bytes)
     values = _fields(value) if isinstance(value, Record) else dict(value)
@@ -233,20 +239,20 @@ LINES = tuple(topic.name for topic in TOPICS if topic.lines)
 
 
 def standard_channels() -> list[DoorChannel]:
-    """The channels whose types are ROS's own."""
+    """Return the channels whose types are ROS's own."""
     standard = [
-        DoorChannel("/imu/data", "sensor_msgs/msg/Imu", ("imu",), _imu),
-        DoorChannel("/depth", "std_msgs/msg/Float64", ("depth",), _depth),
-        DoorChannel("/pressure", "sensor_msgs/msg/FluidPressure", ("depth",), _pressure),
-        DoorChannel("/temperature", "sensor_msgs/msg/Temperature", ("depth",), _temperature),
-        DoorChannel("/battery", "sensor_msgs/msg/BatteryState", ("status",), _battery),
-        DoorChannel("/joint_states", "sensor_msgs/msg/JointState", ("motor",), _joints),
-        DoorChannel("/beacon/right", "std_msgs/msg/Bool", ("beacon",), _beacon_right),
-        DoorChannel("/beacon/left", "std_msgs/msg/Bool", ("beacon",), _beacon_left),
-        DoorChannel("/depth/set_point", "std_msgs/msg/Float64", ("control",), _set_point),
-        DoorChannel("/pose", "geometry_msgs/msg/PoseStamped", SOURCES, _Poses().pose),
-        DoorChannel("/tf", "tf2_msgs/msg/TFMessage", SOURCES, _Poses().transform),
-        DoorChannel("/truth/odometry", "nav_msgs/msg/Odometry", ("truth",), _odometry),
+        DoorChannel("/imu/data", "sensor_msgs/msg/Imu", (IMU.name,), _imu),
+        DoorChannel("/depth", "std_msgs/msg/Float64", (DEPTH.name,), _depth),
+        DoorChannel("/pressure", "sensor_msgs/msg/FluidPressure", (DEPTH.name,), _pressure),
+        DoorChannel("/temperature", "sensor_msgs/msg/Temperature", (DEPTH.name,), _temperature),
+        DoorChannel("/battery", "sensor_msgs/msg/BatteryState", (STATUS.name,), _battery),
+        DoorChannel("/joint_states", "sensor_msgs/msg/JointState", (MOTOR.name,), _joints),
+        DoorChannel("/beacon/right", "std_msgs/msg/Bool", (BEACON.name,), _beacon_right),
+        DoorChannel("/beacon/left", "std_msgs/msg/Bool", (BEACON.name,), _beacon_left),
+        DoorChannel("/depth/set_point", "std_msgs/msg/Float64", (CONTROL.name,), _set_point),
+        DoorChannel("/pose", "geometry_msgs/msg/PoseStamped", POSE_TOPICS, convert_poses(_pose)),
+        DoorChannel("/tf", "tf2_msgs/msg/TFMessage", POSE_TOPICS, convert_poses(_transform)),
+        DoorChannel("/truth/odometry", "nav_msgs/msg/Odometry", (TRUTH.name,), _odometry),
         DoorChannel("/rosout", "rcl_interfaces/msg/Log", LINES, _log, lossless=True),
         DoorChannel(
             "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", (HEALTH,), diagnostics, latched=True
@@ -262,7 +268,7 @@ def standard_channels() -> list[DoorChannel]:
 
 
 def ros_channels() -> list[DoorChannel]:
-    """All channels of the rosbridge door."""
+    """Return all channels of the rosbridge door."""
     own = [
         DoorChannel(
             f"/mucat/{topic.name}",
@@ -279,4 +285,4 @@ def ros_channels() -> list[DoorChannel]:
 
 
 def _picture_name(topic: str) -> str:
-    return {"picture": "camera/image", "observer": "observer/image"}.get(topic, f"camera/{topic}")
+    return {PICTURE.name: "camera/image", OBSERVER.name: "observer/image"}.get(topic, f"camera/{topic}")

@@ -1,11 +1,11 @@
-"""rosbridge v2 for one program: operations in JSON, answered in JSON, CBOR or PNG as it asks."""
+"""rosbridge v2 for one program: operations in JSON, answered in JSON or CBOR as it asks."""
 
 import json
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-from server.features.doors.channels import ChannelMessage, encode_json
-from server.features.doors.commands import REFUSALS, DoorCommands, DoorPilot
+from server.features.doors.channels import encode_json
+from server.features.doors.commands import REFUSALS, STOP, DoorCommands, DoorPilot
 from server.features.doors.house import Door, Doors
 from server.features.doors.ros_channels import type_name
 from server.features.doors.rosapi import RosApi, name_of
@@ -28,8 +28,7 @@ from server.features.doors.twist import CMD_VEL, STOP_TOPIC, TAKEN_IN, read_twis
 
 LEVELS = ("info", "warning", "error", "none")
 COMPRESSIONS = ("none", "png", "cbor")
-FRAGMENT_MIN = 4096
-"""Smaller ones would make hundreds of messages of each picture."""
+"""The compressions that a program may name; `png` is accepted and sends none."""
 THROTTLE_MAX = 3_600_000
 """ms."""
 REFUSED_OPS = {
@@ -50,7 +49,7 @@ REFUSED_OPS = {
 
 
 class RosbridgeSession(DoorSession):
-    """Acts on a program's operations; `doors` passes the samples on to it."""
+    """A program's session of operations; `doors` passes the samples on to it."""
 
     def __init__(
         self, client: DoorClient, pilot: DoorPilot, doors: Doors, door: Door, commands: DoorCommands
@@ -64,7 +63,6 @@ class RosbridgeSession(DoorSession):
         self._level = "error"
         self._asked: dict[str, dict[str, dict[str, Any]]] = {}
         """What is asked of each topic, by the subscription's id: several of one program share a stream."""
-        self._fragments = 0
         self._advertised: dict[str, str] = {}
         self._operations: dict[str, Callable[[dict[str, Any]], None]] = {
             "subscribe": self._subscribe,
@@ -78,11 +76,11 @@ class RosbridgeSession(DoorSession):
         }
 
     async def run(self, receive: Callable[[], Awaitable[str | bytes | None]]) -> None:
-        """Act on operations until the program leaves. Raises EvictedError."""
+        """Act on operations until the program leaves. Raise EvictedError."""
         await self.listen(receive, self.act, lambda text: self._say("error", text))
 
     def act(self, text: str | bytes) -> None:
-        """Act on an operation. Raises UnusableMessageError."""
+        """Act on an operation. Raise UnusableMessageError."""
         message = read_operation(text)
         name = message.get("op")
         operation = self._operations.get(name) if isinstance(name, str) else None
@@ -100,7 +98,6 @@ class RosbridgeSession(DoorSession):
         asked = {
             "period": number_of(message.get("throttle_rate", 0), "throttle_rate", THROTTLE_MAX) / 1000,
             "length": int(number_of(message.get("queue_length", 0), "queue_length", float(2**53))),
-            "fragment": _fragment_size(message.get("fragment_size")),
             "compression": message.get("compression", "none"),
         }
         if asked["compression"] not in COMPRESSIONS:
@@ -125,44 +122,17 @@ class RosbridgeSession(DoorSession):
             self._settle(subscription)
 
     def _settle(self, subscription: DoorSubscription) -> None:
-        """Make one stream of all that is asked of a topic: the fastest, longest, and least in size."""
+        """Merge all requests of a topic into one stream: the fastest and longest."""
         asked = self._asked[subscription.channel.name].values()
-        subscription.period = min(one["period"] for one in asked)
-        lengths = [one["length"] for one in asked]
+        subscription.period = min(request["period"] for request in asked)
+        lengths = [request["length"] for request in asked]
         least = 1 if subscription.period else QUEUE_DEFAULT
         subscription.length = min(QUEUE_MAX, max(lengths)) or least
-        sizes = [one["fragment"] for one in asked if one["fragment"]]
-        fragment = min(sizes) if len(sizes) == len(asked) else 0
-        compressions = {one["compression"] for one in asked}
-        # CBOR and PNG only where each of them asked for it: the others could not read them.
-        compression = compressions.pop() if len(compressions) == 1 else "none"
-        subscription.form = self._form(compression, fragment)
-
-    def _form(self, compression: str, fragment: int) -> Callable[[ChannelMessage], list[bytes | str]]:
-        if compression == "cbor":
-            return lambda message: [message.cbor]
-
-        def form(message: ChannelMessage) -> list[bytes | str]:
-            text = message.png if compression == "png" else message.publication
-            return self._split(text, fragment) if 0 < fragment < len(text) else [text]
-
-        return form
-
-    def _split(self, text: str, size: int) -> list[bytes | str]:
-        self._fragments += 1
-        pieces = [text[at : at + size] for at in range(0, len(text), size)]
-        return [
-            encode_json(
-                {
-                    "op": "fragment",
-                    "id": str(self._fragments),
-                    "data": one,
-                    "num": place,
-                    "total": len(pieces),
-                }
-            )
-            for place, one in enumerate(pieces)
-        ]
+        # CBOR only where each of them asked for it: the others could not read it.
+        in_cbor = all(request["compression"] == "cbor" for request in asked)
+        subscription.form = (
+            (lambda message: [message.cbor]) if in_cbor else (lambda message: [message.publication])
+        )
 
     def _unsubscribe(self, message: dict[str, Any]) -> None:
         name = name_of(message, "topic")
@@ -188,13 +158,11 @@ class RosbridgeSession(DoorSession):
             raise UnusableMessageError(f"Programs may publish {', '.join(TAKEN_IN)}, and not {name}.")
         _check_type(message.get("type"), name, TAKEN_IN[name])
         self._advertised[name] = TAKEN_IN[name]
-        self._door.published[self.client] = frozenset(self._advertised)
-        self._doors.note_change()
+        self.client.published = frozenset(self._advertised)
 
     def _unadvertise(self, message: dict[str, Any]) -> None:
         self._advertised.pop(name_of(message, "topic"), None)
-        self._door.published[self.client] = frozenset(self._advertised)
-        self._doors.note_change()
+        self.client.published = frozenset(self._advertised)
 
     def _publish(self, message: dict[str, Any]) -> None:
         name = name_of(message, "topic")
@@ -211,7 +179,7 @@ class RosbridgeSession(DoorSession):
 
     async def _stop(self) -> None:
         try:
-            await self._commands.perform(self._pilot, "stop", {})
+            await self._commands.perform(self._pilot, STOP, {})
         except REFUSALS as problem:
             self._say("error", f"STOP has not been confirmed: {problem}")
 
@@ -220,35 +188,28 @@ class RosbridgeSession(DoorSession):
         given = message.get("id")
         identifier = given if isinstance(given, str | int) else None
         if name == STOP_TOPIC:
-            self.begin(self._answer_call(name, {}, identifier, 0), always=True)  # whatever the message is
+            self.begin(self._answer_call(name, {}, identifier), always=True)  # whatever the message is
             return
         try:
             _identifier(message)
             arguments = self._api.arguments(name, message.get("args", {}))
-            fragment = _fragment_size(message.get("fragment_size"))
-            self.begin(self._answer_call(name, arguments, identifier, fragment))
+            self.begin(self._answer_call(name, arguments, identifier))
         except UnusableMessageError as problem:
             self._respond(name, identifier, str(problem), False)
 
-    async def _answer_call(
-        self, name: str, arguments: dict[str, Any], identifier: object, fragment: int
-    ) -> None:
+    async def _answer_call(self, name: str, arguments: dict[str, Any], identifier: object) -> None:
         try:
             values = await self._api.call(name, arguments)
         except (UnusableMessageError, *REFUSALS) as problem:
             self._respond(name, identifier, str(problem), False)
         else:
-            self._respond(name, identifier, values, True, fragment)
+            self._respond(name, identifier, values, True)
 
-    def _respond(
-        self, name: str, identifier: object, values: object, result: bool, fragment: int = 0
-    ) -> None:
+    def _respond(self, name: str, identifier: object, values: object, result: bool) -> None:
         answer = {"op": "service_response", "service": name, "values": values, "result": result}
         if identifier is not None:
             answer["id"] = identifier
-        text = encode_json(answer)
-        for piece in self._split(text, fragment) if 0 < fragment < len(text) else [text]:
-            self.client.answer(piece)
+        self.client.answer(encode_json(answer))
 
     def _set_level(self, message: dict[str, Any]) -> None:
         if message.get("level") not in LEVELS:
@@ -265,7 +226,7 @@ class RosbridgeSession(DoorSession):
 
 
 def read_operation(text: str | bytes) -> dict[str, Any]:
-    """An operation of rosbridge. Raises UnusableMessageError."""
+    """Return an operation of rosbridge. Raise UnusableMessageError."""
     if isinstance(text, bytes):
         raise UnusableMessageError("Operations must be text: JSON.")
     return mapping_of(read_json(text, "An operation"), "An operation")
@@ -283,12 +244,3 @@ def _identifier(message: dict[str, Any]) -> str:
     if isinstance(value, bool) or not isinstance(value, str | int) or len(str(value)) > 200:
         raise UnusableMessageError("id must be a text of up to 200 characters.")
     return str(value)
-
-
-def _fragment_size(value: object) -> int:
-    if value is None:
-        return 0
-    size = int(number_of(value, "fragment_size", float(2**53)))
-    if size < FRAGMENT_MIN:
-        raise UnusableMessageError(f"fragment_size must be {FRAGMENT_MIN} at least.")
-    return size

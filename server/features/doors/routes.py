@@ -1,41 +1,16 @@
-"""The doors' sockets, and the list of who is connected."""
+"""The doors' sockets, and the list of their clients."""
 
-import asyncio
-from typing import Any, Literal
+from fastapi import WebSocket
 
-from fastapi import WebSocket, WebSocketDisconnect
-
-from robot_runtime.clock import Clock
-from server.features.doors.commands import DoorCommands, DoorPilot
+from server.driving.arbiter import ControlArbiter
 from server.features.doors.config import DoorsConfig
-from server.features.doors.foxglove import SUBPROTOCOLS, FoxgloveSession, choose_subprotocol
+from server.features.doors.foxglove import choose_subprotocol
 from server.features.doors.house import Door, Doors
-from server.features.doors.rosbridge import RosbridgeSession, read_operation
 from server.features.doors.schemas import DoorClientDetails, DoorDetails
-from server.features.doors.session import UnusableMessageError
-from server.features.doors.subscriptions import DoorClient
-from server.features.lease.arbiter import ControlArbiter
-from server.features.operate.performing import CheckedCommands
-from server.http.audit import AuditLog, address_of
-from server.http.dependencies import Provided, find_service
+from server.features.doors.visit import DoorVisit
+from server.http.dependencies import Provided
 from server.http.operations import Operations
-from server.http.security import POLICY_VIOLATION
-from server.http.sign_in.access import Access
-from server.http.sign_in.devices import SignInEndedError
-from server.http.sign_in.identity import IDENTITY, SIGN_IN_ENDED, Identity
 from server.http.sign_in.policy import Need
-from server.stream.bridge import Bridge
-from server.stream.hub import EvictedError
-from server.stream.socket_ends import close_with_reason, end_after
-
-SIGN_IN_SECONDS = 5.0
-"""A program that shows no token in its address sends it first of all, within this time."""
-STRANGERS_MAX = 10
-"""Connections that have shown no token yet."""
-NO_TOKEN = (
-    "Sign in: add ?token= with a token of `mucat access token` to the address, or send it first "
-    "(op “auth”, mac)."
-)
 
 router = Operations(prefix="/api")
 ROSBRIDGE = Operations(admits_itself=True)
@@ -44,118 +19,24 @@ FOXGLOVE = Operations(admits_itself=True)
 
 @router.operation("GET /doors", Need.VIEWER, tags=["doors"])
 async def list_doors(doors: Provided[Doors], arbiter: Provided[ControlArbiter]) -> list[DoorDetails]:
-    """Return the doors for other programs, and who is connected."""
+    """Return the doors for other programs, and their clients."""
     return [_describe(door, arbiter) for door in doors.doors.values()]
 
 
 @ROSBRIDGE.socket("/rosbridge")
 async def open_rosbridge(socket: WebSocket) -> None:
     """Serve a program that speaks rosbridge v2 until it leaves."""
-    await _Visit(socket, "rosbridge").serve(None)
+    await DoorVisit(socket, "rosbridge").serve(None)
 
 
 @FOXGLOVE.socket("/foxglove")
 async def open_foxglove(socket: WebSocket) -> None:
     """Serve a program that speaks Foxglove's protocol until it leaves."""
-    await _Visit(socket, "foxglove").serve(choose_subprotocol(socket.scope["subprotocols"]))
-
-
-class _Visit:
-    """One connection of a program, from its sign-in to its end."""
-
-    def __init__(self, socket: WebSocket, name: Literal["rosbridge", "foxglove"]) -> None:
-        self._socket = socket
-        self._doors = find_service(socket, Doors)
-        self._door = self._doors.doors[name]
-        self._access = find_service(socket, Access)
-        self._arbiter = find_service(socket, ControlArbiter)
-        self._audit = find_service(socket, AuditLog)
-        self._address = address_of(socket.scope)
-        self._commands = DoorCommands(
-            f"/{name}",
-            find_service(socket, Clock),  # type: ignore[type-abstract]
-            self._access,
-            find_service(socket, CheckedCommands),
-            find_service(socket, Bridge),
-            self._arbiter,
-            self._audit,
-        )
-
-    async def serve(self, subprotocol: str | None) -> None:
-        """Accept the connection, and serve it until its end."""
-        await self._socket.accept(subprotocol=subprotocol)
-        try:
-            if self._door.name == "foxglove" and subprotocol is None:
-                raise EvictedError(f"Offer a subprotocol: {' or '.join(SUBPROTOCOLS)}.", POLICY_VIOLATION)
-            caller = self._socket.scope.get(IDENTITY) or await self._sign_in()
-            # Access may have been revoked while the socket opened; from here on the door dismisses it.
-            if (changed := self._access.explain_change(caller)) is not None:
-                raise EvictedError(changed, POLICY_VIOLATION)
-            self._audit.record(caller, self._address, "Open a door", f"/{self._door.name}", "done")
-            with self._arbiter.page(caller) as owner:
-                pilot = DoorPilot(owner, self._address)
-                serving = self._doors.serve(
-                    self._door, self._send, caller, self._address, lambda client: self._listen(client, pilot)
-                )
-                await end_after(self._access.devices.count_seconds(caller.device), serving)
-        except WebSocketDisconnect:
-            return
-        except EvictedError as reason:
-            await close_with_reason(self._socket, reason)
-
-    async def _listen(self, client: DoorClient, pilot: DoorPilot) -> None:
-        client.owner = pilot.owner.number
-        kind = RosbridgeSession if self._door.name == "rosbridge" else FoxgloveSession
-        await kind(client, pilot, self._doors, self._door, self._commands).run(self._receive)
-
-    async def _sign_in(self) -> Identity:
-        """The identity by the first message. Raises EvictedError."""
-        ended = self._socket.scope.get(SIGN_IN_ENDED)
-        if ended is None and self._door.name == "rosbridge" and self._door.strangers < STRANGERS_MAX:
-            self._door.strangers += 1
-            try:
-                async with asyncio.timeout(SIGN_IN_SECONDS):
-                    return self._identify(await self._receive())
-            except TimeoutError:
-                ended = None
-            finally:
-                self._door.strangers -= 1
-        raise self._refused(ended or NO_TOKEN)
-
-    def _identify(self, message: str | bytes | None) -> Identity:
-        if message is None:
-            raise WebSocketDisconnect
-        try:
-            said = read_operation(message)
-            token = said.get("mac") if said.get("op") == "auth" else None
-            identity = self._access.identify_token(token) if isinstance(token, str) else None
-        except (UnusableMessageError, SignInEndedError) as problem:
-            raise self._refused(str(problem)) from problem
-        if identity is None:
-            raise self._refused(NO_TOKEN)
-        return identity
-
-    def _refused(self, why: str) -> EvictedError:
-        self._audit.record(None, self._address, "Open a door", f"/{self._door.name}", "refused")
-        return EvictedError(why[:120], POLICY_VIOLATION)
-
-    async def _receive(self) -> str | bytes | None:
-        """The next message; None where the program has left."""
-        message = await self._socket.receive()
-        if message["type"] == "websocket.disconnect":
-            return None
-        text: str | None = message.get("text")
-        data: bytes = message.get("bytes") or b""
-        return data if text is None else text
-
-    async def _send(self, data: bytes | str) -> None:
-        message: dict[str, Any] = {"type": "websocket.send"}
-        message["bytes" if isinstance(data, bytes) else "text"] = data
-        await self._socket.send(message)
+    await DoorVisit(socket, "foxglove").serve(choose_subprotocol(socket.scope["subprotocols"]))
 
 
 def open_routes(doors: DoorsConfig) -> list[Operations]:
-    """The sockets of the doors that are open."""
+    """Return the sockets of the doors that are open."""
     given = {ROSBRIDGE: doors.rosbridge, FOXGLOVE: doors.foxglove}
     return [door for door, is_open in given.items() if is_open]
 
@@ -173,7 +54,11 @@ def _describe(door: Door, arbiter: ControlArbiter) -> DoorDetails:
                 address=client.address,
                 since=client.since,
                 topics=sorted(
-                    {one.channel.name for one in client.subscriptions.values() if not one.channel.hidden}
+                    {
+                        subscription.channel.name
+                        for subscription in client.subscriptions.values()
+                        if not subscription.channel.hidden
+                    }
                 ),
                 sent=client.sent,
                 refused=client.refused,

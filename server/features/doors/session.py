@@ -1,6 +1,6 @@
-"""The base of the doors' sessions: the limits of a program that sends nonsense or too much.
+"""The base of the doors' sessions: the limits of a program that sends invalid or too many messages.
 
-What never waits for its turn, STOP, has a limit too: one under way and one behind it. Until one of them is
+STOP, which never waits for its turn, has a limit, too: one under way and one behind it. Until one of them is
 answered, nothing more is read, so that the program itself waits.
 """
 
@@ -32,7 +32,7 @@ class BusyError(UnusableMessageError):
 
 
 class DoorSession:
-    """One program at a door. Subclasses act on what it sends."""
+    """One program at a door. Subclasses act on its messages."""
 
     def __init__(self, client: DoorClient) -> None:
         self.client = client
@@ -45,7 +45,7 @@ class DoorSession:
         act: Callable[[Any], None],
         complain: Callable[[str], None],
     ) -> None:
-        """Act on each message until there is None. Raises EvictedError where all are invalid."""
+        """Act on each message until there is None. Raise EvictedError where all are invalid."""
         invalid = 0
         try:
             while (message := await receive()) is not None:
@@ -71,7 +71,7 @@ class DoorSession:
         await self.client.budget.wait_to_receive()
 
     def cancel_calls(self) -> list[asyncio.Task[None]]:
-        """Give up waiting for the answers of calls, but for STOP's; returns them."""
+        """Cancel the pending calls except STOP; return them."""
         calls = [*self._calls]
         for call in calls:
             call.cancel()
@@ -80,7 +80,7 @@ class DoorSession:
     def begin(self, call: Coroutine[Any, Any, None], *, always: bool = False) -> None:
         """Work on a call beside the messages that follow it.
 
-        STOP always may, and goes on where the program leaves before it is answered. `pause` is its limit.
+        STOP always may, and goes on even if the program leaves before the answer. `pause` is its limit.
         """
         if not always and len(self._calls) >= CALLS_MAX:
             call.close()
@@ -92,7 +92,7 @@ class DoorSession:
 
 
 def read_json(text: str | bytes, name: str) -> Any:
-    """The value of a text of JSON. Raises UnusableMessageError."""
+    """Return the value of a text of JSON. Raise UnusableMessageError."""
     try:
         return text_input.read_json(text)
     except TextError as problem:
@@ -100,21 +100,21 @@ def read_json(text: str | bytes, name: str) -> Any:
 
 
 def text_of(value: object, name: str) -> str:
-    """A text of a message. Raises UnusableMessageError."""
+    """Return a text of a message. Raise UnusableMessageError."""
     if not isinstance(value, str) or not 0 < len(value) <= NAME_MAX:
         raise UnusableMessageError(f"{name} must be a text of up to {NAME_MAX} characters.")
     return value
 
 
 def mapping_of(value: object, name: str) -> dict[str, Any]:
-    """An object of a message. Raises UnusableMessageError."""
+    """Return an object of a message. Raise UnusableMessageError."""
     if not isinstance(value, dict):
         raise UnusableMessageError(f"{name} must be an object.")
     return value
 
 
 def number_of(value: object, name: str, most: float) -> float:
-    """A number from 0 to `most`. Raises UnusableMessageError."""
+    """Return a number from 0 to `most`. Raise UnusableMessageError."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= most:
         raise UnusableMessageError(f"{name} must be a number from 0 to {most:g}.")
     return value

@@ -1,4 +1,4 @@
-"""The clients of a door: their subscriptions, what waits for them, and its sending.
+"""The clients of a door: their subscriptions, their queues, and the sending.
 
 Samples wait in a short queue for each subscription, whose oldest are dropped; answers and lines of text are
 never skipped, and a client with too many of them unread is disconnected, as one that reads nothing.
@@ -40,7 +40,7 @@ class DoorSubscription:
         self.length = QUEUE_DEFAULT
 
     def offer(self, message: ChannelMessage) -> bool:
-        """Queue a message; False where nothing may be skipped and too much waits."""
+        """Queue a message; return False where the channel is lossless and too much waits."""
         self.queue.append(message)
         if self.channel.lossless:
             return len(self.queue) <= LINES_MAX
@@ -75,6 +75,8 @@ class DoorClient:
         """Messages and calls of a ROS 2 program that were refused."""
         self.dismissal: EvictedError | None = None
         self.subscriptions: dict[int | str, DoorSubscription] = {}
+        self.published = frozenset[str]()
+        """The topics that it publishes, at rosbridge."""
         self._send_raw = send
         self._clock = clock
         self._answers: deque[bytes | str] = deque()
@@ -82,7 +84,7 @@ class DoorClient:
         self._wake = asyncio.Event()
 
     def answer(self, message: bytes | str) -> None:
-        """Queue an answer. Raises EvictedError where too many wait unread."""
+        """Queue an answer. Raise EvictedError where too many wait unread."""
         if len(self._answers) >= ANSWERS_MAX or self._answers_size > ANSWERS_BYTES_MAX:
             raise EvictedError("Too many answers wait unread.")
         self._answers.append(message)
@@ -90,13 +92,13 @@ class DoorClient:
         self._wake.set()
 
     def offer(self, subscription: DoorSubscription, message: ChannelMessage) -> None:
-        """Queue a message of a subscription. Raises EvictedError where too much waits unread."""
+        """Queue a message of a subscription. Raise EvictedError where too much waits unread."""
         if not subscription.offer(message):
             raise EvictedError("The connection fell too far behind; the rest is in the recording, if any.")
         self._wake.set()
 
     async def run(self) -> None:
-        """Send what waits, for ever. Raises EvictedError where nothing is read for too long."""
+        """Send queued messages, for ever. Raise EvictedError where nothing is read for too long."""
         while True:
             self._wake.clear()
             pause = await self._send_waiting()
@@ -105,22 +107,22 @@ class DoorClient:
                     await self._wake.wait()
 
     async def _send_waiting(self) -> float | None:
-        """Send a message of each subscription that is due; returns the s until the next is, if any."""
+        """Send a message of each due subscription; return the s until the next one is due, if any."""
         await self._send_answers()
         pause: float | None = None
-        for one in [*self.subscriptions.values()]:
-            if not one.queue:
+        for subscription in [*self.subscriptions.values()]:
+            if not subscription.queue:
                 continue
-            left = one.due - self._clock.now()
-            if left <= 0:
-                one.due = max(one.due, self._clock.now()) + one.period
-                for message in one.form(one.queue.popleft()):
+            remaining = subscription.due - self._clock.now()
+            if remaining <= 0:
+                subscription.due = max(subscription.due, self._clock.now()) + subscription.period
+                for message in subscription.form(subscription.queue.popleft()):
                     await self.budget.wait_to_send(len(message))
                     await self._send(message)
                 await self._send_answers()
-                left = one.period if one.queue else left
-            if one.queue:
-                pause = max(0.0, left) if pause is None else min(pause, max(0.0, left))
+                remaining = subscription.period if subscription.queue else remaining
+            if subscription.queue:
+                pause = max(0.0, remaining) if pause is None else min(pause, max(0.0, remaining))
         return pause
 
     async def _send_answers(self) -> None:

@@ -14,9 +14,9 @@ LIMIT = 1e6
 
 
 def read_twist(message: Any) -> tuple[list[float], list[float]]:
-    """The linear and angular parts of a geometry_msgs/Twist; what is left out is 0.
+    """Return the linear and angular parts of a geometry_msgs/Twist; missing fields are 0.
 
-    Raises UnusableMessageError.
+    Raise UnusableMessageError.
     """
     return _read(message, "linear"), _read(message, "angular")
 

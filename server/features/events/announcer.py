@@ -1,75 +1,55 @@
-"""Makes events for other programs of what the robot and the server report anyway."""
+"""Events for other programs, made from the reports of robot and server."""
 
-import asyncio
 import json
 import secrets
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, Protocol
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Severity
 from robot_runtime.contract.published_events import PublishedEvent, PublishedKind
+from robot_runtime.contract.topics import STATE
 from robot_runtime.transport.blocks import Block
-from server.features.events.config import EventsConfig
-from server.features.events.mqtt import MqttOutlet
-from server.features.events.outlet import EventOutlet, OutletCondition
-from server.platform.settings import Settings
 
 Alarms = dict[str, dict[str, Any]]
 """Alarms as they are listed, by their faults."""
 MISSION_ENDS = ("succeeded", "failed", "ended")
-GRAVITY = ("ok", "starting", "failed")
+
+
+class EventOutlet(Protocol):
+    """A way to other programs. No method waits."""
+
+    def publish(self, event: PublishedEvent) -> None:
+        """Send an event as soon as the other end is there."""
+
+    def retain(self, name: str, text: str) -> None:
+        """Set what a program that comes later should find: JSON, by name."""
 
 
 class EventAnnouncer:
-    """Sees what the pages are sent, and the robot's blocks; publishes what other programs want to know.
+    """The publisher of events, made from the pages' messages and the robot's blocks."""
 
-    Without an outlet it does nothing.
-    """
-
-    def __init__(
-        self, settings: Settings, clock: Clock, outlets: Sequence[EventOutlet] | None = None
-    ) -> None:
-        self.run = secrets.token_hex(8)
-        self._robot = settings.robot
+    def __init__(self, robot: str, clock: Clock, outlet: EventOutlet) -> None:
+        self._run = secrets.token_hex(8)
+        self._robot = robot
         self._clock = clock
         self._began = clock.now()
-        self._outlets = self._outlets_of(settings) if outlets is None else outlets
+        self._outlet = outlet
         self._number = 0
         self._alarms: dict[str, Alarms] = {}
         self._session: dict[str, Any] | None = None
         self._last: dict[str, int | str] = {}
         """The run of each kind that was announced last."""
 
-    def open(self) -> None:
-        """Connect from now on."""
-        for outlet in self._outlets:
-            outlet.open()
-
-    async def close(self) -> None:
-        """Send what waits, for a short time, and end."""
-        await asyncio.gather(*(asyncio.to_thread(outlet.close) for outlet in self._outlets))
-
-    def condition(self) -> OutletCondition | None:
-        """The gravest state, and a sentence about each outlet; None without one."""
-        found = [outlet.condition() for outlet in self._outlets]
-        if not found:
-            return None
-        state = max((one.state for one in found), key=GRAVITY.index)
-        return OutletCondition(state, " ".join(one.text for one in found))
-
     def see(self, block: Block) -> None:
-        """Take in a block of the robot."""
-        name = block.topic.name
-        if not self._outlets or name not in ("state", "mission"):
-            return
+        """Process a block of the robot."""
         try:
             documents = json.loads(block.payload)
         except (ValueError, RecursionError):
             return  # the recorder has reported it
         for document in documents:
-            if name == "state":
+            if block.topic is STATE:
                 # After a start of the server, older states come once more.
                 if document["time"] >= self._began:
                     self._see_alarms("runtime", document["alarms"])
@@ -77,9 +57,7 @@ class EventAnnouncer:
                 self._see_mission(block.run, document)
 
     def see_message(self, message: Mapping[str, Any]) -> None:
-        """Take in a message that the pages are sent."""
-        if not self._outlets:
-            return
+        """Process a message for the pages."""
         match message["op"]:
             case "alarms":
                 self._see_alarms("server", message["alarms"])
@@ -96,21 +74,22 @@ class EventAnnouncer:
                 self._end("tuning_ended", last["name"], last["id"], last["state"], last["problem"])
 
     def see_comm_test(self, run: int, name: str, state: str, problem: str) -> None:
-        """Take in the end of a communication test."""
-        if self._outlets:
-            self._end("comm_test_ended", name, run, state, problem)
+        """Process the end of a communication test."""
+        self._end("comm_test_ended", name, run, state, problem)
 
     def _see_alarms(self, source: str, listed: Sequence[dict[str, Any]]) -> None:
-        before, now = self._alarms.get(source), {str(one["fault"]): one for one in listed}
+        before, now = self._alarms.get(source), {str(alarm["fault"]): alarm for alarm in listed}
         self._alarms[source] = now
-        for fault, one in now.items():
+        for fault, alarm in now.items():
             known = (before or {}).get(fault)
             # At the start of the server, an alarm that is over is no news.
-            if (known is None or known["since"] != one["since"]) and (before is not None or one["active"]):
-                text = f"{one['what']} {one['cause']} {one['remedy']}"
-                self._publish("alarm_began", fault, state="active", severity=one["severity"], text=text)
-                if not one["active"]:
-                    self._alarm_over(one)
+            if (known is None or known["since"] != alarm["since"]) and (
+                before is not None or alarm["active"]
+            ):
+                text = f"{alarm['what']} {alarm['cause']} {alarm['remedy']}"
+                self._publish("alarm_began", fault, state="active", severity=alarm["severity"], text=text)
+                if not alarm["active"]:
+                    self._alarm_over(alarm)
         for fault, known in (before or {}).items():
             again = now.get(fault, {})
             if (
@@ -120,7 +99,9 @@ class EventAnnouncer:
             ):
                 self._alarm_over(known)
         if before is None or before != now:
-            active = [one for alarms in self._alarms.values() for one in alarms.values() if one["active"]]
+            active = [
+                alarm for alarms in self._alarms.values() for alarm in alarms.values() if alarm["active"]
+            ]
             self._retain("alarms", active)
 
     def _alarm_over(self, alarm: Mapping[str, Any]) -> None:
@@ -180,7 +161,7 @@ class EventAnnouncer:
         event = PublishedEvent(
             robot=self._robot,
             event=kind,
-            run=self.run,
+            run=self._run,
             number=self._number,
             time=datetime.now(UTC).isoformat(timespec="milliseconds"),
             subject=subject,
@@ -190,17 +171,7 @@ class EventAnnouncer:
             severity=severity,
             text=text,
         )
-        for outlet in self._outlets:
-            outlet.publish(event)
+        self._outlet.publish(event)
 
     def _retain(self, name: str, value: object) -> None:
-        text = json.dumps(value, ensure_ascii=False)
-        for outlet in self._outlets:
-            outlet.retain(name, text)
-
-    def _outlets_of(self, settings: Settings) -> list[EventOutlet]:
-        events, folder = settings.section(EventsConfig), settings.config.parent
-        outlets: list[EventOutlet] = []
-        if events.mqtt:
-            outlets.append(MqttOutlet(settings.robot, self.run, events, folder))
-        return outlets
+        self._outlet.retain(name, json.dumps(value, ensure_ascii=False))

@@ -8,7 +8,7 @@ from robot_runtime.contract.limits import ConfigError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EventsConfig:
-    """The broker that is told of alarms, sessions, tests and missions; off unless named.
+    """The broker for alarms, sessions, tests and missions; off unless named.
 
     Files are beside this one, or have a whole path, and are readable by the robot's user alone.
     """
@@ -27,7 +27,7 @@ class EventsConfig:
 
 
 def _check_broker(address: str) -> SplitResult:
-    """The parts of the broker's address, which may be empty. Raises ConfigError."""
+    """Return the parts of the broker's address, which may be empty. Raise ConfigError."""
     try:
         parts = urlsplit(address)
         # Encoded as it is looked up, which a name with an empty part cannot be.

@@ -1,7 +1,10 @@
 """Events to an MQTT broker, by paho's client in its own thread."""
 
+import json
+import secrets
 import sys
 import threading
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
@@ -9,21 +12,21 @@ from urllib.parse import urlsplit
 from robot_runtime.contract.published_events import PublishedEvent
 from server.features.events.config import EventsConfig
 from server.features.events.outlet import (
-    CLOSE_SECONDS,
-    CONNECT_SECONDS,
-    WAITING_MAX,
     OutletCondition,
     OutletError,
-    Tally,
     make_tls,
     name_problem,
     read_secret,
 )
-from server.features.events.payloads import event_json
 
 if TYPE_CHECKING:
     from paho.mqtt.client import Client
 
+WAITING_MAX = 200
+"""Events that wait while the broker is away; further ones are lost, and counted."""
+CONNECT_SECONDS = 5.0
+CLOSE_SECONDS = 2.0
+"""The end of the server waits so long for what is still to be sent."""
 PORTS = {"mqtt": 1883, "mqtts": 8883}
 KEEPALIVE_SECONDS = 30
 """After one and a half times of it without a sign of the robot, the broker publishes the last will."""
@@ -35,22 +38,23 @@ AT_LEAST_ONCE = 1
 class MqttOutlet:
     """A broker. Its topics are `mucat/ROBOT/status`, `alarms`, `session` (retained) and `event/KIND`."""
 
-    def __init__(self, robot: str, run: str, config: EventsConfig, folder: Path) -> None:
+    def __init__(self, robot: str, config: EventsConfig, folder: Path) -> None:
         self._prefix = f"mucat/{robot}"
-        self._name = f"mucat-{robot}-{run[:8]}"
+        self._name = f"mucat-{robot}-{secrets.token_hex(4)}"
         self._config = config
         self._folder = folder
-        self._tally = Tally(f"Broker {config.mqtt}")
+        self._condition = OutletCondition("starting", "Connecting.")
+        self._sent = self._lost = 0
         self._client: Client | None = None
         self._retained: dict[str, str] = {}
         self._retaining = threading.Lock()
 
     def open(self) -> None:
-        """Connect from now on; again and again where it fails."""
+        """Connect, and connect again after each failure."""
         try:
             self._client = self._make_client()
         except OutletError as problem:
-            self._tally.set("failed", str(problem))
+            self._condition = OutletCondition("failed", str(problem))
             return
         address = urlsplit(self._config.mqtt)
         self._client.connect_async(
@@ -59,14 +63,15 @@ class MqttOutlet:
         self._client.loop_start()
 
     def publish(self, event: PublishedEvent) -> None:
-        """Send an event as soon as the broker is there."""
+        """Send an event as soon as the broker is connected."""
         if self._client is None:
-            self._tally.lost += 1
+            self._lost += 1
             return
-        place = f"{self._prefix}/event/{event.event}"
-        sent = self._client.publish(place, event_json(event), qos=AT_LEAST_ONCE)
+        topic = f"{self._prefix}/event/{event.event}"
+        text = json.dumps(asdict(event), ensure_ascii=False, separators=(",", ":"))
+        sent = self._client.publish(topic, text.encode(), qos=AT_LEAST_ONCE)
         if sent.rc == self._queue_full:
-            self._tally.lost += 1
+            self._lost += 1
 
     def retain(self, name: str, text: str) -> None:
         """Set a retained topic; after each connection they are set again."""
@@ -76,11 +81,15 @@ class MqttOutlet:
                 self._client.publish(f"{self._prefix}/{name}", text, retain=True)
 
     def condition(self) -> OutletCondition:
-        """The state, and a sentence about it."""
-        return self._tally.describe()
+        """Return the state, and a sentence about it, with the numbers of messages."""
+        state, text = self._condition
+        lost = f", lost: {self._lost}" if self._lost else ""
+        return OutletCondition(
+            state, f"Broker {self._config.mqtt}: {text} Messages sent: {self._sent}{lost}."
+        )
 
     def close(self) -> None:
-        """Say that the robot is offline, and leave."""
+        """Publish that the robot is offline, and disconnect."""
         # Its thread may just wait for an answer of the network.
         leaving = threading.Thread(target=self._leave, daemon=True)
         leaving.start()
@@ -124,9 +133,9 @@ class MqttOutlet:
 
     def _connected(self, client: "Client", _data: Any, _flags: Any, reason: Any, _properties: Any) -> None:
         if reason.is_failure:
-            self._tally.set("failed", f"The broker refuses the robot: {reason}.")
+            self._condition = OutletCondition("failed", f"The broker refuses the robot: {reason}.")
             return
-        self._tally.set("ok", "Connected.")
+        self._condition = OutletCondition("ok", "Connected.")
         # What is set meanwhile comes after it.
         with self._retaining:
             for name, text in {"status": ONLINE, **self._retained}.items():
@@ -136,14 +145,14 @@ class MqttOutlet:
         # paho calls this while it handles the exception.
         problem = sys.exc_info()[1]
         why = name_problem(problem) if problem is not None else "it does not answer"
-        self._tally.set("failed", f"Cannot connect: {why}.")
+        self._condition = OutletCondition("failed", f"Cannot connect: {why}.")
 
     def _disconnected(
         self, _client: "Client", _data: Any, _flags: Any, reason: Any, _properties: Any
     ) -> None:
         # After a refusal, the reason of that says more.
-        if self._tally.describe().state != "failed":
-            self._tally.set("failed", f"The connection was lost: {reason}.")
+        if self._condition.state != "failed":
+            self._condition = OutletCondition("failed", f"The connection was lost: {reason}.")
 
     def _published(self, _client: "Client", _data: Any, _number: int, _reason: Any, _properties: Any) -> None:
-        self._tally.sent += 1
+        self._sent += 1

@@ -26,7 +26,7 @@ SECONDS_MAX = 3600
 
 
 def main() -> int:
-    """Run the action. Exit status: 1 after a problem, which was reported."""
+    """Run the action. Return the exit status: 1 after a problem, which was reported."""
     end_with_parent()
     give_way(NICENESS)
     limit_process(BYTES_MAX, SECONDS_MAX)
@@ -73,7 +73,7 @@ def _examine(path: Path, rows: Path) -> None:
 
 
 class _Progress:
-    """Reports the progress a few times a second."""
+    """The progress, reported a few times a second."""
 
     def __init__(self) -> None:
         self._reported = time.monotonic()

@@ -1,33 +1,29 @@
-"""The archive: a session without loss, for µ-CAT on another machine.
-
-A zip file whose members are stored as they are: `session.json`; for each topic `chunks/<topic>`, its chunks
-one after the other as stored in the database, each after its HEAD; and last `checksums.json`, the SHA-256 of
-every other member. Times stay on the session's own steady clock.
-"""
+"""Writes the archive of a session: `robot_runtime.contract.archive` has its format."""
 
 import hashlib
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
-from struct import Struct
 from typing import Any, BinaryIO
 
 from sqlmodel import SQLModel, col, select
 
+from robot_runtime.contract.archive import (
+    CHECKSUMS,
+    CHUNKS,
+    FORMAT,
+    SESSION,
+    VERSION,
+    pack_chunk,
+)
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.zip_stream import ZipWriter
 from server.platform.models import BookmarkRow, Gap, SessionTag
 from server.platform.store import Reader
 
-FORMAT = "mucat-session"
-VERSION = 1
-HEAD = Struct("<IddqII16s")
-"""Number, first and last time (s), number of the first sample, samples, bytes, encoding (padded with 0)."""
-SESSION, CHECKSUMS, CHUNKS = "session.json", "checksums.json", "chunks/"
-
 
 def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """Write the archive of a whole session. Raises ExportRequestError while it records, StoreError."""
+    """Write the archive of a whole session. Raise ExportRequestError while it records, StoreError."""
     if source.row.state == "recording":
         raise ExportRequestError(
             "The session is still being recorded. Stop the recording, then make the archive."
@@ -38,19 +34,7 @@ def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> N
     for name in source.names:
         with members.member(CHUNKS + name) as write:
             for chunk in source.chunks(name):
-                encoding = chunk.encoding.encode().ljust(16, b"\0")
-                write(
-                    HEAD.pack(
-                        chunk.number,
-                        chunk.first_time,
-                        chunk.last_time,
-                        chunk.first,
-                        chunk.count,
-                        len(chunk.data),
-                        encoding,
-                    )
-                    + chunk.data
-                )
+                write(pack_chunk(chunk))
     members.close()
 
 
@@ -86,11 +70,11 @@ def _describe(store: Reader, source: ExportSelection) -> dict[str, Any]:
 
         def rows(table: type[SQLModel], order: str) -> list[dict[str, Any]]:
             query = select(table).where(getattr(table, "session_id") == row.id)  # noqa: B009
-            found = database.exec(query.order_by(col(getattr(table, order))))
-            return [one.model_dump(exclude={"id", "session_id"}) for one in found]
+            rows = database.exec(query.order_by(col(getattr(table, order))))
+            return [row.model_dump(exclude={"id", "session_id"}) for row in rows]
 
         parts = {
-            "tags": [one["tag"] for one in rows(SessionTag, "tag")],
+            "tags": [row["tag"] for row in rows(SessionTag, "tag")],
             "markers": rows(BookmarkRow, "time"),
             "gaps": rows(Gap, "id"),
         }

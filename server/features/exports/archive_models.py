@@ -1,12 +1,12 @@
-"""The content of an archive's `session.json`, and the heads of its chunks, with the limits of every entry."""
+"""The content of an archive's `session.json`, with the limits of every entry."""
 
 import struct
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from robot_runtime.contract.topics import TIME
-from server.features.sessions.schemas import GapKind
+from server.recording.schemas import GapKind
 
 CODES = "bBhHiIqQfd?"
 TOPICS_MAX = 200
@@ -115,16 +115,3 @@ class ArchivedDocument(_Strict):
     markers: Annotated[list[ArchivedBookmark], Field(max_length=BOOKMARKS_MAX)]
     gaps: Annotated[list[ArchivedGap], Field(max_length=1_000_000)]
     """More than `GAPS_STORED` are merged with their neighbours."""
-
-
-class ArchivedChunk(NamedTuple):
-    """The columns of a chunk (see `Chunk`)."""
-
-    topic: str
-    number: int
-    first_time: float
-    last_time: float
-    first: int
-    samples: int
-    encoding: str
-    data: bytes

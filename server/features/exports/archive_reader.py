@@ -12,27 +12,34 @@ import zipfile
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from math import ceil, isfinite
+from math import ceil
 from pathlib import Path
 from typing import IO, Any, TypeVar, get_args
 
 from pydantic import ValidationError
 
+from robot_runtime.contract.archive import (
+    CHECKSUMS,
+    CHUNKS,
+    FORMAT,
+    SESSION,
+    VERSION,
+    read_chunks,
+)
+from robot_runtime.contract.chunks import StoredChunk
+from robot_runtime.contract.topics import STATE
 from robot_runtime.zip_members import find_members
-from server.features.exports.archive import CHECKSUMS, CHUNKS, FORMAT, HEAD, SESSION, VERSION
 from server.features.exports.archive_models import (
     COLUMNS_MAX,
     GAPS_STORED,
     MISSED_MAX,
     TOPICS_MAX,
-    ArchivedChunk,
     ArchivedDocument,
     ArchivedGap,
 )
 from server.features.exports.archive_samples import SPAN_MAX, check_chunk, check_document
-from server.features.sessions.chunks import CHUNK_BYTES_MAX
-from server.features.sessions.schemas import GapKind
 from server.platform.errors import InvalidError
+from server.recording.schemas import GapKind
 
 SESSION_BYTES_MAX = 32_000_000
 DESCRIPTION_BYTES_MAX = 1_000_000
@@ -58,26 +65,13 @@ class ArchiveChunks:
         self._members = self._check_members(size)
         self.topics = [name.removeprefix(CHUNKS) for name in self._members if name.startswith(CHUNKS)]
 
-    def chunks(self, topic: str) -> Iterator[ArchivedChunk]:
-        """The chunks of a topic with plausible heads; their data is not checked."""
-        number = -1
+    def chunks(self, topic: str) -> Iterator[StoredChunk]:
+        """Yield the chunks of a topic with plausible heads; their data is not checked."""
         with self._zipped.open(self._members[CHUNKS + topic]) as file:
-            while head := file.read(HEAD.size):
-                if len(head) < HEAD.size:
-                    raise ArchiveError(f"The chunks of {topic} are cut off after number {number}.")
-                chunk_number, first_time, last_time, first, count, size, encoding = HEAD.unpack(head)
-                if size > CHUNK_BYTES_MAX or count == 0:
-                    raise ArchiveError(f"A chunk of {topic} announces {count} samples in {size} bytes.")
-                if chunk_number <= number:
-                    raise ArchiveError(f"Chunk {chunk_number} of {topic} comes after number {number}.")
-                if not (isfinite(first_time) and isfinite(last_time)) or first < 0:
-                    raise ArchiveError(f"Chunk {chunk_number} of {topic} has an invalid time or number.")
-                number = chunk_number
-                data = file.read(size)
-                if len(data) < size:
-                    raise ArchiveError(f"Chunk {number} of {topic} is cut off.")
-                name = encoding.rstrip(b"\0").decode("ascii", "replace")
-                yield ArchivedChunk(topic, number, first_time, last_time, first, count, name, data)
+            try:
+                yield from read_chunks(file)
+            except ValueError as problem:
+                raise ArchiveError(f"Its chunks of {topic} are damaged: {problem}.") from problem
 
     def _check_members(self, size: int) -> dict[str, zipfile.ZipInfo]:
         try:
@@ -117,7 +111,7 @@ class Archive(ArchiveChunks):
             raise ArchiveError(f"It holds chunks of {', '.join(strange)}, which its {SESSION} does not know.")
 
     def verify(self, report: Callable[[float], None]) -> None:
-        """Check the checksums, and every chunk's samples. Raises ArchiveError."""
+        """Check the checksums, and every chunk's samples. Raise ArchiveError."""
         total = sum(info.file_size for info in self._members.values())
         done = 0
         for name in (name for name in self._members if name != CHECKSUMS):
@@ -130,13 +124,13 @@ class Archive(ArchiveChunks):
             if self._sums.get(name) != checksum.hexdigest():
                 raise ArchiveError(f"{name} is damaged: its checksum is not the one in {CHECKSUMS}.")
         session = self.content.session
-        for place, topic in enumerate(self.topics):
+        for index, topic in enumerate(self.topics):
             for chunk in self.chunks(topic):
                 try:
-                    check_chunk(chunk, session.topics[topic], session.started_steady)
+                    check_chunk(chunk, topic, session.topics[topic], session.started_steady)
                 except ValueError as problem:
                     raise ArchiveError(f"Chunk {chunk.number} of {topic} is damaged: {problem}.") from problem
-            report(0.5 + 0.5 * (place + 1) / len(self.topics))
+            report(0.5 + 0.5 * (index + 1) / len(self.topics))
 
     def _read_json(self, name: str) -> Any:
         with self._zipped.open(self._members[name]) as file:
@@ -164,7 +158,7 @@ class Archive(ArchiveChunks):
             content = ArchivedDocument.model_validate(document)
         except ValidationError as problem:
             first = problem.errors()[0]
-            where = ".".join(str(place) for place in first["loc"])
+            where = ".".join(str(part) for part in first["loc"])
             raise ArchiveError(f"Its {SESSION} is not valid: {where}: {first['msg']}") from problem
         described: dict[str, Any] = document["session"]["topics"]
         try:
@@ -178,7 +172,7 @@ Reading = TypeVar("Reading", bound=ArchiveChunks)
 
 
 def examine(path: Path, rows: Path, report: Callable[[float], None] = lambda _: None) -> None:
-    """Check a whole archive, and write the rows of its session to the file `rows`. Raises ArchiveError.
+    """Check a whole archive, and write the rows of its session to the file `rows`. Raise ArchiveError.
 
     Lines of JSON: first the columns of the session, then of some bookmarks, gaps or tags each.
     """
@@ -191,7 +185,7 @@ def examine(path: Path, rows: Path, report: Callable[[float], None] = lambda _: 
 
 @contextmanager
 def open_archive(path: Path, reader: type[Reading]) -> Iterator[Reading]:
-    """Open an archive for reading. Raises ArchiveError, also for errors while it is read."""
+    """Open an archive for reading. Raise ArchiveError, also for errors while it is read."""
     try:
         file: IO[bytes]
         with path.open("rb") as file, zipfile.ZipFile(file) as zipped:
@@ -212,8 +206,8 @@ def _describe_rows(archive: Archive) -> Iterator[dict[str, Any]]:
     yield {"session": session}
     small: dict[str, list[dict[str, Any]]] = {
         "tags": [{"tag": tag} for tag in dict.fromkeys(content.tags)],
-        "markers": [one.model_dump() for one in content.markers],
-        "gaps": [one.model_dump() for one in content.gaps],
+        "markers": [marker.model_dump() for marker in content.markers],
+        "gaps": [gap.model_dump() for gap in content.gaps],
     }
     for table, rows in small.items():
         for at in range(0, len(rows), ROWS_AT_ONCE):
@@ -221,41 +215,41 @@ def _describe_rows(archive: Archive) -> Iterator[dict[str, Any]]:
 
 
 def merge_gaps(gaps: Sequence[ArchivedGap]) -> list[ArchivedGap]:
-    """At most `GAPS_STORED` of these gaps: where they are more, neighbours of one topic and kind become one.
+    """Return at most `GAPS_STORED` gaps: beyond that, neighbours of one topic and kind are merged.
 
-    It is noticed at the first's time, and misses as many samples as all of them. Raises ValueError for more
+    A merged gap has the first one's time, and misses the samples of all. Raise ValueError for more
     topics than a session may have.
     """
-    found: defaultdict[tuple[str, str], list[ArchivedGap]] = defaultdict(list)
+    groups: defaultdict[tuple[str, str], list[ArchivedGap]] = defaultdict(list)
     for gap in gaps:
-        found[gap.topic, gap.kind].append(gap)
-    if len(found) > len(get_args(GapKind)) * TOPICS_MAX:
+        groups[gap.topic, gap.kind].append(gap)
+    if len(groups) > len(get_args(GapKind)) * TOPICS_MAX:
         raise ValueError(f"its gaps are of more than {TOPICS_MAX} topics")
     if len(gaps) <= GAPS_STORED:
         return [*gaps]
-    together = ceil(len(gaps) / (GAPS_STORED - len(found)))
+    together = ceil(len(gaps) / (GAPS_STORED - len(groups)))
     merged: list[ArchivedGap] = []
-    for alike in found.values():
-        alike.sort(key=lambda one: one.time)
+    for alike in groups.values():
+        alike.sort(key=lambda gap: gap.time)
         for at in range(0, len(alike), together):
             some = alike[at : at + together]
-            missed = min(sum(one.missed for one in some), MISSED_MAX)
+            missed = min(sum(gap.missed for gap in some), MISSED_MAX)
             merged.append(some[0].model_copy(update={"missed": missed}))
-    return sorted(merged, key=lambda one: one.time)
+    return sorted(merged, key=lambda gap: gap.time)
 
 
 def _check_session(content: ArchivedDocument, described: dict[str, Any]) -> None:
-    """Merge its gaps. Raises ValueError where a session has what this version cannot read or show."""
+    """Merge its gaps. Raise ValueError where this version cannot read or show the session."""
     session = content.session
     for name, value in {"topics": described, "robot_state": session.robot_state}.items():
         if len(json.dumps(value)) > DESCRIPTION_BYTES_MAX:
             raise ValueError(f"{name} is longer than {DESCRIPTION_BYTES_MAX} bytes")
     if session.robot_state is not None:
-        check_document(session.robot_state, "state")
+        check_document(session.robot_state, STATE.name)
     columns = sum(topic.columns for topic in session.topics.values())
     if columns > COLUMNS_MAX:
         raise ValueError(f"its topics have {columns} columns; at most {COLUMNS_MAX} can be shown")
     content.gaps = merge_gaps(content.gaps)
-    times = [one.time for one in content.markers] + [one.time for one in content.gaps]
+    times = [marker.time for marker in content.markers] + [gap.time for gap in content.gaps]
     if any(abs(time - session.started_steady) > SPAN_MAX for time in times):
         raise ValueError("a bookmark or a gap is far from the session")

@@ -1,42 +1,35 @@
 """Checks the samples in an archive's chunks: number, times, and documents as this version reads them."""
 
 import json
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from math import isfinite
 from typing import Any
 
+from robot_runtime.contract.chunks import (
+    CHUNK_BYTES_MAX,
+    StoredChunk,
+    decode_pictures,
+    decode_rows,
+    require_encoding,
+    unpack,
+)
 from robot_runtime.contract.documents import Event
 from robot_runtime.contract.topics import BY_NAME, TIME, Kind
-from server.features.exports.archive_models import ArchivedChunk, ArchivedTopic
-from server.features.sessions.chunks import (
-    CHUNK_BYTES_MAX,
-    DOCUMENTS_ENCODING,
-    PICTURES_ENCODING,
-    ROWS_ENCODING,
-    decode_pictures,
-    unpack,
-    unshuffle,
-)
-from server.features.sessions.upgrade import MissingFieldError, rewrite_document
+from server.features.exports.archive_models import ArchivedTopic
+from server.library.upgrade import MissingFieldError, rewrite_document
 
-ENCODINGS = {"rows": ROWS_ENCODING, "documents": DOCUMENTS_ENCODING, "picture": PICTURES_ENCODING}
 SPAN_MAX = 1e9
 """s, some 30 years: the longest time between a session's start and anything in it."""
 EVENT_FIELDS = frozenset(field.name for field in fields(Event))
 
 
-def check_chunk(chunk: ArchivedChunk, topic: ArchivedTopic, origin: float) -> None:
-    """Checks a chunk of a session that starts at `origin` (s, steady clock). Raises ValueError."""
-    if chunk.encoding != ENCODINGS[topic.kind]:
-        raise ValueError(f"it is encoded as {chunk.encoding!r}, which this version cannot read")
-    try:
-        times = _read_times(chunk, topic)
-    except zlib.error as problem:
-        raise ValueError(str(problem)) from problem
-    if len(times) != chunk.samples:
-        raise ValueError(f"it holds {len(times)} samples instead of {chunk.samples}")
+def check_chunk(chunk: StoredChunk, name: str, topic: ArchivedTopic, origin: float) -> None:
+    """Check a chunk of the topic `name`; `origin` is the session's start (s, steady). Raise ValueError."""
+    require_encoding(chunk.encoding, topic.kind)
+    times = _read_times(chunk, name, topic)
+    if len(times) != chunk.count:
+        raise ValueError(f"it holds {len(times)} samples instead of {chunk.count}")
     if not all(isfinite(time) and abs(time - origin) <= SPAN_MAX for time in times):
         raise ValueError("a sample's time is far from the session's")
     if (times[0], times[-1]) != (chunk.first_time, chunk.last_time):
@@ -44,9 +37,9 @@ def check_chunk(chunk: ArchivedChunk, topic: ArchivedTopic, origin: float) -> No
 
 
 def check_document(document: object, name: str, described: ArchivedTopic | None = None) -> None:
-    """Checks a document of a topic: the fields that its description names, of types that this version reads.
+    """Check a document of a topic: the fields of its description, in types that this version reads.
 
-    A document of another version may lack fields of this one's. Raises ValueError with the reason.
+    A document of another version may lack fields of this one's. Raise ValueError with the reason.
     """
     if not isinstance(document, Mapping):
         raise ValueError("a document is no object")
@@ -64,14 +57,14 @@ def check_document(document: object, name: str, described: ArchivedTopic | None 
             return
 
 
-def _read_times(chunk: ArchivedChunk, topic: ArchivedTopic) -> Sequence[float]:
+def _read_times(chunk: StoredChunk, name: str, topic: ArchivedTopic) -> Sequence[float]:
     if topic.kind == "picture":
         return [time for time, _ in decode_pictures(chunk.data)]
     if topic.kind == "rows":
-        announced = chunk.samples * topic.row_bytes
-        rows = unshuffle(unpack(chunk.data, min(CHUNK_BYTES_MAX, announced)), topic.row_bytes)
-        return [TIME.unpack_from(rows, place)[0] for place in range(0, len(rows), topic.row_bytes)]
-    return [_read_time(line, chunk.topic, topic) for line in unpack(chunk.data).splitlines()]
+        announced = chunk.count * topic.row_bytes
+        rows = decode_rows(chunk.data, topic.row_bytes, min(CHUNK_BYTES_MAX, announced))
+        return [TIME.unpack_from(rows, index)[0] for index in range(0, len(rows), topic.row_bytes)]
+    return [_read_time(line, name, topic) for line in unpack(chunk.data).splitlines()]
 
 
 def _read_time(line: bytes, name: str, topic: ArchivedTopic) -> float:

@@ -46,8 +46,8 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
     from server.features.exports.formats import check
     from server.features.exports.schemas import ExportOptions
     from server.features.exports.selection import ExportSelection
-    from server.features.sessions.session import find_row
     from server.platform.shell_store import open_reader
+    from server.recording.session import find_row
 
     try:
         options = ExportOptions.model_validate(
@@ -93,8 +93,8 @@ def import_session(settings: Settings, file: Path) -> None:
 
 def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
     from server.features.exports.imports import Imports
-    from server.features.sessions.session import find_row
     from server.platform.shell_store import open_writer
+    from server.recording.session import find_row
 
     async def take(imports: Imports) -> int:
         await imports.recover()
@@ -114,7 +114,7 @@ def _warn_of_long_tables(source: "ExportSelection") -> None:
 
 
 class _Progress:
-    """Prints the progress in percent to a terminal."""
+    """The progress in percent, printed to a terminal."""
 
     def __init__(self) -> None:
         self._reported = -1

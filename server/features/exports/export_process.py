@@ -1,19 +1,12 @@
-"""Runs `python -m server.features.exports` and reads its reports."""
+"""The process `python -m server.features.exports` and its reports."""
 
 import asyncio
-import json
-import sys
 from collections.abc import Callable
-from signal import SIGKILL, SIGTERM
+from signal import SIGKILL
 from typing import Any
 
-from server.processes.exit_status import describe_status
-from server.processes.process import PipedProcess
+from server.processes.side_process import SideProcess
 
-ERROR_BYTES = 2_000
-"""Length of the stored end of the output that is no JSON, which explains a failure."""
-CANCEL_SECONDS = 3.0
-"""Time that a cancelled process has to end by itself."""
 SILENT_SECONDS = 600.0
 """Time without a report after which a process counts as hung: it reports several times a second."""
 
@@ -28,67 +21,46 @@ class ExportProcess:
     def __init__(self, arguments: list[str], progress: Callable[[float], None]) -> None:
         self._arguments = arguments
         self._progress = progress
-        self._process: PipedProcess | None = None
-        self._loop = asyncio.get_running_loop()
-        self._watch: asyncio.TimerHandle | None = None
-        self._ended_because = ""
-        self._partial = b""
-        self._errors = b""
-        self._last: dict[str, Any] = {}
+        self._process: SideProcess | None = None
+        self._cancelled_because = ""
 
     async def run(self) -> dict[str, Any]:
-        """Run the process and return its last message. Raises ExportProcessError with the reason."""
+        """Run the process and return its last message. Raise ExportProcessError with the reason."""
         try:
-            self._process = PipedProcess(
-                [sys.executable, "-m", "server.features.exports", *self._arguments], self._read_output
-            )
+            self._process = SideProcess("server.features.exports", self._arguments)
         except OSError as problem:
             raise ExportProcessError(f"A process for it cannot be started: {problem.strerror}.") from problem
-        if self._ended_because:
-            self._process.signal(SIGKILL)
-        self._see_alive()
-        try:
-            status = await self._process.wait()
-        finally:
-            self._process.close()
-            if self._watch is not None:
-                self._watch.cancel()
-        if self._ended_because:
-            raise ExportProcessError(self._ended_because)
-        if "problem" in self._last:
-            raise ExportProcessError(str(self._last["problem"]))
-        if status != 0:
-            errors = self._errors.decode(errors="replace").strip()
-            end = f" Its last output: {errors.splitlines()[-1]}" if errors else ""
-            raise ExportProcessError(f"The process for it {describe_status(status)}.{end}")
-        return self._last
+        with self._process as process:
+            try:
+                last = await self._read(process)
+            except TimeoutError:
+                minutes = f"{SILENT_SECONDS / 60:.0f} minutes"
+                raise ExportProcessError(f"The process for it made no progress for {minutes}.") from None
+            if self._cancelled_because:
+                raise ExportProcessError(self._cancelled_because)
+            if "problem" in last:
+                raise ExportProcessError(str(last["problem"]))
+            if await process.wait() != 0:
+                raise ExportProcessError(f"The process for it {await process.describe_end()}")
+            return last
 
     def cancel(self, reason: str = "It was cancelled.") -> None:
-        """End the process, by force where it does not end by itself; `run` raises the reason."""
-        self._ended_because = reason
+        """End the process; `run` raises the reason."""
+        self._cancelled_because = reason
         if self._process is not None:
-            self._process.signal(SIGTERM)
-            self._loop.call_later(CANCEL_SECONDS, self._process.signal, SIGKILL)
+            self._process.signal(SIGKILL)
 
-    def _see_alive(self) -> None:
-        if self._watch is not None:
-            self._watch.cancel()
-        self._watch = self._loop.call_later(SILENT_SECONDS, self._end_hung)
-
-    def _end_hung(self) -> None:
-        self.cancel(f"The process for it made no progress for {SILENT_SECONDS / 60:.0f} minutes.")
-
-    def _read_output(self, data: bytes) -> None:
-        self._see_alive()
-        *lines, self._partial = (self._partial + data).split(b"\n")
-        for line in lines:
-            try:
-                document = json.loads(line)
-            except ValueError:
-                document = None
-            if not isinstance(document, dict):
-                self._errors = (self._errors + line + b"\n")[-ERROR_BYTES:]
-            elif "progress" in document:
-                self._progress(document["progress"])
-            else:
-                self._last = document
+    async def _read(self, process: SideProcess) -> dict[str, Any]:
+        """Read the reports and return the last one. Raise TimeoutError."""
+        last: dict[str, Any] = {}
+        loop = asyncio.get_running_loop()
+        if self._cancelled_because:
+            process.signal(SIGKILL)
+        async with asyncio.timeout(SILENT_SECONDS) as silence:
+            async for document in process.documents():
+                silence.reschedule(loop.time() + SILENT_SECONDS)
+                if "progress" in document:
+                    self._progress(document["progress"])
+                else:
+                    last = document
+        return last

@@ -1,4 +1,4 @@
-"""Writes a file whole or not at all, with its checksum."""
+"""Files written whole or not at all, with their checksum."""
 
 import hashlib
 import os
@@ -22,7 +22,7 @@ class WrittenFile(NamedTuple):
 def write_part(path: Path, write: Callable[[BinaryIO], object]) -> WrittenFile:
     """Write a file to the disk; it is removed again if anything fails.
 
-    Raises FileWriteError, and the errors of `write`.
+    Raise FileWriteError, and the errors of `write`.
     """
     try:
         with path.open("wb", buffering=BUFFER_BYTES) as file:
@@ -40,7 +40,7 @@ def write_part(path: Path, write: Callable[[BinaryIO], object]) -> WrittenFile:
 
 
 def put_in_place(part: Path, path: Path) -> None:
-    """Rename a finished file durably. Raises FileWriteError."""
+    """Rename a finished file durably. Raise FileWriteError."""
     try:
         durable_files.put_in_place(part, path)
     except OSError as problem:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import BinaryIO, NamedTuple
 
-from server.features.comparison.schemas import DEFAULT_SIGNALS, REPORT_POINTS, ComparisonQuery
+from server.analysis.schemas import DEFAULT_SIGNALS, REPORT_POINTS, ComparisonQuery
 from server.features.exports.archive import write_archive
 from server.features.exports.grid import write_grid
 from server.features.exports.mcap_file import check_compression, check_mcap, write_mcap
@@ -29,15 +29,15 @@ class ExportFormat(NamedTuple):
     """Raises ExportRequestError for more samples than a file of it holds."""
 
     def write_unpurged(self, store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-        """Write the session. Raises ExportRequestError where it was purged meanwhile."""
+        """Write the session. Raise ExportRequestError where it was purged meanwhile."""
         self.write(store, source, output)
         source.refuse_purged()
 
 
 def write_report(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """Write the figures and charts of a whole session as HTML. Raises StoreError, RecordingError."""
-    from server.features.comparison import report  # Plotly and NumPy, only for this format
-    from server.features.comparison.comparer import Comparer
+    """Write the figures and charts of a whole session as HTML. Raise StoreError, RecordingError."""
+    from server.analysis import report  # Plotly and NumPy, only for this format
+    from server.analysis.comparer import Comparer
 
     query = ComparisonQuery(
         sessions=[source.row.id or 0], signals=list(DEFAULT_SIGNALS), points=REPORT_POINTS
@@ -61,7 +61,7 @@ WHOLE_ONLY = ("archive", "report")
 
 
 def check(options: ExportOptions) -> ExportFormat:
-    """The chosen format. Raises ExportRequestError for options that do not go together."""
+    """Return the chosen format. Raise ExportRequestError for options that exclude each other."""
     if options.columns is not None and options.format != "csv-grid":
         raise ExportRequestError("Columns are chosen for csv-grid alone; the other formats take topics.")
     if options.topics is not None and options.format in ("csv-grid", *WHOLE_ONLY):

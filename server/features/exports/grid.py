@@ -5,10 +5,10 @@ from itertools import pairwise
 from math import floor
 from typing import TYPE_CHECKING, Any, BinaryIO
 
+from robot_runtime.contract.chunks import row_layout
 from server.features.exports.description import write_about
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.zip_stream import ZipWriter
-from server.features.sessions.chunks import row_layout
 from server.platform.csv_cells import STYLES
 from server.platform.store import Reader
 
@@ -38,7 +38,7 @@ session.json holds everything else about the session.
 def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Write a zip file of `grid.csv`, `README.txt` and `session.json`.
 
-    Raises ExportRequestError for missing columns or too many lines, StoreError, RecordingError.
+    Raise ExportRequestError for missing columns or too many lines, StoreError, RecordingError.
     """
     chosen = _choose(source)
     period = source.options.period
@@ -62,14 +62,14 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
         file.write((style.mark + style.write([["time [s]", "utc", *titles]])).encode())
         for line in range(0, count, WINDOW_LINES):
             here = range(line, min(count, line + WINDOW_LINES))
-            lines = _window(source, chosen, limits, [first + one * period for one in here])
+            lines = _window(source, chosen, limits, [first + step * period for step in here])
             file.write(style.rewrite(lines).encode())
             source.report(here.stop / count)
     packing.close()
 
 
 def _choose(source: ExportSelection) -> dict[str, dict[str, str]]:
-    """By topic, in the chosen order: the column's name and its title, such as "depth.depth [m]"."""
+    """Return, by topic in the chosen order, the columns' names and titles, such as "depth.depth [m]"."""
     there = {
         name: {plain: f"{name}.{column}" for plain, column in zip(layout.names, layout.columns, strict=True)}
         for name, topic in source.topics.items()
@@ -85,14 +85,14 @@ def _choose(source: ExportSelection) -> dict[str, dict[str, str]]:
         if topic in source.topics and topic not in there:
             raise ExportRequestError(f"{topic} has no numbers in this range; leave {name} out.")
         if column not in there.get(topic, {}):
-            known = ", ".join(f"{topic}.{one}" for one in there.get(topic, {})) or ", ".join(there)
+            known = ", ".join(f"{topic}.{column}" for column in there.get(topic, {})) or ", ".join(there)
             raise ExportRequestError(f"There is no column {name}; there are {known}.")
         chosen.setdefault(topic, {})[column] = there[topic][column]
     return chosen
 
 
 def _range(source: ExportSelection) -> tuple[float, float]:
-    """The first and the last moment, in s since the start."""
+    """Return the first and the last moment, in s since the start."""
     options = source.options
     first = 0.0 if options.start is None else options.start
     last = source.row.duration if options.end is None else options.end
@@ -102,7 +102,7 @@ def _range(source: ExportSelection) -> tuple[float, float]:
 
 
 def _usual_gap(source: ExportSelection, topic: str) -> float:
-    """s between two samples: the median over the chunks."""
+    """Return the time (s) between two samples: the median over the chunks."""
     spans = source.spans(topic)
     within = [(last - first) / (count - 1) for first, last, count in spans if count > 1]
     between = [later[0] - earlier[1] for earlier, later in pairwise(spans)]
@@ -131,8 +131,8 @@ def _window(
 
 
 def _cells(values: "Floats", fresh: "NDArray[np.bool_]", digits: str) -> list[str]:
-    found = iter(values.tolist())
-    return [digits % next(found) if there else "" for there in fresh.tolist()]
+    numbers = iter(values.tolist())
+    return [digits % next(numbers) if there else "" for there in fresh.tolist()]
 
 
 def _digits(topic: dict[str, Any]) -> dict[str, str]:

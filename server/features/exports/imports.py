@@ -1,14 +1,14 @@
 """Imports sessions of other machines: an archive is received, checked, and stored under a new number.
 
 It is stored piece by piece, so that a recording is not delayed, and stays hidden until its last piece is
-stored. The retention worker removes what does not become whole.
+stored. The retention worker removes incomplete imports.
 """
 
 import asyncio
 import json
 import zipfile
 from collections.abc import AsyncIterable, Iterator, Mapping
-from itertools import chain
+from dataclasses import asdict
 from pathlib import Path
 from secrets import token_hex
 from typing import Any
@@ -20,12 +20,12 @@ from robot_runtime.durable_files import PART, make_folder
 from robot_runtime.errors import RefusedError
 from server.features.exports.archive_reader import ROWS_AT_ONCE, ArchiveChunks, ArchiveError, open_archive
 from server.features.exports.export_process import ExportProcess, ExportProcessError
-from server.features.sessions.session import IMPORTING, REMOVING
 from server.http.uploads import save_upload
 from server.platform.disk_space import FileWriteError, explain_write_error, require_free
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.settings import DataFolder
 from server.platform.store import Store, insert_row
+from server.recording.session import IMPORTING, REMOVING
 
 BATCH_BYTES = 500_000
 """Stored in one transaction."""
@@ -46,16 +46,16 @@ class Imports:
         self._uploads = 0
 
     async def recover(self) -> None:
-        """Remove unfinished imports of a server that was killed. Raises StoreError."""
+        """Remove unfinished imports of a killed server. Raise StoreError."""
         if self._folder.is_dir():
             for file in self._folder.iterdir():
                 file.unlink(missing_ok=True)
         await self._drop_unfinished()
 
     async def receive(self, pieces: AsyncIterable[bytes], size: int | None) -> int:
-        """Import the archive that arrives in pieces, of `size` bytes if known, and return its new number.
+        """Import the archive that arrives in pieces, of `size` bytes if known; return the session's number.
 
-        Raises RefusedError if it cannot be imported now, InvalidUploadError, ArchiveError, StoreError, and
+        Raise RefusedError if it cannot be imported now, InvalidUploadError, ArchiveError, StoreError, and
         FileWriteError if the disk fails.
         """
         if self._uploads >= UPLOADS_MAX:
@@ -76,7 +76,7 @@ class Imports:
             await asyncio.to_thread(path.unlink, missing_ok=True)
 
     async def take(self, path: Path) -> int:
-        """Import the archive in a file. Raises as `receive`."""
+        """Import the archive in a file. Raise as `receive`."""
         async with self._busy:
             require_free(self._data, path.stat().st_size)
             return await self._take(path)
@@ -118,7 +118,7 @@ class Imports:
         return number
 
     async def _drop_unfinished(self) -> None:
-        """Mark unfinished imports for removal. Raises StoreError."""
+        """Mark unfinished imports for removal. Raise StoreError."""
         unfinished = update(SessionRow).where(col(SessionRow.state) == IMPORTING).values(state=REMOVING)
         await self._store.write(lambda connection: connection.execute(unfinished), frees=True)
 
@@ -139,7 +139,7 @@ class Imports:
                 await self._store.execute(insert(TABLES[name]), owned)
 
     async def _fill_chunks(self, number: int, path: Path) -> dict[str, int]:
-        """Store the chunks; returns the number of samples and of bytes."""
+        """Store the chunks; return the number of samples and of bytes."""
         batches = _batches(path, number)
         samples = size = 0
         while batch := await asyncio.to_thread(next, batches, None):
@@ -161,12 +161,12 @@ def _batches(path: Path, number: int) -> Iterator[list[dict[str, Any]]]:
     batch: list[dict[str, Any]] = []
     size = 0
     with open_archive(path, ArchiveChunks) as archive:
-        for chunk in chain.from_iterable(archive.chunks(topic) for topic in archive.topics):
-            values = chunk._asdict()
-            batch.append({**values, "count": values.pop("samples"), "session_id": number})
-            size += len(chunk.data)
-            if size >= BATCH_BYTES or len(batch) >= ROWS_AT_ONCE:
-                yield batch
-                batch, size = [], 0
+        for topic in archive.topics:
+            for chunk in archive.chunks(topic):
+                batch.append({**asdict(chunk), "topic": topic, "session_id": number})
+                size += len(chunk.data)
+                if size >= BATCH_BYTES or len(batch) >= ROWS_AT_ONCE:
+                    yield batch
+                    batch, size = [], 0
     if batch:
         yield batch

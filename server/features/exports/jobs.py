@@ -27,7 +27,7 @@ from server.platform.disk_space import FileWriteError, explain_write_error, requ
 from server.platform.errors import NotFoundError
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder
-from server.platform.store import Reader
+from server.platform.store import Store
 from server.platform.wall_clock import WallClock
 
 log = logging.getLogger(__name__)
@@ -53,7 +53,7 @@ class Jobs:
     For a day after a jump of the wall clock no file is deleted for its age, since that is unknown.
     """
 
-    def __init__(self, folder: DataFolder, store: Reader, clock: Clock) -> None:
+    def __init__(self, folder: DataFolder, store: Store, clock: Clock) -> None:
         self._folder = folder.exports
         self._database = folder.database
         self._store = store
@@ -78,23 +78,23 @@ class Jobs:
             log.warning("the exports in %s cannot be read: %s", self._folder, problem)
 
     def list(self) -> list[Job]:
-        """All jobs, newest first."""
+        """Return all jobs, newest first."""
         return sorted(self._jobs.values(), key=lambda job: job.made, reverse=True)
 
     def find(self, job: str) -> Job:
-        """The job of this name. Raises UnknownExportError."""
+        """Return the job of this name. Raise UnknownExportError."""
         if job not in self._jobs:
             raise UnknownExportError(f"There is no export {job}; choose one from the list of exports.")
         return self._jobs[job]
 
     def path(self, job: Job) -> Path:
-        """The path of a job's file."""
+        """Return the path of a job's file."""
         return self._folder / job.id
 
     async def add(self, row: SessionRow, options: NewExport, most: int = JOBS_MAX) -> Job:
         """Queue an export, where there are fewer than `most`.
 
-        Raises ExportRequestError for options that do not fit, RefusedError if there are too many jobs, and
+        Raise ExportRequestError for options that do not fit, RefusedError if there are too many jobs, and
         FileWriteError if the disk is full.
         """
         plain = ExportOptions.model_validate(options.model_dump(exclude={"session"}))
@@ -133,7 +133,7 @@ class Jobs:
                 self._running[1].cancel(PURGED_RUNNING)
 
     def remove(self, job: Job) -> None:
-        """Cancel a job, or delete its file. Raises RefusedError if that fails."""
+        """Cancel a job, or delete its file. Raise RefusedError if that fails."""
         if self._running is not None and self._running[0] == job.id:
             self._running[1].cancel()
         try:
@@ -162,8 +162,8 @@ class Jobs:
     async def _make(self, number: str) -> None:
         job = self._jobs[number]
         part = self._folder / (number + PART)
-        place = str(self._database), job.identifier
-        arguments = ["write", *place, job.wanted.model_dump_json(), str(part)]
+        source = str(self._database), job.identifier
+        arguments = ["write", *source, job.wanted.model_dump_json(), str(part)]
         child = ExportProcess(arguments, lambda share: self._change(number, progress=share))
         self._running = number, child
         self._change(number, state="running")

@@ -8,36 +8,41 @@ import heapq
 import json
 import re
 from collections.abc import Iterator
+from functools import partial
 from importlib import import_module
 from itertools import repeat
 from typing import Any, BinaryIO
 
 from sqlmodel import col, select
 
-from robot_runtime.contract.topics import LINES
+from robot_runtime.contract import topics
 from server.features.exports.description import craft_files, describe_session, dump_readable
-from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
-from server.features.exports.plain_schema import without_null
-from server.features.exports.pose import Pose, dump, level, stamp
 from server.features.exports.schemas import Compression
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
-from server.features.sessions.crafts import read_crafts, which_water
-from server.features.sessions.recording import depth_loop
+from server.interchange.foxglove_messages import (
+    Message,
+    body_transform,
+    compressed_image,
+    log_line,
+    pose_in_frame,
+    world_transform,
+)
+from server.interchange.mcap_schemas import WELL_KNOWN, topic_schema
+from server.interchange.plain_schema import without_null
+from server.interchange.pose_tracker import PoseTracker
+from server.library.content import depth_loop
+from server.library.crafts import read_crafts, which_water
 from server.platform.models import BookmarkRow
 from server.platform.store import Reader
 
 LIBRARY = "mucat"
 LOG, TRANSFORMS, FRAMES, POSE, CAMERA = "/log", "/tf", "/tf_static", "/pose", "/camera"
 IMAGE = "foxglove.CompressedImage"
-SEVERITIES = {"info": 2, "caution": 3, "alarm": 4}
-INFO = 2
 PACKAGES = {"zstd": "zstandard", "lz4": "lz4"}
 ABSENT = re.compile(rb',"\w+":null')
 """A member of a row that is NaN: schemas that Foxglove reads know no null."""
-DEBUG_LEVEL_OFFSET = 1
-"""From DebugLevel to foxglove.LogLevel, which begins with UNKNOWN."""
-
+ENCODE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 
 _Sample = tuple[int, int, bytes, dict[str, Any] | None]
 """Time (ns, UTC); the topic's place, so that equal times stay in one order; the message; and its entry in the
@@ -45,7 +50,7 @@ log, if any."""
 
 
 def check_mcap() -> None:
-    """Raises ExportRequestError if the package mcap is missing."""
+    """Raise ExportRequestError if the package mcap is missing."""
     try:
         import mcap.writer  # noqa: F401
     except ImportError as problem:
@@ -56,7 +61,7 @@ def check_mcap() -> None:
 
 
 def check_compression(name: Compression) -> None:
-    """Raises ExportRequestError if the package for this compression is missing."""
+    """Raise ExportRequestError if the package for this compression is missing."""
     package = PACKAGES[name]
     try:
         import_module(package)
@@ -70,7 +75,7 @@ def check_compression(name: Compression) -> None:
 def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Write a channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`, metadata, attachments.
 
-    Raises ExportRequestError, StoreError, RecordingError.
+    Raise ExportRequestError, StoreError, RecordingError.
     """
     check_mcap()
     from mcap.writer import CompressionType, Writer
@@ -81,21 +86,20 @@ def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None
     _write_about(store, source, writer)
     channels = _Channels(writer)
     first = source.utc_ns(source.row.started_steady)
-    pose = Pose(source)
-    if pose.known:
-        channels.add(FRAMES, "foxglove.FrameTransform", first, level(first))
+    tracker, posing = _pose_tracker(source)
+    if posing:
+        channels.add(FRAMES, "foxglove.FrameTransform", first, world_transform(first))
     own = [channels.of(name, source.topics[name]) for name in source.names]
-    posing = {source.names.index(name) for name in pose.topics}
-    for time, place, data, document in heapq.merge(*_samples(store, source)):
-        if place < len(own):
-            writer.add_message(own[place], time, data, time)
-        if place in posing:
-            seen = pose.see(source.names[place], data, time)
-            if seen:
-                channels.add(TRANSFORMS, "foxglove.FrameTransform", time, seen[0])
-                channels.add(POSE, "foxglove.PoseInFrame", time, seen[1])
+    for time, index, data, document in heapq.merge(*_samples(store, source)):
+        if index < len(own):
+            writer.add_message(own[index], time, data, time)
+        if index in posing:
+            pose = tracker.see(source.names[index], time, partial(_read_field, data))
+            if pose:
+                channels.add(TRANSFORMS, "foxglove.FrameTransform", time, body_transform(time, pose))
+                channels.add(POSE, "foxglove.PoseInFrame", time, pose_in_frame(time, pose))
         elif document is not None:
-            channels.add(LOG, "foxglove.Log", time, _log(document, time))
+            channels.add(LOG, "foxglove.Log", time, log_line(time, document["topic"], document))
     writer.finish()  # type: ignore[no-untyped-call]
 
 
@@ -115,10 +119,34 @@ class _Channels:
         number = self._writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
         return int(self._writer.register_channel(topic, "json", number))
 
-    def add(self, topic: str, name: str, time: int, data: bytes) -> None:
+    def add(self, topic: str, name: str, time: int, message: Message) -> None:
         if topic not in self._numbers:
             self._numbers[topic] = self.open(topic, name, WELL_KNOWN[name])
-        self._writer.add_message(self._numbers[topic], time, data, time)
+        self._writer.add_message(self._numbers[topic], time, _dump(message), time)
+
+
+def _pose_tracker(source: ExportSelection) -> tuple[PoseTracker, set[int]]:
+    """Return the tracker and the places of the topics that it needs; none where the attitude is unknown.
+
+    The attitude is the IMU's; without one, the simulated body's.
+    """
+    imu, depth, truth = topics.IMU.name, topics.DEPTH.name, topics.TRUTH.name
+    attitude = imu if imu in source.names else truth
+    tracker = PoseTracker(attitude)
+    if attitude not in source.names:
+        return tracker, set()
+    position = truth if truth in source.names else depth
+    if position not in source.names:
+        tracker.see(depth, 0, {"depth": 0.0}.get)
+    return tracker, {index for index, name in enumerate(source.names) if name in (attitude, position)}
+
+
+def _read_field(data: bytes, name: str) -> Any:
+    return json.loads(data).get(name)
+
+
+def _dump(message: Message) -> bytes:
+    return ENCODE(message).encode()
 
 
 def _write_about(store: Reader, source: ExportSelection, writer: Any) -> None:
@@ -141,7 +169,10 @@ def _write_about(store: Reader, source: ExportSelection, writer: Any) -> None:
     crafts = read_crafts(source)
     writer.add_metadata(
         "craft",
-        {"water": which_water(set(source.counts())), "title": ", then ".join(one.title for one in crafts)},
+        {
+            "water": which_water(set(source.counts())),
+            "title": ", then ".join(craft.title for craft in crafts),
+        },
     )
     writer.add_metadata("gains", _gains(described["robot_state"]))
     first = source.utc_ns(row.started_steady)
@@ -155,7 +186,7 @@ def _write_about(store: Reader, source: ExportSelection, writer: Any) -> None:
 
 
 def _gains(state: dict[str, Any] | None) -> dict[str, str]:
-    """The gains at the start of the session, such as "pid.kp", and the chosen controller."""
+    """Return the gains at the start of the session, such as "pid.kp", and the chosen controller."""
     loop = depth_loop(state or {})
     gains = {
         f"{controller['name']}.{gain['name']}": str(gain["value"])
@@ -167,13 +198,13 @@ def _gains(state: dict[str, Any] | None) -> dict[str, str]:
 
 def _samples(store: Reader, source: ExportSelection) -> list[Iterator[_Sample]]:
     readers = {"rows": _rows, "documents": _documents, "picture": _pictures}
-    found = [
-        readers[source.topics[name]["kind"]](source, name, place) for place, name in enumerate(source.names)
+    streams = [
+        readers[source.topics[name]["kind"]](source, name, index) for index, name in enumerate(source.names)
     ]
-    return [*found, _bookmarks(store, source)]
+    return [*streams, _bookmarks(store, source)]
 
 
-def _rows(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
+def _rows(source: ExportSelection, name: str, index: int) -> Iterator[_Sample]:
     rows = Rows(source, name)
     for times, columns in rows.batches():
         since = [source.since_start(time) for time in times]
@@ -181,26 +212,21 @@ def _rows(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
             ABSENT.sub(b"", line) if b"null" in line else line
             for line in rows.lines('"time":%.6f', [since], columns)
         ]
-        yield from zip(map(source.utc_ns, times), repeat(place), lines, repeat(None))
+        yield from zip(map(source.utc_ns, times), repeat(index), lines, repeat(None))
 
 
-def _documents(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
+def _documents(source: ExportSelection, name: str, index: int) -> Iterator[_Sample]:
     for document in source.documents(name, source.start, source.end):
         time = source.utc_ns(document["time"])
-        data = dump({**without_null(document), "time": round(source.since_start(document["time"]), 6)})
-        yield (time, place, data, {**document, "topic": name} if name in LINES else None)
+        data = _dump({**without_null(document), "time": round(source.since_start(document["time"]), 6)})
+        yield (time, index, data, {**document, "topic": name} if name in topics.LINES else None)
 
 
-def _pictures(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
+def _pictures(source: ExportSelection, name: str, index: int) -> Iterator[_Sample]:
     for moment, jpeg in source.pictures(name, source.start, source.end):
         time = source.utc_ns(moment)
-        image = {
-            "timestamp": stamp(time),
-            "frame_id": "camera",
-            "data": base64.b64encode(jpeg).decode(),
-            "format": "jpeg",
-        }
-        yield (time, place, dump(image), None)
+        image = compressed_image(time, base64.b64encode(jpeg).decode())
+        yield (time, index, _dump(image), None)
 
 
 def _bookmarks(store: Reader, source: ExportSelection) -> Iterator[_Sample]:
@@ -215,19 +241,3 @@ def _bookmarks(store: Reader, source: ExportSelection) -> Iterator[_Sample]:
                 b"",
                 {"topic": "marker", "text": bookmark.text},
             )
-
-
-def _log(document: dict[str, Any], time: int) -> bytes:
-    if document["topic"] == "debug":
-        level = document["level"] + DEBUG_LEVEL_OFFSET
-    else:
-        level = SEVERITIES.get(document.get("severity", ""), INFO)
-    message = {
-        "timestamp": stamp(time),
-        "level": level,
-        "message": document["text"],
-        "name": document.get("kind", document["topic"]),
-        "file": document["topic"],
-        "line": 0,
-    }
-    return dump(message)

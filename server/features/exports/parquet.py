@@ -16,7 +16,7 @@ GROUP_ROWS = 50_000
 
 
 def check_parquet() -> None:
-    """Raises ExportRequestError if the package pyarrow is missing."""
+    """Raise ExportRequestError if the package pyarrow is missing."""
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError as problem:
@@ -30,7 +30,7 @@ def write_parquet(store: Reader, source: ExportSelection, output: BinaryIO) -> N
     """Write a zip file of `session.json` and a Parquet file for each topic.
 
     Columns are `time` (s since the session's start), `utc` and the fields in SI units; fields of
-    documents are text, lists and objects as JSON. Raises ExportRequestError, StoreError, RecordingError.
+    documents are text, lists and objects as JSON. Raise ExportRequestError, StoreError, RecordingError.
     """
     check_parquet()
     packing = ZipWriter(output, packed=False)
@@ -85,9 +85,9 @@ def _documents(source: ExportSelection, name: str) -> tuple[Any, Iterator[tuple[
 
     def batches() -> Iterator[tuple[Any, Any]]:
         for document in source.documents(name, source.start, source.end):
-            yield [document["time"]], [[_text(document.get(one))] for one in names]
+            yield [document["time"]], [[_text(document.get(name))] for name in names]
 
-    return pa.schema(_head() + [pa.field(one, pa.string()) for one in names]), batches()
+    return pa.schema(_head() + [pa.field(name, pa.string()) for name in names]), batches()
 
 
 def _pictures(source: ExportSelection, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:

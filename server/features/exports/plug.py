@@ -1,27 +1,16 @@
 """The plug of exports and imports."""
 
 from collections.abc import Coroutine, Sequence
-from typing import Any, ClassVar
+from typing import Any
 
-from robot_runtime.clock import Clock
 from server.feature import Plug
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
-from server.features.sessions.retention import RetentionWorker
-from server.platform.settings import Settings
-from server.platform.store import Store
-from server.services import Maker
-
-
-def make_jobs(settings: Settings, store: Store, clock: Clock) -> Jobs:
-    """The exports."""
-    return Jobs(settings.data, store, clock)
+from server.library.retention import RetentionWorker
 
 
 class ExportsPlug(Plug):
-    """Makes the exports that were asked for."""
-
-    makers: ClassVar[tuple[Maker, ...]] = (make_jobs,)
+    """The plug that makes the requested exports."""
 
     def __init__(self, jobs: Jobs, imports: Imports, retention: RetentionWorker) -> None:
         self._jobs = jobs

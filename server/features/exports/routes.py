@@ -6,15 +6,13 @@ from fastapi import Path, Request
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import FileResponse
 
+from server.driving.admission import read_admitted
 from server.features.exports.archive_reader import ArchiveError
 from server.features.exports.formats import KINDS
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import JOBS_MAX, OPERATORS_ONLY, Jobs, UnknownExportError
 from server.features.exports.schemas import Job, NewExport
 from server.features.exports.selection import ExportRequestError
-from server.features.lease.admission import read_admitted
-from server.features.sessions.schemas import Session
-from server.features.sessions.session import UnknownSessionError, find_row, from_row
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Operations
@@ -24,6 +22,8 @@ from server.http.uploads import InvalidUploadError
 from server.platform.disk_space import FileWriteError
 from server.platform.errors import ConflictError
 from server.platform.store import Store
+from server.recording.schemas import Session
+from server.recording.session import UnknownSessionError, find_row, from_row
 
 router = Operations(prefix="/api", tags=["exports"])
 

@@ -9,11 +9,11 @@ from sqlmodel import col, select
 
 from robot_runtime.contract.topics import TIME
 from server.features.exports.schemas import ExportOptions
-from server.features.sessions.recording import Recording
-from server.features.sessions.session import HIDDEN
+from server.library.content import Recording
 from server.platform.errors import InvalidError
 from server.platform.models import SessionRow
 from server.platform.store import Reader
+from server.recording.session import HIDDEN
 
 BATCH_BYTES = 64_000
 """Approximate size of a batch of rows: larger ones are no faster, and cost memory."""
@@ -28,7 +28,10 @@ class ExportRequestError(InvalidError):
 
 
 def find_identified(store: Reader, identifier: str) -> SessionRow:
-    """The row of the session with this identifier. Raises ExportRequestError without one, StoreError."""
+    """Return the row of the session with this identifier.
+
+    Raise ExportRequestError without one, StoreError.
+    """
     query = select(SessionRow).where(
         SessionRow.identifier == identifier, col(SessionRow.state).not_in(HIDDEN)
     )
@@ -40,7 +43,7 @@ def find_identified(store: Reader, identifier: str) -> SessionRow:
 
 
 def _check_range(row: SessionRow, options: ExportOptions) -> None:
-    """Raises ExportRequestError for a range that is empty or not within the session."""
+    """Raise ExportRequestError for a range that is empty or not within the session."""
     start, end = options.start, options.end
     if start is not None and end is not None and start >= end:
         raise ExportRequestError(f"The end, {end:g} s, must be after the start, {start:g} s.")
@@ -91,18 +94,18 @@ class ExportSelection(Recording):
         return self.start == -inf and self.end == inf
 
     def refuse_purged(self) -> None:
-        """Raise ExportRequestError where the session was purged meanwhile: what was read may lack samples."""
+        """Raise ExportRequestError where the session was purged meanwhile: samples may be missing."""
         find_identified(self._store, self.row.identifier)
 
     def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Any]:
-        """The chunks of a topic; reading them reports progress."""
+        """Yield the chunks of a topic; reading them reports progress."""
         for chunk in super().chunks(topic, start, end):
             yield chunk
             self._seen += chunk.count
             self.report(min(1.0, self._seen / max(1, self._total)))
 
     def batches(self, topic: str) -> Iterator[bytes]:
-        """The topic's rows in the range, some hundreds at once."""
+        """Yield the topic's rows in the range, some hundreds at once."""
         size = self.topics[topic]["row_bytes"]
         pending: list[bytes] = []
         waiting = 0
@@ -117,20 +120,20 @@ class ExportSelection(Recording):
             yield b"".join(pending)
 
     def since_start(self, time: float) -> float:
-        """s since the session's start."""
+        """Return the time in s since the session's start."""
         return time - self._steady
 
     def utc(self, time: float) -> str:
-        """A time of the steady clock as ISO 8601, to the millisecond."""
+        """Return a time of the steady clock as ISO 8601, to the millisecond."""
         moment = datetime.fromtimestamp(self._started + time - self._steady, UTC)
         return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
     def date(self, time: float) -> datetime:
-        """A time of the steady clock as a date without a zone, in UTC."""
+        """Return a time of the steady clock as a date without a zone, in UTC."""
         return datetime.fromtimestamp(self._started + time - self._steady, UTC).replace(tzinfo=None)
 
     def utc_ns(self, time: float) -> int:
-        """A time of the steady clock in ns since 1970."""
+        """Return a time of the steady clock in ns since 1970."""
         return self._started_ns + round((time - self._steady) * 1e9)
 
     def _cut(self, rows: bytes, size: int) -> bytes:

@@ -5,10 +5,12 @@ from collections.abc import Callable, Iterator
 from itertools import chain
 from typing import Any, BinaryIO
 
+from robot_runtime.contract.chunks import row_layout
+from robot_runtime.contract.topics import SNAPSHOT
 from server.features.exports.description import write_about
 from server.features.exports.selection import ExportSelection
 from server.features.exports.zip_stream import ZipWriter
-from server.features.sessions.chunks import row_layout
+from server.library.snapshots import read_values
 from server.platform.csv_cells import STYLES, CsvStyle, escape_formula
 from server.platform.store import Reader
 
@@ -16,15 +18,20 @@ from server.platform.store import Reader
 def write_tables(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Write a zip file of `session.json`, a CSV file for each topic and JPEG files.
 
-    Raises StoreError, RecordingError.
+    A snapshot has a file of its values beside it.
+
+    Raise StoreError, RecordingError.
     """
     packing, style = ZipWriter(output), STYLES[source.options.spreadsheet]
     write_about(store, source, packing)
     for name in source.names:
         if source.topics[name]["kind"] == "picture":
             for time, jpeg in source.pictures(name, source.start, source.end):
-                with packing.member(f"{name}/{source.since_start(time):010.3f}.jpg") as file:
+                member = f"{name}/{source.since_start(time):010.3f}"
+                with packing.member(f"{member}.jpg") as file:
                     file.write(jpeg)
+                if name == SNAPSHOT.name:
+                    packing.text(f"{member}.json", read_values(source, time).model_dump_json(indent=2) + "\n")
             continue
         with packing.member(f"{name}.csv") as file:
             file.write(style.mark.encode())

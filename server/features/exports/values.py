@@ -1,69 +1,27 @@
-"""Samples as objects in SI units, for MCAP and Parquet.
-
-A field named `time` becomes `board_time`, since `time` is the sample's; µs become s.
-"""
+"""Samples as objects in SI units, for MCAP and Parquet."""
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain
 from math import isfinite
 from typing import Any
 
+from robot_runtime.contract.chunks import DIGITS, RowField, row_layout, si_fields
 from server.features.exports.selection import ExportSelection
-from server.features.sessions.chunks import DIGITS, SCALED_DIGITS, row_layout
 
-MICRO = 1e-6
 NOT_FINITE = re.compile(r"(?<=[:,\[])-?(?:nan|inf)(?=[,\]}])")
 """A bare word in JSON text that is made of numbers and quoted names."""
-
-
-@dataclass(frozen=True, slots=True)
-class Field:
-    """One field of a topic of rows: `count` values of struct's type `code`, each to be multiplied."""
-
-    name: str
-    unit: str
-    meaning: str
-    code: str
-    count: int
-    scale: float
-
-    @property
-    def digits(self) -> str:
-        """The format of a value, from which the same number is read back."""
-        return DIGITS.get(self.code, "%d" if self.scale == 1 else SCALED_DIGITS)
-
-    @property
-    def columns(self) -> list[str]:
-        """A name for each value."""
-        return [self.name] if self.count == 1 else [f"{self.name}_{place}" for place in range(self.count)]
-
-
-def fields_of(topic: dict[str, Any]) -> list[Field]:
-    """The fields of a topic of rows, from its description by `describe_topics`."""
-    return [
-        Field(
-            name="board_time" if field["name"] == "time" else field["name"],
-            unit="s" if field["unit"] == "µs" else field["unit"],
-            meaning=field["meaning"],
-            code=field["code"],
-            count=field["count"],
-            scale=field["scale"] * MICRO if field["unit"] == "µs" else field["scale"],
-        )
-        for field in topic["fields"]
-    ]
 
 
 Columns = list[Sequence[Any]]
 
 
 class Rows:
-    """Reads a topic of rows: batches of their times (s, steady clock) and of their values by column."""
+    """A topic of rows, read in batches of times (s, steady clock) and of values by column."""
 
     def __init__(self, source: ExportSelection, name: str) -> None:
         topic = source.topics[name]
-        self.fields = fields_of(topic)
+        self.fields = si_fields(topic)
         self._source = source
         self._name = name
         self._row = row_layout(topic).row
@@ -72,7 +30,7 @@ class Rows:
         self._members = ",".join(_member(field) for field in self.fields)
 
     def batches(self) -> Iterator[tuple[Sequence[float], Columns]]:
-        """Yield the rows in batches of some hundreds. Raises StoreError, RecordingError."""
+        """Yield the rows in batches of some hundreds. Raise StoreError, RecordingError."""
         for rows in self._source.batches(self._name):
             times, *counts = zip(*self._row.iter_unpack(rows), strict=True)
             yield (
@@ -84,7 +42,7 @@ class Rows:
             )
 
     def lines(self, head: str, heads: list[Sequence[Any]], columns: Columns) -> list[bytes]:
-        """A JSON object for each row, in UTF-8: `head` is formatted with `heads`, and then come the fields.
+        """Return a JSON object for each row, in UTF-8: `head`, formatted with `heads`, then the fields.
 
         NaN and infinity, which JSON lacks, are null.
         """
@@ -98,6 +56,6 @@ class Rows:
         return text.encode().splitlines()
 
 
-def _member(field: Field) -> str:
+def _member(field: RowField) -> str:
     values = ",".join([field.digits] * field.count)
     return f'"{field.name}":[{values}]' if field.count > 1 else f'"{field.name}":{values}'

@@ -5,10 +5,10 @@ from collections.abc import Iterable, Iterator
 from math import isfinite
 from typing import TYPE_CHECKING, Any, BinaryIO
 
+from robot_runtime.contract.chunks import row_layout
 from server.features.exports.description import describe_session
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.zip_stream import ForwardOnly
-from server.features.sessions.chunks import row_layout
 from server.platform.store import Reader
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ EPOCH = 25_569
 
 
 def require_sheets(source: ExportSelection) -> None:
-    """Raises ExportRequestError where a topic may have more samples than a sheet has lines."""
+    """Raise ExportRequestError where a topic may have more samples than a sheet has lines."""
     large = [f"{name} has {count}" for name, count in source.samples.items() if count >= SHEET_LINES]
     if large:
         raise ExportRequestError(
@@ -39,7 +39,7 @@ def require_sheets(source: ExportSelection) -> None:
 def write_workbook(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Write a workbook: the session's description, and a sheet for each topic but pictures.
 
-    Raises ExportRequestError for a topic that no sheet holds, StoreError, RecordingError.
+    Raise ExportRequestError for a topic that no sheet holds, StoreError, RecordingError.
     """
     from xlsxwriter import Workbook
     from xlsxwriter.exceptions import FileCreateError
@@ -68,27 +68,27 @@ class _Sheet:
         self._date = book.add_format({"num_format": "yyyy-mm-dd hh:mm:ss.000"})
         bold = book.add_format({"bold": True})
         self._sheet.freeze_panes(1, 0)
-        for place, title in enumerate(header):
-            self._sheet.set_column(place, place, max(12, len(title) + 2))
-            self._sheet.write_string(0, place, title, bold)
+        for column, title in enumerate(header):
+            self._sheet.set_column(column, column, max(12, len(title) + 2))
+            self._sheet.write_string(0, column, title, bold)
         if header[1] == "utc":
             self._sheet.set_column(1, 1, 24, self._date)
         self._line = 0
 
     def extend(self, lines: Iterable[Iterable[object]]) -> None:
-        """Add lines. Empty cells stand for null and for what is no number."""
+        """Add lines. Empty cells stand for null and NaN."""
         sheet = self._sheet
         for line in lines:
             self._line += 1
-            for place, value in enumerate(line):
+            for column, value in enumerate(line):
                 if isinstance(value, bool):
-                    sheet.write_boolean(self._line, place, value)
+                    sheet.write_boolean(self._line, column, value)
                 elif isinstance(value, int | float):
                     if isfinite(value):
-                        sheet.write_number(self._line, place, value)
+                        sheet.write_number(self._line, column, value)
                 elif value is not None:
                     # As a string it is no formula, whatever it begins with.
-                    sheet.write_string(self._line, place, _cell_text(value))
+                    sheet.write_string(self._line, column, _cell_text(value))
 
 
 def _header(source: ExportSelection, name: str) -> list[str]:
@@ -118,7 +118,7 @@ def _documents(source: ExportSelection, name: str) -> Iterator[Iterable[object]]
 
 
 def _moment(source: ExportSelection, time: float) -> tuple[float, float]:
-    """s since the session's start, and the date as a spreadsheet has it: days."""
+    """Return the s since the session's start, and the date in a spreadsheet's days."""
     since = source.since_start(time)
     return round(since, 6), (source.row.started + since) / SECONDS_OF_DAY + EPOCH
 
@@ -133,7 +133,7 @@ def _describe(store: Reader, source: ExportSelection) -> Iterator[Iterable[objec
 
 
 def _sheet_names(topics: list[str]) -> list[str]:
-    """A name for each sheet, of the length that a spreadsheet takes."""
+    """Return a name for each sheet, of the length that a spreadsheet takes."""
     names: list[str] = [ABOUT]
     for topic in topics:
         name = topic[:SHEET_NAME_MAX]

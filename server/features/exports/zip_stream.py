@@ -18,13 +18,13 @@ class ZipWriter:
         self._archive = zipfile.ZipFile(ForwardOnly(output), "w", kind, compresslevel=LEVEL)
 
     def text(self, name: str, text: str) -> None:
-        """A member of this text."""
+        """Write a member with this text."""
         with self.member(name) as file:
             file.write(text.encode())
 
     @contextmanager
     def member(self, name: str) -> Iterator[IO[bytes]]:
-        """A member to write to; one at a time. By its name alone zipfile gives it no date of today."""
+        """Open a member for writing; one at a time. Given as a name, zipfile does not date it today."""
         with self._archive.open(name, "w", force_zip64=True) as file:
             yield file
 
@@ -34,16 +34,16 @@ class ZipWriter:
 
 
 class ForwardOnly(io.RawIOBase):
-    """A file without seeking, as a download is."""
+    """A file without seeking, as for a download."""
 
     def __init__(self, output: BinaryIO) -> None:
         self._output = output
 
     def writable(self) -> bool:
-        """Yes."""
+        """Return True."""
         return True
 
     def write(self, data: Any) -> int:
-        """All of it."""
+        """Write all bytes; return their number."""
         self._output.write(data)
         return len(data)

@@ -27,7 +27,7 @@ BYTES_MAX = 2_000_000_000
 
 
 def main() -> int:
-    """Fit once."""
+    """Perform one fit."""
     end_with_parent()
     give_way(NICENESS)
     limit_memory(BYTES_MAX)

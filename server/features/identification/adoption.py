@@ -10,9 +10,9 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.control.craft_gains import craft_gains
 from robot_runtime.durable_files import sync, write_whole
 from robot_runtime.errors import RefusedError
+from server.driving.changes import Changes
 from server.features.identification.effect import describe_effect
 from server.features.identification.schemas import AdoptedCraft
-from server.features.parameters.changes import Changes
 from server.health.monitor import HealthMonitor
 from server.platform.disk_space import FileWriteError, explain_write_error
 from server.platform.settings import Settings
@@ -24,7 +24,7 @@ PREDICTIVE = "predictive"
 
 
 class CraftAdoption:
-    """Adopts a craft for simulator and model-based controller, and undoes that once."""
+    """The adoption of a craft for simulator and model-based controller, and its undoing, once."""
 
     def __init__(
         self, settings: Settings, monitor: HealthMonitor, processes: ProcessSupervisor, changes: Changes
@@ -38,7 +38,7 @@ class CraftAdoption:
         self._turn = asyncio.Lock()
 
     def describe(self) -> AdoptedCraft:
-        """The craft in force."""
+        """Return the craft in force."""
         file = self._settings.craft_file
         title, origin, problem = "", "", self._obstacle()
         if file.exists():
@@ -51,33 +51,33 @@ class CraftAdoption:
             title=title,
             origin=origin,
             file=str(file) if file.exists() else "",
-            can_undo=self._before.exists() and self._settings.craft is None,
+            can_undo=self._before.exists() and not self._settings.craft.file,
             problem=problem,
         )
 
     async def adopt(self, text: str, who: str) -> list[str]:
-        """Adopt the craft of this file; returns the effects in words. Raises RefusedError."""
+        """Adopt the craft of this file; return the effects as text. Raise RefusedError."""
         async with self._turn:
             return await self._change(text.encode(), who, keep=True)
 
     async def undo(self, who: str) -> list[str]:
-        """Restore the craft before the last adoption. Raises RefusedError."""
+        """Restore the craft before the last adoption. Raise RefusedError."""
         async with self._turn:
             if not self._before.exists():
                 raise RefusedError("There is no adoption to undo.")
             return await self._change(await asyncio.to_thread(self._before.read_bytes), who, keep=False)
 
     def _obstacle(self) -> str:
-        """The reason why no craft can be adopted now; empty if there is none."""
-        if self._settings.craft is not None:
-            named = self._settings.craft
+        """Return the reason why no craft can be adopted now; empty if there is none."""
+        if self._settings.craft.file:
+            named = self._settings.craft_file
             return f"robot.toml names the craft file {named}. Remove that entry, or edit the file."
         if (self._monitor.state() or {}).get("armed"):
             return "The robot is armed. Disarm it first."
         return ""
 
     async def _change(self, text: bytes, who: str, *, keep: bool) -> list[str]:
-        """Writes the file, or removes it where `text` is empty; an empty file before it means none."""
+        """Write the file, or remove it where `text` is empty; an empty file before it stands for none."""
         if reason := self._obstacle():
             raise RefusedError(reason)
         old = await asyncio.to_thread(self._read, self._file)

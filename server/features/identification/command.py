@@ -63,11 +63,11 @@ def _progress() -> "ProgressBar[int]":
 def _print(result: "IdentificationResult") -> None:
     from server.features.identification.schemas import describe_improvement
 
-    width = max(len(one.title) for one in result.numbers)
+    width = max(len(number.title) for number in result.numbers)
     echo(f"{'':<{width}}  {'before':>10}  {'found':>10}")
-    for one in result.numbers:
-        value = "" if one.deviation is None else f"{one.value:.4g}"
-        echo(f"{one.title:<{width}}  {one.before:>10.4g}  {value:>10}  {one.words}".rstrip())
+    for number in result.numbers:
+        value = "" if number.deviation is None else f"{number.value:.4g}"
+        echo(f"{number.title:<{width}}  {number.before:>10.4g}  {value:>10}  {number.words}".rstrip())
     for sensor, sigma in result.noise.items():
         echo(f"Noise of the {sensor}: {sigma:.3g}")
     for motion in result.missing:

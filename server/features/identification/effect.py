@@ -1,4 +1,4 @@
-"""The effects of adopting another craft, in words."""
+"""The effects of adopting another craft, as text."""
 
 from dataclasses import fields
 
@@ -8,13 +8,13 @@ from robot_runtime.control.craft_gains import craft_gains
 
 
 def describe_effect(before: Craft, after: Craft) -> list[str]:
-    """The effects of another craft, in words."""
+    """Return the effects of another craft as text."""
     if before == after:
         return ["Nothing: it is the craft in force."]
     changed = [
-        one.name.replace("_", " ")
-        for one in fields(Craft)
-        if getattr(before, one.name) != getattr(after, one.name)
+        field.name.replace("_", " ")
+        for field in fields(Craft)
+        if getattr(before, field.name) != getattr(after, field.name)
     ]
     return [
         f"The simulated robot swims with other numbers: {', '.join(changed)}.",
@@ -24,7 +24,7 @@ def describe_effect(before: Craft, after: Craft) -> list[str]:
 
 
 def _describe_controller(before: dict[str, float], after: dict[str, float]) -> str:
-    numbers = {name: (_words(before[name]), _words(value)) for name, value in after.items()}
+    numbers = {name: (_shown(before[name]), _shown(value)) for name, value in after.items()}
     changed = [
         f"{name.replace('_', ' ')} {new} instead of {old} {Predictive.limits[name].unit}"
         for name, (old, new) in numbers.items()
@@ -35,5 +35,5 @@ def _describe_controller(before: dict[str, float], after: dict[str, float]) -> s
     return f"The model-based controller has {', '.join(changed)}, unless robot.toml sets them."
 
 
-def _words(value: float) -> str:
+def _shown(value: float) -> str:
     return f"{value:.3g}"

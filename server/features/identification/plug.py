@@ -5,11 +5,11 @@ from server.features.identification.runner import IdentificationRunner
 
 
 class IdentificationPlug(Plug):
-    """Ends a run with the server."""
+    """The plug that ends a run with the server."""
 
     def __init__(self, runner: IdentificationRunner) -> None:
         self._runner = runner
 
     async def stop(self) -> None:
-        """Cancel what runs."""
+        """Cancel the running work."""
         await self._runner.close()

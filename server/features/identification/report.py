@@ -1,4 +1,4 @@
-"""The result of a fit as one HTML file: what was found, and a chart of measured over predicted (Plotly)."""
+"""The result of a fit as one HTML file: its numbers, and a chart of measured over predicted (Plotly)."""
 
 from collections.abc import Sequence
 from html import escape
@@ -7,16 +7,16 @@ import plotly.graph_objects as go
 from plotly.io import to_html
 
 from server import VERSION
-from server.features.comparison.report import COLOURS, FONT, PAGE
+from server.analysis.report import COLOURS, GAP, PAGE, draw_rows
 from server.features.identification.schemas import CheckedSession, IdentificationResult, describe_improvement
 
-HIGH, GAP = 170, 44
+HIGH = 170
 LINES = (("measured", "#0d1a22", "solid"), ("before", COLOURS[1], "dot"), ("after", COLOURS[0], "solid"))
 
 
 def write_identification_report(result: IdentificationResult) -> str:
-    """The report as HTML; it needs no network."""
-    names = ", ".join(one.name for one in result.sessions)
+    """Return the report as HTML; it needs no network."""
+    names = ", ".join(session.name for session in result.sessions)
     parts = [
         f"<h1>Craft fitted to {escape(names)}</h1>",
         f"<p>µ-CAT {VERSION}. A ± is one standard deviation.</p>",
@@ -24,12 +24,12 @@ def write_identification_report(result: IdentificationResult) -> str:
             ("Number", "Before", "Found", "Confidence"),
             [
                 (
-                    f"{one.title}, {one.unit}" if one.unit else one.title,
-                    f"{one.before:.4g}",
-                    f"{one.value:.4g}" if one.deviation is not None else "as before",
-                    one.words,
+                    f"{number.title}, {number.unit}" if number.unit else number.title,
+                    f"{number.before:.4g}",
+                    f"{number.value:.4g}" if number.deviation is not None else "as before",
+                    number.words,
                 )
-                for one in result.numbers
+                for number in result.numbers
             ],
         ),
         _missing(result.missing),
@@ -44,7 +44,7 @@ def write_identification_report(result: IdentificationResult) -> str:
 def _missing(missing: list[str]) -> str:
     if not missing:
         return ""
-    lines = "".join(f"<li>{escape(one)}</li>" for one in missing)
+    lines = "".join(f"<li>{escape(entry)}</li>" for entry in missing)
     return f"<h2>Not seen in these sessions</h2><p>These motions are missing:</p><ul>{lines}</ul>"
 
 
@@ -52,64 +52,40 @@ def _check(check: CheckedSession | None) -> str:
     if check is None:
         return "<p>No session was left out, so nothing checks the result.</p>"
     rows = [
-        (one.name, f"{one.before_rms:.3g} {one.unit}", f"{one.after_rms:.3g} {one.unit}")
-        for one in check.channels
+        (channel.name, f"{channel.before_rms:.3g} {channel.unit}", f"{channel.after_rms:.3g} {channel.unit}")
+        for channel in check.channels
     ]
-    words = (
+    text = (
         f"{check.name} is predicted {describe_improvement(check.improvement)} than before: the error is "
         f"{100 * check.after_error:.1f} % of what the signals vary, before {100 * check.before_error:.0f} %."
     )
-    return f"<p>{escape(words)}</p>{_table(('Signal', 'Error before', 'Error after'), rows)}{_chart(check)}"
+    return f"<p>{escape(text)}</p>{_table(('Signal', 'Error before', 'Error after'), rows)}{_chart(check)}"
 
 
 def _chart(check: CheckedSession) -> str:
     """Measured and predicted signals; each window's first 2 s give its start."""
-    figure, count = go.Figure(), len(check.channels)
-    inside = count * (HIGH + GAP)
-    for number, channel in enumerate(check.channels):
-        axis = "" if number == 0 else str(number + 1)
-        top = number * (HIGH + GAP) + GAP
-        layout = {
-            "domain": [1 - (top + HIGH) / inside, 1 - top / inside],
-            "gridcolor": "#d9e0e5",
-            "zeroline": False,
-            "ticksuffix": f" {channel.unit}",
-        }
+    heights = [HIGH] * len(check.channels)
+    titles = [f"<b>{escape(channel.name.capitalize())}</b>" for channel in check.channels]
+    figure = draw_rows(titles, heights, sum(heights) + GAP * (len(heights) - 1))
+    for row, channel in enumerate(check.channels, 1):
+        figure.update_yaxes(ticksuffix=f" {channel.unit}", row=row)
         if channel.name == "depth":
-            layout["autorange"] = "reversed"
-        figure.update_layout({f"yaxis{axis}": layout})
-        figure.add_annotation(
-            text=f"<b>{escape(channel.name.capitalize())}</b>",
-            xref="paper",
-            yref="paper",
-            x=0,
-            y=1 - top / inside,
-            xanchor="left",
-            yanchor="bottom",
-            showarrow=False,
-        )
+            figure.update_yaxes(autorange="reversed", row=row)
         for name, colour, dash in LINES:
-            figure.add_trace(
-                go.Scatter(
-                    x=check.times,
-                    y=getattr(channel, name),
-                    yaxis=f"y{axis}",
-                    name=name,
-                    legendgroup=name,
-                    showlegend=number == 0,
-                    mode="lines",
-                    line={"color": colour, "width": 1.3, "dash": dash},
-                )
+            line = go.Scatter(
+                x=check.times,
+                y=getattr(channel, name),
+                name=name,
+                legendgroup=name,
+                showlegend=row == 1,
+                mode="lines",
+                line={"color": colour, "width": 1.3, "dash": dash},
             )
+            figure.add_trace(line, row, 1)
     figure.update_layout(
-        height=inside + 60,
-        margin={"l": 70, "r": 12, "t": 8, "b": 50},
-        paper_bgcolor="white",
-        plot_bgcolor="white",
-        font={"family": FONT, "size": 12, "color": "#0d1a22"},
-        legend={"orientation": "h", "y": 1.01},
-        xaxis={"title": "s", "gridcolor": "#d9e0e5", "anchor": f"y{count}"},
+        margin_t=44, legend={"orientation": "h", "yref": "container", "y": 1, "yanchor": "top"}
     )
+    figure.update_xaxes(title="s", row=len(heights))
     return str(to_html(figure, include_plotlyjs=True, full_html=False, config={"displaylogo": False}))
 
 

@@ -1,4 +1,4 @@
-"""The result of a fit as the page, the report and the craft file have it."""
+"""The result of a fit for the page, the report and the craft file."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
@@ -38,28 +38,30 @@ BREAK = 0.005
 
 
 def describe(
-    found: Identification, sessions: Mapping[int, str], left_out: int | None, start: Craft
+    identification: Identification, sessions: Mapping[int, str], left_out: int | None, start: Craft
 ) -> IdentificationResult:
-    """The result of a fit of `start` to the sessions, given with their names."""
-    craft = _rounded(found.craft, start)
+    """Return the result of a fit of `start` to the sessions, given with their names."""
+    craft = _rounded(identification.craft, start)
     return IdentificationResult(
         sessions=[
-            FittedSession(id=one, name=name, windows=windows, offsets=_numbers(offsets))
-            for (one, name), windows, offsets in zip(
-                sessions.items(), found.windows, found.offsets, strict=True
+            FittedSession(id=number, name=name, windows=windows, offsets=_numbers(offsets))
+            for (number, name), windows, offsets in zip(
+                sessions.items(), identification.windows, identification.offsets, strict=True
             )
         ],
-        numbers=[_describe_number(one) for one in found.results],
-        noise={name: _significant(sigma, 3) for name, sigma in found.noise.items()},
-        check=None if found.prediction is None else _describe_check(found.prediction, left_out or 0),
-        missing=_missing(found.results),
+        numbers=[_describe_number(result) for result in identification.results],
+        noise={name: _significant(sigma, 3) for name, sigma in identification.noise.items()},
+        check=None
+        if identification.prediction is None
+        else _describe_check(identification.prediction, left_out or 0),
+        missing=_missing(identification.results),
         affected=describe_effect(start, craft),
-        craft=write_craft(craft, list(sessions.values()), found.prediction),
+        craft=write_craft(craft, list(sessions.values()), identification.prediction),
     )
 
 
 def write_craft(craft: Craft, names: Sequence[str], check: Prediction | None) -> str:
-    """The craft file."""
+    """Return the craft file."""
     day = f"{datetime.now(UTC):%Y-%m-%d}"
     origin = f"Fitted to {', '.join(names)} on {day}."
     if check is not None:
@@ -69,40 +71,40 @@ def write_craft(craft: Craft, names: Sequence[str], check: Prediction | None) ->
     return tomli_w.dumps(document)
 
 
-def _describe_number(one: QuantityResult) -> IdentifiedNumber:
-    quantity = one.quantity
-    if one.deviation is None:
-        words = f"not seen in these sessions: it needs {quantity.motion}"
+def _describe_number(result: QuantityResult) -> IdentifiedNumber:
+    quantity = result.quantity
+    if result.deviation is None:
+        text = f"not seen in these sessions: it needs {quantity.motion}"
     else:
-        words = f"± {_significant(one.deviation, 2):g} {quantity.unit}".rstrip()
-        if one.seen == "weakly":
-            words += "; weakly seen"
+        text = f"± {_significant(result.deviation, 2):g} {quantity.unit}".rstrip()
+        if result.seen == "weakly":
+            text += "; weakly seen"
     return IdentifiedNumber(
         name=quantity.name,
         title=quantity.title,
         unit=quantity.unit,
-        before=_significant(one.before, DIGITS),
-        value=_significant(one.value, DIGITS),
-        deviation=one.deviation,
-        seen=one.seen,
-        words=words,
+        before=_significant(result.before, DIGITS),
+        value=_significant(result.value, DIGITS),
+        deviation=result.deviation,
+        seen=result.seen,
+        words=text,
     )
 
 
 def _missing(results: Sequence[QuantityResult]) -> list[str]:
-    """The missing motions, each with the numbers that stay unknown without it."""
+    """Return the missing motions, each with the numbers that stay unknown without it."""
     motions: dict[str, list[str]] = {}
-    for one in results:
-        if one.seen == "no":
-            title = one.quantity.title
-            motions.setdefault(one.quantity.motion, []).append(title[0].lower() + title[1:])
+    for result in results:
+        if result.seen == "no":
+            title = result.quantity.title
+            motions.setdefault(result.quantity.motion, []).append(title[0].lower() + title[1:])
     return [f"{motion[0].upper()}{motion[1:]}: {', '.join(names)}" for motion, names in motions.items()]
 
 
 def _describe_check(check: Prediction, session: int) -> CheckedSession:
     times: list[float] = []
     for row in check.times[:SHOWN_WINDOWS]:
-        shown = [round(float(one), 3) for one in row[::SHOWN_EVERY]]
+        shown = [round(float(value), 3) for value in row[::SHOWN_EVERY]]
         times += [*shown, round(shown[-1] + BREAK, 3)]
     return CheckedSession(
         id=session,
@@ -115,32 +117,32 @@ def _describe_check(check: Prediction, session: int) -> CheckedSession:
             PredictedChannel(
                 name=name,
                 unit=unit,
-                before_rms=_significant(float(check.before_rms[place]), 3),
-                after_rms=_significant(float(check.after_rms[place]), 3),
-                measured=_line(check.measured[:, place]),
-                before=_line(check.before[:, place]),
-                after=_line(check.after[:, place]),
+                before_rms=_significant(float(check.before_rms[index]), 3),
+                after_rms=_significant(float(check.after_rms[index]), 3),
+                measured=_line(check.measured[:, index]),
+                before=_line(check.before[:, index]),
+                after=_line(check.after[:, index]),
             )
-            for place, (name, unit) in enumerate(CHANNEL_NAMES)
+            for index, (name, unit) in enumerate(CHANNEL_NAMES)
         ],
     )
 
 
 def _line(windows: Floats) -> list[float | None]:
-    """The windows one after the other, with a break after each."""
+    """Return the windows one after the other, with a break after each."""
     line: list[float | None] = []
     for row in windows[:SHOWN_WINDOWS]:
-        line += [_significant(float(one), 4) for one in row[::SHOWN_EVERY]] + [None]
+        line += [_significant(float(value), 4) for value in row[::SHOWN_EVERY]] + [None]
     return line
 
 
 def _numbers(values: Floats) -> list[float] | None:
-    return None if np.isnan(values).any() else [_significant(one, 3) for one in values.tolist()]
+    return None if np.isnan(values).any() else [_significant(value, 3) for value in values.tolist()]
 
 
 def _rounded(craft: Craft, start: Craft) -> Craft:
-    """The craft, with numbers that differ from `start` to the digits of a file."""
-    pairs = {one.name: (getattr(craft, one.name), getattr(start, one.name)) for one in fields(Craft)}
+    """Return the craft, with numbers that differ from `start` to the digits of a file."""
+    pairs = {field.name: (getattr(craft, field.name), getattr(start, field.name)) for field in fields(Craft)}
     return replace(craft, **{name: _round(new, old) for name, (new, old) in pairs.items()})
 
 
@@ -148,7 +150,7 @@ def _round(new: Any, old: Any) -> Any:
     if new == old:
         return old
     if isinstance(new, tuple):
-        return tuple(_round(one, before) for one, before in zip(new, old, strict=True))
+        return tuple(_round(value, before) for value, before in zip(new, old, strict=True))
     if isinstance(new, SensorQuality):
         return replace(new, noise=_significant(new.noise, DIGITS))
     return _significant(new, DIGITS)

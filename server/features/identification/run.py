@@ -15,7 +15,7 @@ NO_SCIPY = (
 
 
 def check_choice(sessions: Sequence[int], left_out: int | None) -> None:
-    """Raises RefusedError for a choice of sessions that makes no sense, and where SciPy is missing."""
+    """Raise RefusedError for an impossible choice of sessions, and where SciPy is missing."""
     if left_out in sessions:
         raise RefusedError(f"Session {left_out} cannot be both fitted and left out. Choose another one.")
     if find_spec("scipy") is None:
@@ -29,9 +29,10 @@ def run_identification(
     start: Craft,
     progress: Callable[[float], None],
 ) -> IdentificationResult:
-    """Fits the craft to the sessions.
+    """Fit the craft to the sessions.
 
-    Raises RefusedError in words where they cannot be used, UnknownSessionError, StoreError, RecordingError.
+    Raise RefusedError with the reason if they cannot be used, UnknownSessionError, StoreError,
+    RecordingError.
     """
     check_choice(sessions, left_out)
     from robot_runtime.experiments.identification.identify import identify
@@ -39,11 +40,11 @@ def run_identification(
     from server.features.identification.sessions import read_streams
 
     chosen = list(dict.fromkeys(sessions))
-    streams = [read_streams(store, one) for one in chosen]
+    streams = [read_streams(store, number) for number in chosen]
     check = None if left_out is None else read_streams(store, left_out)
     try:
-        found = identify(streams, check, start, progress)
+        identification = identify(streams, check, start, progress)
     except ValueError as problem:
         raise RefusedError(str(problem)) from problem
-    names = {one: streamed.name for one, streamed in zip(chosen, streams, strict=True)}
-    return describe(found, names, left_out, start)
+    names = {number: streamed.name for number, streamed in zip(chosen, streams, strict=True)}
+    return describe(identification, names, left_out, start)

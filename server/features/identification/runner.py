@@ -1,12 +1,7 @@
 """Runs fits for the page, each in a process of its own, one at a time."""
 
 import asyncio
-import json
 import logging
-import os
-import sys
-from asyncio.subprocess import PIPE, Process
-from contextlib import suppress
 
 from robot_runtime.errors import RefusedError
 from server.features.identification.adoption import CraftAdoption
@@ -21,11 +16,10 @@ from server.features.identification.schemas import (
 from server.platform.errors import explain_internal_error
 from server.platform.runs import new_run, require_run
 from server.platform.settings import Settings
-from server.processes.exit_status import describe_status
+from server.processes.side_process import SideProcess
 
 log = logging.getLogger(__name__)
 
-LINE_BYTES_MAX = 16_000_000
 SECONDS_MAX = 1800.0
 """Time that a fit may take: a minute on a desktop computer, half an hour on a Raspberry Pi."""
 CANCELLED = "It was cancelled."
@@ -42,12 +36,12 @@ class IdentificationRunner:
         self._task: asyncio.Task[None] | None = None
 
     def state(self) -> IdentificationState:
-        """The running fit, or the last one with its result, and the craft in force."""
+        """Return the running fit, or the last one with its result, and the craft in force."""
         last = self._last if self._active is None else None
         return IdentificationState(active=self._active, last=last, craft=self._adoption.describe())
 
     def start(self, choice: IdentificationStart) -> str:
-        """Start a fit, and return its run. Raises RefusedError."""
+        """Start a fit, and return its run. Raise RefusedError."""
         if self._active is not None:
             raise RefusedError("A fit is running. Wait for its end, or cancel it.")
         check_choice(choice.sessions, choice.left_out)
@@ -59,9 +53,9 @@ class IdentificationRunner:
         return run
 
     def cancel(self, run: str | None = None) -> None:
-        """End the running fit, or this one alone; the last result stays away.
+        """End the running fit, or only this run; there is then no last result.
 
-        Raises RefusedError if none runs, RunOverError.
+        Raise RefusedError if none runs, RunOverError.
         """
         require_run(run, None if self._active is None else self._active.run, "fit")
         if self._task is None or self._active is None:
@@ -69,9 +63,9 @@ class IdentificationRunner:
         self._task.cancel()
 
     async def adopt(self, who: str, run: str | None = None) -> list[str]:
-        """Adopt the last fit's craft, or that of this one alone; returns the effects in words.
+        """Adopt the last fit's craft, or only that of this run; return the effects as text.
 
-        Raises RefusedError, RunOverError.
+        Raise RefusedError, RunOverError.
         """
         require_run(run, None if self._last is None else self._last.run, "fit")
         if self._active is not None or self._last is None or self._last.result is None:
@@ -107,37 +101,21 @@ class IdentificationRunner:
             self._active = None
 
     async def _fit(self, choice: IdentificationStart) -> tuple[str, IdentificationResult | None]:
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "server.features.identification",
-            str(self._settings.data.database),
-            str(self._settings.craft_file),
-            choice.model_dump_json(),
-            stdout=PIPE,
-            limit=LINE_BYTES_MAX,
-            # One core at most: control, recording and the page need the others.
-            env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-        )
-        try:
-            return await self._follow(process)
-        finally:
-            if process.returncode is None:
-                with suppress(ProcessLookupError):
-                    process.kill()
-                await process.wait()
-
-    async def _follow(self, process: Process) -> tuple[str, IdentificationResult | None]:
         """Problem and result of the process; one of them is empty."""
-        assert process.stdout is not None
-        async for line in process.stdout:
-            message = json.loads(line)
-            if "progress" in message:
-                assert self._active is not None
-                self._active = self._active.model_copy(update={"progress": message["progress"]})
-            elif "result" in message:
-                return "", IdentificationResult.model_validate(message["result"])
-            else:
-                return str(message["problem"]), None
-        status = await process.wait()
-        return f"The process of the fit {describe_status(status)}. The computer may lack memory.", None
+        database, craft = self._settings.data.database, self._settings.craft_file
+        with SideProcess(
+            "server.features.identification",
+            [str(database), str(craft), choice.model_dump_json()],
+            # One core at most: control, recording and the page need the others.
+            environment={"OPENBLAS_NUM_THREADS": "1"},
+        ) as process:
+            async for document in process.documents():
+                if "progress" in document:
+                    assert self._active is not None
+                    self._active = self._active.model_copy(update={"progress": document["progress"]})
+                elif "result" in document:
+                    return "", IdentificationResult.model_validate(document["result"])
+                else:
+                    return str(document["problem"]), None
+            end = await process.describe_end()
+            return f"The process of the fit {end} The computer may lack memory.", None

@@ -71,7 +71,7 @@ class CheckedSession(BaseModel):
 
 
 def describe_improvement(improvement: float) -> str:
-    """The share of the error before over the one after, in words: below 1 the fit has made it worse."""
+    """Return the error before over the error after, as text: below 1 the fit has made it worse."""
     return f"{improvement:.1f} times better" if improvement >= 1 else f"{1 / improvement:.1f} times worse"
 
 

@@ -1,23 +1,24 @@
-"""Reads what identification needs of recorded sessions."""
+"""The streams of recorded sessions for identification."""
 
 import numpy as np
 
+from robot_runtime.contract.topics import DEPTH, IMU, MOTOR
 from robot_runtime.experiments.identification.streams import SessionStreams
-from server.features.sessions.recording import Recording, reading_content
-from server.features.sessions.session import find_row
+from server.library.content import Recording, reading_content
 from server.metrics.series import Floats
 from server.platform.store import Reader
+from server.recording.session import find_row
 
 
 def read_streams(store: Reader, session: int) -> SessionStreams:
-    """The streams of a session. Raises UnknownSessionError, StoreError, RecordingError."""
+    """Return the streams of a session. Raise UnknownSessionError, StoreError, RecordingError."""
     recording = Recording(store, find_row(store, session))
     with reading_content(recording.row):
-        motor, angles = _columns(recording, "motor", "angle", 4)
-        inertial, rates = _columns(recording, "imu", "rate", 3)
-        _, forces = _columns(recording, "imu", "force", 3)
-        _, attitudes = _columns(recording, "imu", "attitude", 4)
-        times, depth = recording.columns("depth", ["depth", "pressure"])
+        motor, angles = _columns(recording, MOTOR.name, "angle", 4)
+        inertial, rates = _columns(recording, IMU.name, "rate", 3)
+        _, forces = _columns(recording, IMU.name, "force", 3)
+        _, attitudes = _columns(recording, IMU.name, "attitude", 4)
+        times, depth = recording.columns(DEPTH.name, ["depth", "pressure"])
         start = recording.row.started_steady
         order = np.argsort(inertial, kind="stable")
         motor_order, depth_order = np.argsort(motor, kind="stable"), np.argsort(times, kind="stable")
@@ -36,7 +37,7 @@ def read_streams(store: Reader, session: int) -> SessionStreams:
 
 
 def _columns(recording: Recording, topic: str, field: str, count: int) -> tuple[Floats, Floats]:
-    """Times and values of a field of several numbers, of shape (samples, count)."""
+    """Return times and values of a field of several numbers, of shape (samples, count)."""
     names = [f"{field}_{index}" for index in range(count)]
     times, values = recording.columns(topic, names)
     return times, np.stack([values[name] for name in names], axis=1)

@@ -1,4 +1,4 @@
-"""Installation on a Raspberry Pi or any Debian: environments, services, and settings of the computer."""
+"""Installation on a Raspberry Pi or any Debian: environments, services, updates, settings."""
 
 from server.feature import Feature
 
@@ -10,4 +10,6 @@ FEATURE = Feature(
         "rollback": "server.features.installation.command:rollback",
         "uninstall": "server.features.installation.command:uninstall",
     },
+    routes=("server.features.installation.routes:router",),
+    plug="server.features.installation.plug:InstallationPlug",
 )

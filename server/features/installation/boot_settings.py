@@ -11,15 +11,15 @@ HEADER = "# For the serial line to the robot's board, by mucat install"
 
 
 def edit_config(text: str) -> str:
-    """config.txt with the lines of the UART, at its end and for every model; unchanged where it has them."""
-    section, found = "all", set()
+    """Return config.txt with the UART's lines, at its end and for every model; unchanged if it has them."""
+    section, present = "all", set()
     for line in text.splitlines():
         plain = line.split("#")[0].replace(" ", "")
         if plain.startswith("[") and plain.endswith("]"):
             section = plain[1:-1]
         elif section == "all":
-            found.add(plain)
-    missing = [line for line in UART_LINES if line not in found]
+            present.add(plain)
+    missing = [line for line in UART_LINES if line not in present]
     if not missing:
         return text
     ending = "" if text.endswith("\n") or not text else "\n"
@@ -27,19 +27,19 @@ def edit_config(text: str) -> str:
 
 
 def edit_kernel_line(text: str) -> str:
-    """cmdline.txt without consoles on the board's line, and with limits of memory; it stays one line."""
-    words = text.split()
+    """Return cmdline.txt, one line, without consoles on the board's line, and with limits of memory."""
+    arguments = text.split()
     chosen = [
         word
-        for word in words
+        for word in arguments
         if not (word.startswith("console=") and word.removeprefix("console=").split(",")[0] in CONSOLES)
     ]
     chosen += [word for word in MEMORY_WORDS if word not in chosen]
-    return text if chosen == words else " ".join(chosen) + "\n"
+    return text if chosen == arguments else " ".join(chosen) + "\n"
 
 
 def describe_change(name: str, before: str, after: str) -> str:
-    """The change as a unified difference; empty without one."""
+    """Return the change as a unified difference; empty without one."""
     lines = difflib.unified_diff(
         before.splitlines(), after.splitlines(), f"{name} now", f"{name} afterwards", lineterm="", n=1
     )

@@ -30,8 +30,8 @@ OPEN_UMASK = 0o022
 def install(release: Path | None, *, yes: bool, dry_run: bool) -> None:
     """Install µ-CAT as services on this computer.
 
-    RELEASE is a folder of wheels; without one it is that of the installed version. What is there already
-    stays; done again, it mends what is missing.
+    RELEASE is a folder of wheels; the default is that of the installed version. Existing files stay; a
+    repeated installation adds missing ones.
     """
     places = InstallPlaces()
     _require_root("install", dry=dry_run)
@@ -39,12 +39,12 @@ def install(release: Path | None, *, yes: bool, dry_run: bool) -> None:
     effects = Effects(echo, dry=dry_run)
     installer = Installer(places, effects, lambda question: yes or click.confirm(question, default=False))
     try:
-        found = read_release((release or places.current / WHEELS).absolute())
-        if (found.folder / SIGNATURE).exists():
-            own = found.folder / "release.pem"
-            check_signature(found, places.key if places.key.exists() or not own.exists() else own)
+        loaded = read_release((release or places.current / WHEELS).absolute())
+        if (loaded.folder / SIGNATURE).exists():
+            own = loaded.folder / "release.pem"
+            check_signature(loaded, places.key if places.key.exists() or not own.exists() else own)
         with nullcontext() if dry_run else hold(places.lock):
-            installer.install(found)
+            installer.install(loaded)
     except SetupError as problem:
         raise CommandError(str(problem)) from problem
     if not dry_run:
@@ -117,7 +117,7 @@ def _require_root(command: str, *, dry: bool) -> None:
 
 
 def _update_for_page(places: InstallPlaces, effects: Effects) -> str:
-    """Update to the release that the page has sent, once; returns its version. Raises SetupError."""
+    """Update to the release that the page has sent, once; return its version. Raise SetupError."""
     effects.remove(places.request)
     try:
         return Updater(places, effects).update(places.requested)
@@ -126,7 +126,7 @@ def _update_for_page(places: InstallPlaces, effects: Effects) -> str:
 
 
 def page_address(places: InstallPlaces) -> str:
-    """The page's address for other computers, by the installed configuration. Raises SetupError."""
+    """Return the page's address for other computers, by the installed configuration. Raise SetupError."""
     settings = read_usable_settings(places.config, places.data, None, None, {})
     return settings.base_url(f"{socket.gethostname().lower()}.local")
 

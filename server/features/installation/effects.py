@@ -1,7 +1,7 @@
-"""Everything that an installation or an update changes goes through here: said, done, and repeatable.
+"""All changes of an installation or an update: announced, performed, and repeatable.
 
 Each effect is whole or not at all, so that after a power cut between any two of them the same work can be
-done again. `before` is called with the words of each effect: tests cut the power there.
+done again. `before` is called with the text of each effect: tests cut the power there.
 """
 
 import os
@@ -26,13 +26,13 @@ Run = Callable[[Sequence[str], Mapping[str, str], float], "subprocess.CompletedP
 
 
 class CommandFailedError(SetupError):
-    """A command has failed; its last words are in the text."""
+    """A command has failed; its last output is in the text."""
 
 
 def run_command(
     command: Sequence[str], environment: Mapping[str, str], seconds: float
 ) -> "subprocess.CompletedProcess[str]":
-    """Run a command of this computer, its output taken. Raises OSError, TimeoutExpired."""
+    """Run a command of this computer, and capture its output. Raise OSError, TimeoutExpired."""
     return subprocess.run(
         command,
         stdin=subprocess.DEVNULL,
@@ -46,7 +46,7 @@ def run_command(
 
 
 class Effects:
-    """Does what is to be done, and says it; in a dry run it only says it. All raise SetupError."""
+    """The effects, each announced and then performed; a dry run only announces them. All raise SetupError."""
 
     def __init__(
         self,
@@ -61,16 +61,16 @@ class Effects:
         self._run = run
         self._before = before
 
-    def say(self, words: str) -> None:
-        """Say it; a terminal that is gone, as that of a lost ssh session, ends nothing."""
+    def say(self, text: str) -> None:
+        """Print the text; a lost terminal, such as that of a closed ssh session, ends nothing."""
         with suppress(OSError):
-            self._say(words)
+            self._say(text)
 
-    def _begin(self, words: str) -> bool:
-        """Say it; returns True where it is to be done."""
-        self.say(f"would {words}" if self.dry else words)
+    def _begin(self, text: str) -> bool:
+        """Announce the effect; return True if it is to be performed."""
+        self.say(f"would {text}" if self.dry else text)
         if not self.dry:
-            self._before(words)
+            self._before(text)
         return not self.dry
 
     def run(
@@ -81,26 +81,26 @@ class Effects:
         quiet: bool = False,
         accepted: Sequence[int] = (0,),
     ) -> str:
-        """Run a command; returns its output. `quiet`: it changes nothing, and is run in a dry run too.
+        """Run a command; return its output. `quiet`: it changes nothing, and is run in a dry run too.
 
         An exit status that is not among the `accepted` ones raises CommandFailedError.
         """
-        words = [str(one) for one in command]
-        if not quiet and not self._begin("run " + " ".join(words)):
+        arguments = [str(argument) for argument in command]
+        if not quiet and not self._begin("run " + " ".join(arguments)):
             return ""
         try:
-            done = self._run(words, environment or {}, seconds)
+            done = self._run(arguments, environment or {}, seconds)
         except FileNotFoundError as problem:
-            raise CommandFailedError(f"There is no program {words[0]}: install it with apt.") from problem
+            raise CommandFailedError(f"There is no program {arguments[0]}: install it with apt.") from problem
         except (OSError, subprocess.TimeoutExpired) as problem:
-            raise CommandFailedError(f"{words[0]} could not be run: {problem}.") from problem
+            raise CommandFailedError(f"{arguments[0]} could not be run: {problem}.") from problem
         if done.returncode not in accepted:
             last = " ".join((done.stderr.strip() or done.stdout.strip()).split())[-WORDS_SHOWN:]
-            raise CommandFailedError(f"{Path(words[0]).name} failed ({done.returncode}): {last}")
+            raise CommandFailedError(f"{Path(arguments[0]).name} failed ({done.returncode}): {last}")
         return done.stdout
 
     def write(self, path: Path, text: str, mode: int = 0o644) -> bool:
-        """Write a file that everybody may read; returns True if it was not so before."""
+        """Write a file that everybody may read; return True if that changed it."""
         if path.exists() and path.read_text(encoding="utf-8") == text:
             return False
         if self._begin(f"write {path}"):
@@ -114,7 +114,7 @@ class Effects:
         return True
 
     def link(self, path: Path, target: Path) -> bool:
-        """Make a link lead to the target, in one step; returns True if it did not before."""
+        """Make a link lead to the target, in one step; return True if that changed it."""
         if path.is_symlink() and path.readlink() == target:
             return False
         if self._begin(f"link {path} to {target}"):
@@ -130,23 +130,23 @@ class Effects:
         return True
 
     def gather(self, files: Sequence[Path], folder: Path) -> None:
-        """Put the files into a folder: as further names where they are on the same disk, else as copies."""
+        """Put the files into a folder: as hard links on the same disk, else as copies."""
         if not self._begin(f"put {len(files)} files into {folder}"):
             return
         try:
             make_folder(folder)
             for file in files:
-                place = folder / file.name
-                place.unlink(missing_ok=True)
+                target = folder / file.name
+                target.unlink(missing_ok=True)
                 try:
-                    place.hardlink_to(file)
+                    target.hardlink_to(file)
                 except OSError:
-                    shutil.copyfile(file, place)
+                    shutil.copyfile(file, target)
         except OSError as problem:
             raise SetupError(explain_write_error(problem, folder)) from problem
 
     def copy(self, files: Sequence[Path], folder: Path) -> None:
-        """Copy the files into a folder: nobody else can change what lies there."""
+        """Copy the files into a folder that nobody else can change."""
         if not self._begin(f"copy {len(files)} files into {folder}"):
             return
         try:
@@ -163,8 +163,8 @@ class Effects:
         try:
             make_folder(folder)
             with zipfile.ZipFile(archive) as content:
-                members = [one for one in content.infolist() if not one.is_dir()]
-                if sum(one.file_size for one in members) > limit:
+                members = [member for member in content.infolist() if not member.is_dir()]
+                if sum(member.file_size for member in members) > limit:
                     raise SetupError(f"{archive} unpacks to over {limit / 1e6:.0f} MB: it is no release.")
                 for member in members:
                     name = member.filename.rpartition("/")[2]
@@ -176,12 +176,12 @@ class Effects:
             raise SetupError(explain_write_error(problem, folder)) from problem
 
     def sync_disk(self) -> None:
-        """Flush to the disk what commands have written."""
+        """Flush the output of commands to the disk."""
         if self._begin("flush the disk"):
             os.sync()
 
     def remove(self, path: Path) -> None:
-        """Remove a file, a link or a folder with all that is in it; where it is not there nothing happens."""
+        """Remove a file, a link or a folder with its content; a missing one is no error."""
         if not path.is_symlink() and not path.exists():
             return
         if not self._begin(f"remove {path}"):
@@ -197,6 +197,6 @@ class Effects:
 
 
 def _unpack_member(content: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> None:
-    """Unpack as many bytes as the archive announced: zipfile refuses what has more, or another CRC."""
+    """Unpack as many bytes as the archive announced: zipfile refuses a member with more, or another CRC."""
     with content.open(member) as packed, path.open("wb") as file:
         shutil.copyfileobj(packed, file)

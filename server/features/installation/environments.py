@@ -28,9 +28,9 @@ WHEELS = "wheels"
 
 
 def build_environment(effects: Effects, places: InstallPlaces, release: Release) -> Path:
-    """Build the release's environment, unless it is complete; no network is needed. Raises SetupError.
+    """Build the release's environment, unless it is complete; no network is needed. Raise SetupError.
 
-    One that was cut off is built anew, and one of another release with this version, unless it is in use.
+    An incomplete environment is built anew, as is one of another release with this version, unless in use.
     """
     environment = places.version(release.version)
     if places.is_complete(environment) and (
@@ -79,7 +79,7 @@ def build_environment(effects: Effects, places: InstallPlaces, release: Release)
 
 
 def _requirement(release: Release, shared: list[Path]) -> str:
-    """mucat itself, with the extras that the release brings, and those that the version in use has."""
+    """Return mucat's requirement, with the extras of the release, and those of the version in use."""
     own = {_split(wheel)[0] for wheel in release.folder.glob("*.whl")}
     there = own | {_split(wheel)[0] for wheel in shared}
     extras = [extra for extra, package in EXTRAS if package in there]
@@ -90,12 +90,12 @@ def _requirement(release: Release, shared: list[Path]) -> str:
 
 
 def _needs_system_packages(places: InstallPlaces) -> bool:
-    """True on a Raspberry Pi, whose camera library comes by apt alone, and with 32 bits."""
+    """Return True on a Raspberry Pi, whose camera library comes by apt alone, and with 32 bits."""
     return BITS == 32 or (places.root / SYSTEM_PACKAGES / "picamera2").exists()
 
 
 def _share_system_packages(effects: Effects, places: InstallPlaces, environment: Path) -> None:
-    """Makes an environment see the system's packages, where one that it needs has come since it was built."""
+    """Give an environment access to the system's packages, if a needed one was installed since its build."""
     if _needs_system_packages(places):
         settings = environment / "pyvenv.cfg"
         text = settings.read_text(encoding="utf-8")
@@ -103,7 +103,7 @@ def _share_system_packages(effects: Effects, places: InstallPlaces, environment:
 
 
 def _check_system_packages(places: InstallPlaces) -> None:
-    """With 32 bits some packages come by apt alone. Raises SetupError where they are missing."""
+    """Check the packages that come by apt alone with 32 bits. Raise SetupError where they are missing."""
     missing = [name for name in FROM_APT if not (places.root / SYSTEM_PACKAGES / name).exists()]
     if missing:
         raise SetupError(
@@ -113,7 +113,7 @@ def _check_system_packages(places: InstallPlaces) -> None:
 
 
 def _is_made_of(environment: Path, release: Release) -> bool:
-    """True where the environment was built of these very files, or the release has no checksums."""
+    """Return True where the environment was built of exactly these files, or the release has no checksums."""
     sums = _read_sums(release.folder)
     return not sums or _read_sums(environment) == sums
 
@@ -124,7 +124,7 @@ def _read_sums(folder: Path) -> str:
 
 
 def _find_shared(places: InstallPlaces, release: Release) -> list[Path]:
-    """The wheels of the version in use that the release lacks; not other versions of those that it has."""
+    """Return the wheels of the version in use that the release has in no version."""
     own = {_split(wheel)[0] for wheel in release.folder.glob("*.whl")}
     return [wheel for wheel in sorted((places.current / WHEELS).glob("*.whl")) if _split(wheel)[0] not in own]
 
@@ -132,8 +132,8 @@ def _find_shared(places: InstallPlaces, release: Release) -> list[Path]:
 def _store_wheels(
     effects: Effects, places: InstallPlaces, environment: Path, release: Release, shared: list[Path]
 ) -> None:
-    """Store the release's wheels, and of the shared ones those that the environment was made of."""
-    present = [_normalise(one.stem) for one in environment.glob("lib/python*/site-packages/*.dist-info")]
+    """Store the release's wheels, and the shared ones from which the environment was made."""
+    present = [_normalise(info.stem) for info in environment.glob("lib/python*/site-packages/*.dist-info")]
     if used := [wheel for wheel in shared if "-".join(_split(wheel)) in present]:
         effects.gather(used, environment / WHEELS)
     # Only root can change what lies in `incoming`.
@@ -142,7 +142,7 @@ def _store_wheels(
 
 
 def _split(wheel: Path) -> tuple[str, str]:
-    """Name and version of a wheel, both as `_normalise` spells them."""
+    """Return name and version of a wheel, both as `_normalise` spells them."""
     name, _, rest = wheel.name.partition("-")
     return _normalise(name), _normalise(rest.partition("-")[0])
 

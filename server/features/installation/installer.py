@@ -26,7 +26,7 @@ Confirm = Callable[[str], bool]
 
 
 class Installer:
-    """An installation at these places; `confirm` asks a person before the boot settings are changed."""
+    """An installation at these paths; `confirm` asks a person before the boot settings are changed."""
 
     def __init__(self, places: InstallPlaces, effects: Effects, confirm: Confirm) -> None:
         self._places = places
@@ -34,7 +34,7 @@ class Installer:
         self._confirm = confirm
 
     def install(self, release: Release) -> None:
-        """Install the release, or mend an installation of its version. Raises SetupError."""
+        """Install the release, or mend an installation of its version. Raise SetupError."""
         self._refuse_other(release)
         if self._must_restart():
             refuse_in_use(self._effects, self._places)
@@ -56,7 +56,7 @@ class Installer:
             )
 
     def _must_restart(self) -> bool:
-        """True where the services are there and differ from those that are to be written."""
+        """Return True where installed services differ from the new ones."""
         units = self._places.units
         return any(
             (units / name).exists() and (units / name).read_text(encoding="utf-8") != text
@@ -67,7 +67,7 @@ class Installer:
         places = self._places
         if places.is_complete(places.version(release.version)):
             return
-        folder = next(one for one in (places.software, *places.software.parents) if one.exists())
+        folder = next(folder for folder in (places.software, *places.software.parents) if folder.exists())
         if (free := free_bytes(folder)) < INSTALL_BYTES:
             raise SetupError(
                 f"{free / 1e6:.0f} MB are free for {places.software}, and an installation needs "
@@ -94,13 +94,15 @@ class Installer:
             effects.run("install", "-d", "-m", "700", "-o", USER, "-g", USER, places.data)
 
     def _has_line(self, file: str, name: str, without: str = "") -> bool:
-        """True where the file has an entry of this name, whose members lack `without`."""
+        """Return True where the file has an entry of this name, whose members lack `without`."""
         try:
             text = (self._places.root / file).read_text(encoding="utf-8", errors="replace")
         except OSError:
             return False
         entries = (line.split(":") for line in text.splitlines())
-        return any(one[0] == name and (not without or without not in one[-1].split(",")) for one in entries)
+        return any(
+            entry[0] == name and (not without or without not in entry[-1].split(",")) for entry in entries
+        )
 
     def write_settings(self, environment: Path, release: Release) -> None:
         """Write the configuration where there is none, and the key of the releases."""
@@ -116,7 +118,7 @@ class Installer:
             effects.write(places.key, key.read_text(encoding="ascii"))
 
     def write_services(self) -> bool:
-        """Write the services and the command; returns True if one was not so before."""
+        """Write the services and the command; return True if that changed one."""
         effects, places = self._effects, self._places
         units = write_units(places)
         changed = [effects.write(places.units / name, text) for name, text in units.items()]
@@ -129,7 +131,7 @@ class Installer:
         return any(changed)
 
     def change_boot_settings(self) -> None:
-        """Show what would change in the Raspberry Pi's boot settings, and change it if that is confirmed."""
+        """Show the changes of the Raspberry Pi's boot settings, and apply them if confirmed."""
         folder = self._places.boot
         if folder is None:
             return
@@ -156,7 +158,7 @@ class Installer:
         self._effects.say("They come into force at the next start: sudo reboot")
 
     def start(self, changed: bool) -> None:
-        """Start the services, or restart them where they have changed, and wait until the page is there."""
+        """Start the services, or restart changed ones, and wait until the page answers."""
         self._effects.run("systemctl", "restart" if changed else "start", "mucat-update.path", *SERVICES)
         wait_until_healthy(self._effects, self._places, FIRST_START_SECONDS)
 
@@ -176,7 +178,7 @@ class Installer:
 
 
 def adapt_config(text: str, *, robot: bool) -> str:
-    """The default configuration for an installed robot: open to the network, encrypted, real on a Pi."""
+    """Return an installed robot's default configuration: open to the network, encrypted, real on a Pi."""
     changes = {"host": '"0.0.0.0"', "tls": "true"}
     if robot:
         changes |= {"mode": '"robot"', "camera": '"pi"'}
@@ -184,28 +186,28 @@ def adapt_config(text: str, *, robot: bool) -> str:
 
 
 def set_values(text: str, values: Mapping[str, str]) -> str:
-    """A configuration with the first entry of each name set to this value, in TOML's spelling."""
+    """Return a configuration with the first entry of each name set to this value, in TOML's spelling."""
     for name, value in values.items():
         text = re.sub(rf"^{name} = \S+", f"{name} = {value}", text, count=1, flags=re.MULTILINE)
     return text
 
 
 def wait_until_healthy(effects: Effects, places: InstallPlaces, seconds: float) -> None:
-    """Wait until the server answers and says that it is of this version. Raises SetupError."""
+    """Wait until the server answers with this version. Raise SetupError."""
     if effects.dry:
         return
     version, end = places.version_of(places.current), time.monotonic() + seconds
     problem = "it was not asked"
     while time.monotonic() < end:
         try:
-            found = look_at(effects, places, places.current)
+            survey = look_at(effects, places, places.current)
         except CommandFailedError as failure:
             problem = str(failure)
         else:
-            if found.running == version and not found.problem:
+            if survey.running == version and not survey.problem:
                 effects.say(f"µ-CAT {version} runs")
                 return
-            problem = found.problem or f"the server says that it is of version {found.running}"
+            problem = survey.problem or f"the server says that it is of version {survey.running}"
         time.sleep(LOOK_SECONDS)
     raise SetupError(
         f"The server was not healthy within {seconds:g} s: {problem} See: journalctl -u 'mucat*'"

@@ -1,4 +1,4 @@
-"""Places of an installation, below the root of the file system or a folder that stands for it."""
+"""Paths of an installation, below the root of the file system or a folder that replaces it."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ COMPLETE = "mucat-complete"
 
 
 class InstallPlaces:
-    """The paths; `root` is / but in tests."""
+    """The paths; `root` is / except in tests."""
 
     def __init__(self, root: Path = Path("/")) -> None:
         self.root = root
@@ -46,19 +46,19 @@ class InstallPlaces:
         self.command = root / "usr/local/bin/mucat"
 
     def version(self, name: str) -> Path:
-        """The environment of this version."""
+        """Return the environment of this version."""
         return self.versions / name
 
     def is_complete(self, environment: Path) -> bool:
-        """True for an environment that was built to its end."""
+        """Return True for an environment that was built to its end."""
         return (environment / COMPLETE).exists()
 
     def version_of(self, link: Path) -> str:
-        """The version that `current` or `previous` leads to; empty without one."""
+        """Return the version of the link `current` or `previous`; empty without one."""
         return link.resolve().name if link.is_symlink() and link.exists() else ""
 
     @property
     def boot(self) -> Path | None:
         """The folder of config.txt; None where this is no Raspberry Pi."""
         folders = (self.root / "boot/firmware", self.root / "boot")
-        return next((one for one in folders if (one / "config.txt").exists()), None)
+        return next((folder for folder in folders if (folder / "config.txt").exists()), None)

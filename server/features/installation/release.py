@@ -27,18 +27,18 @@ class Release:
 
 
 def read_release(path: Path) -> Release:
-    """The release in this folder, or that of this wheel. Raises SetupError where it is not one."""
+    """Return the release in this folder, or that of this wheel. Raise SetupError where it is not one."""
     wheels = [path] if path.suffix == ".whl" and path.is_file() else sorted(path.glob("mucat-*.whl"))
     if not path.exists():
         raise SetupError(f"There is no {path}. Name a wheel of mucat, or the folder of a release.")
-    if len(wheels) != 1 or not (found := WHEEL.fullmatch(wheels[0].name)):
-        names = ", ".join(one.name for one in wheels) or "none"
+    if len(wheels) != 1 or not (match := WHEEL.fullmatch(wheels[0].name)):
+        names = ", ".join(wheel.name for wheel in wheels) or "none"
         raise SetupError(f"{path} must hold one wheel mucat-VERSION-py3-none-any.whl; it has {names}.")
-    return Release(found[1], wheels[0].parent, wheels[0])
+    return Release(match[1], wheels[0].parent, wheels[0])
 
 
 def check_signature(release: Release, key: Path) -> None:
-    """Check the signature and every checksum with this public key. Raises SetupError in one line."""
+    """Check the signature and every checksum with this public key. Raise SetupError in one line."""
     folder = release.folder
     if not key.exists():
         raise SetupError(
@@ -61,14 +61,14 @@ def check_signature(release: Release, key: Path) -> None:
 
 
 def check_sums(release: Release) -> None:
-    """Check the checksum of every file that pip may take. Raises SetupError."""
+    """Check the checksum of every file that pip may take. Raise SetupError."""
     try:
         text = (release.folder / SUMS).read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError) as problem:
         raise SetupError(f"{release.folder / SUMS} cannot be read: {problem}.") from problem
-    sums = {found[2]: found[1] for line in text.splitlines() if (found := SUM_LINE.fullmatch(line))}
+    sums = {match[2]: match[1] for line in text.splitlines() if (match := SUM_LINE.fullmatch(line))}
     # Besides the listed wheels nothing may lie there that pip would take instead.
-    present = {one.name for one in release.folder.iterdir() if one.suffix in (".whl", ".gz", ".zip")}
+    present = {file.name for file in release.folder.iterdir() if file.suffix in (".whl", ".gz", ".zip")}
     present.discard(f"{release.folder.name}.zip")
     if unlisted := sorted(present - sums.keys()):
         raise SetupError(f"{release.folder} has {unlisted[0]}, which is not among its checksums. Remove it.")

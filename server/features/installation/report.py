@@ -1,4 +1,4 @@
-"""Report of the present or last update, for everybody to read; gone when the computer starts anew."""
+"""Report of the present or last update, readable by everybody; gone after a restart of the computer."""
 
 import fcntl
 import json
@@ -20,7 +20,7 @@ CUT_OFF = "The update was ended before its end. Begin it again: what was half do
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """An update as it goes, or as it ended; `time` is in s since 1970."""
+    """A running or ended update; `time` is in s since 1970."""
 
     phase: ReportPhase
     text: str
@@ -28,27 +28,27 @@ class Report:
 
 
 class UpdateReport:
-    """The file of the report. A report that cannot be written hinders no update."""
+    """The file of the report. A report that cannot be written does not prevent an update."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
 
     def write(self, phase: ReportPhase, text: str) -> None:
-        """Write what is being done, or how it ended."""
-        found = asdict(Report(phase, text, time.time()))
+        """Write the present step, or the outcome."""
+        document = asdict(Report(phase, text, time.time()))
         made = {"pid": os.getpid(), "started": started_at(os.getpid())}
         part = self._path.with_name(self._path.name + PART)
         with suppress(OSError):
-            part.write_text(json.dumps(found | made), encoding="utf-8")
+            part.write_text(json.dumps(document | made), encoding="utf-8")
             part.chmod(0o644)
             part.replace(self._path)
 
     def read(self) -> Report | None:
-        """The newest report; None without one. Of a process that has died it says so."""
+        """Return the newest report; None without one. For a dead process it reports that."""
         try:
-            found = json.loads(self._path.read_text(encoding="utf-8"))
-            report = Report(found["phase"], str(found["text"]), float(found["time"]))
-            alive = started_at(int(found["pid"])) == found["started"]
+            document = json.loads(self._path.read_text(encoding="utf-8"))
+            report = Report(document["phase"], str(document["text"]), float(document["time"]))
+            alive = started_at(int(document["pid"])) == document["started"]
         except (OSError, ValueError, LookupError, TypeError):
             return None
         return report if alive or report.phase != "running" else Report("failed", CUT_OFF, report.time)
@@ -56,7 +56,7 @@ class UpdateReport:
 
 @contextmanager
 def hold(path: Path) -> Iterator[None]:
-    """Change the installation alone. Raises SetupError where it is being changed already.
+    """Hold the installation's lock. Raise SetupError where another process has it.
 
     Nobody but root can open the lock, so that nobody else can hold up an update.
     """

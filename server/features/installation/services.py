@@ -11,7 +11,7 @@ from server.platform.terminal import echo
 
 
 def main() -> None:
-    """Writes them. Ends with status 1 where that fails, and the reason."""
+    """Write the services. Exit with status 1 and the reason where that fails."""
     os.umask(0o022)
     try:
         Installer(InstallPlaces(), Effects(echo), lambda _: False).write_services()

@@ -10,13 +10,13 @@ ENDING = (signal.SIGHUP, signal.SIGINT, signal.SIGTERM)
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Ignores these signals meanwhile, here and in the commands that are run; in the main thread alone.
+    """Ignore these signals meanwhile, here and in the commands; only in the main thread.
 
-    What a power cut ends all the same is put right at the next start; nothing else would do that.
+    The next start repairs an installation that a power cut ends; nothing repairs one ended by a signal.
     """
-    before = {one: signal.signal(one, signal.SIG_IGN) for one in ENDING}
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in ENDING}
     try:
         yield
     finally:
-        for one, handler in before.items():
-            signal.signal(one, handler)
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,6 +1,6 @@
-"""`python -I -m server.features.installation.survey`: what an update must know of a version and its data.
+"""`python -I -m server.features.installation.survey`: the facts about a version and its data for an update.
 
-It is asked of the environment of each version, as the user of the data, and prints one line of JSON.
+It runs in the environment of each version, as the user of the data, and prints one line of JSON.
 """
 
 import hashlib
@@ -23,7 +23,7 @@ ROBOT_SECONDS = 30.0
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """The findings; without a running server `problem` says so.
+    """The findings; `problem` reports a missing server.
 
     `armed` is None where the server could not say it. `running` is the version of the running server.
     `reads` is False for a database of a newer version; then `copy` is its newest copy that this version can
@@ -41,7 +41,7 @@ class Survey:
 
 
 def survey(settings: Settings) -> Survey:
-    """Look at this version, its data, and the server that runs on them."""
+    """Examine this version, its data, and the server that runs on them."""
     reads, copy = _look_at_database(settings.data)
     running, problem, armed, recording = "", "", None, False
     try:
@@ -52,9 +52,11 @@ def survey(settings: Settings) -> Survey:
     try:
         health = ask(settings.data, "GET", "/health")
         wrong = [
-            one for one in health["parts"] if one["name"] in ("database", "runtime") and one["state"] != "ok"
+            part
+            for part in health["parts"]
+            if part["name"] in ("database", "runtime") and part["state"] != "ok"
         ]
-        problem = "; ".join(f"{one['name']}: {one['text']}" for one in wrong) or problem
+        problem = "; ".join(f"{fault['name']}: {fault['text']}" for fault in wrong) or problem
         running = str(health["version"])
         recording = bool(ask(settings.data, "GET", "/sessions?state=recording"))
     except SetupError as failure:
@@ -71,7 +73,7 @@ def survey(settings: Settings) -> Survey:
 
 
 def _look_at_database(folder: DataFolder) -> tuple[bool, str]:
-    """True where this version can read it; else the newest copy that it can read."""
+    """Return True where this version can read the database; else its newest readable copy."""
     from server.platform.schema import find_copy, known_revisions, read_revision
 
     known = known_revisions()
@@ -94,7 +96,7 @@ def _sum_firmware(settings: Settings) -> str:
 
 
 def main() -> None:
-    """Prints the survey. Ends with status 1 where the configuration is not valid, and the reason."""
+    """Print the survey. Exit with status 1 and the reason where the configuration is not valid."""
     try:
         settings = read_usable_settings(Path(os.environ["MUCAT_CONFIG"]), None, None, None, os.environ)
     except SetupError as problem:

@@ -36,7 +36,7 @@ RELEASE_BYTES = 1_000_000_000
 class Switch:
     """A change from one version to another; `firmware` is True where the board gets other firmware.
 
-    `older` is the version to which one could go back until then, empty without one.
+    `older` is the previous rollback version, empty without one.
     """
 
     before: str
@@ -46,7 +46,7 @@ class Switch:
 
 
 class Updater:
-    """Updates the installation at these places."""
+    """Updater of the installation at these paths."""
 
     def __init__(self, places: InstallPlaces, effects: Effects) -> None:
         self._places = places
@@ -54,7 +54,7 @@ class Updater:
         self._report = UpdateReport(places.report)
 
     def update(self, path: Path) -> str:
-        """Update to the release in this folder or ZIP file; returns its version. Raises SetupError: then the
+        """Update to the release in this folder or ZIP file; return its version. Raise SetupError: then the
         version before runs, with its database."""
         with self._alone():
             version = self._update(path)
@@ -62,21 +62,21 @@ class Updater:
         return version
 
     def roll_back(self) -> str:
-        """Go back to the version before the last update; returns it. Raises SetupError."""
+        """Go back to the version before the last update; return it. Raise SetupError."""
         with self._alone():
             version = self._roll_back()
             self._report.write("done", f"µ-CAT {version} is in use again.")
         return version
 
     def recover(self, *, starting: bool = False) -> None:
-        """Go back from an update that was cut off, if one was. Raises SetupError.
+        """Go back from an interrupted update, if there is one. Raise SetupError.
 
         `starting`: the computer starts, and nothing of µ-CAT runs yet.
         """
         with self._alone():
             if (switch := self._recover(starting=starting)) is not None:
-                words = f"The update to {switch.after} was cut off: {switch.before} is in use again."
-                self._report.write("failed", words)
+                text = f"The update to {switch.after} was cut off: {switch.before} is in use again."
+                self._report.write("failed", text)
 
     def _update(self, path: Path) -> str:
         self._recover()
@@ -125,7 +125,7 @@ class Updater:
         return before
 
     def _recover(self, *, starting: bool = False) -> Switch | None:
-        """Go back from an update that was cut off; returns what it was, None without one."""
+        """Go back from an interrupted update; return it, None without one."""
         switch = self._read(self._places.journal)
         if switch is None:
             return None
@@ -150,9 +150,9 @@ class Updater:
                 self._report.write("failed", str(problem))
                 raise
 
-    def _tell(self, words: str) -> None:
-        self._effects.say(words)
-        self._report.write("running", words)
+    def _tell(self, text: str) -> None:
+        self._effects.say(text)
+        self._report.write("running", text)
 
     def _installed(self) -> str:
         version = self._places.version_of(self._places.current)
@@ -161,7 +161,7 @@ class Updater:
         return version
 
     def _take_in(self, path: Path) -> Release:
-        """The release, copied to where only root can change it, and then checked."""
+        """Copy the release to where only root can change it, check it, and return it."""
         places, effects = self._places, self._effects
         effects.remove(places.incoming)
         if path.suffix == ".zip" and path.is_file():
@@ -169,7 +169,8 @@ class Updater:
         else:
             folder = read_release(path).folder
             effects.copy(
-                [one for one in sorted(folder.iterdir()) if RELEASE_FILE.fullmatch(one.name)], places.incoming
+                [file for file in sorted(folder.iterdir()) if RELEASE_FILE.fullmatch(file.name)],
+                places.incoming,
             )
         release = read_release(places.incoming)
         check_signature(release, places.key)
@@ -186,16 +187,16 @@ class Updater:
             )
 
     def _refuse_new_faults(self, environment: Path) -> None:
-        """Raise SetupError where the new version finds wrong what is not so for the old one."""
-        found = list_wrong(self._effects, self._places, environment)
+        """Raise SetupError where the new version's doctor finds problems that the old one's does not."""
+        problems = list_wrong(self._effects, self._places, environment)
         try:
             known = list_wrong(self._effects, self._places, self._places.current)
         except CommandFailedError as problem:
             # An update may be what mends it; the new version must be healthy all the same.
             self._effects.say(f"The doctor in use cannot be asked: {problem}")
             return
-        if new := sorted(found.keys() - known.keys()):
-            raise SetupError(f"The new version would not work here: {found[new[0]]} Nothing was changed.")
+        if new := sorted(problems.keys() - known.keys()):
+            raise SetupError(f"The new version would not work here: {problems[new[0]]} Nothing was changed.")
 
     @uninterrupted()
     def _switch(self, before: str, environment: Path) -> None:
@@ -242,25 +243,26 @@ class Updater:
         effects.remove(places.journal)
 
     def _find_copy(self, switch: Switch) -> str:
-        """The database for the version before, which the migration has copied; empty where it reads this one.
+        """Return the migration's copy of the database for the version before; empty where it reads the
+        present one.
 
-        Raises SetupError where there is no way back.
+        Raise SetupError where there is no way back.
         """
         old = self._places.version(switch.before)
         if not self._places.is_complete(old):
             raise SetupError(
                 f"{old} is not there any more: sudo mucat uninstall (the data stay), then install a release."
             )
-        found = look_at(self._effects, self._places, old)
-        if not found.reads and not found.copy:
+        survey = look_at(self._effects, self._places, old)
+        if not survey.reads and not survey.copy:
             raise SetupError(
                 f"{switch.before} cannot read the database, and no copy of it fits. Nothing was changed."
             )
-        return "" if found.reads else found.copy
+        return "" if survey.reads else survey.copy
 
     @contextmanager
     def _stopped(self) -> Iterator[None]:
-        """Nothing of µ-CAT runs meanwhile; it is started in any case."""
+        """Stop all of µ-CAT meanwhile; start it afterwards in any case."""
         self._effects.run("systemctl", "stop", *reversed(SERVICES))
         try:
             yield
@@ -276,9 +278,9 @@ class Updater:
             raise SetupError(f"{path} cannot be read: {problem}.") from problem
 
     def _remove_others(self, coming: str = "") -> None:
-        """Remove environments that nothing leads to any more, but that of the version that is coming."""
+        """Remove environments without a link, except that of the new version."""
         places = self._places
         in_use = {coming, places.version_of(places.current), places.version_of(places.previous)}
-        for one in sorted(places.versions.iterdir()):
-            if one.name not in in_use:
-                self._effects.remove(one)
+        for folder in sorted(places.versions.iterdir()):
+            if folder.name not in in_use:
+                self._effects.remove(folder)

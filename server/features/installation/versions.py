@@ -1,4 +1,4 @@
-"""Asks and orders an environment's own programs, as the user of the data."""
+"""Commands and questions to an environment's own programs, as the user of the data."""
 
 import json
 from pathlib import Path
@@ -16,18 +16,18 @@ DOCTOR_SECONDS = 300.0
 """More than the doctor's own limit for the libraries, so that it can name the one that takes too long."""
 
 
-def order(effects: Effects, places: InstallPlaces, environment: Path, *words: str | Path) -> str:
-    """Carry out a command by a version's own `mucat`. Raises CommandFailedError."""
+def order(effects: Effects, places: InstallPlaces, environment: Path, *arguments: str | Path) -> str:
+    """Run a command of a version's own `mucat`. Raise CommandFailedError."""
     program = environment / "bin/mucat"
     return effects.run(
-        *("runuser", "-u", USER, "--", program, *words),
+        *("runuser", "-u", USER, "--", program, *arguments),
         environment=_environment(places),
         seconds=ORDER_SECONDS,
     )
 
 
 def look_at(effects: Effects, places: InstallPlaces, environment: Path) -> Survey:
-    """Return what a version finds: its data, and the server that runs on them. Raises CommandFailedError."""
+    """Return a version's survey of its data and the running server. Raise CommandFailedError."""
     # Isolated (-I): no module of the present folder is loaded.
     program = (environment / "bin/python", "-I", "-m", "server.features.installation.survey")
     answer = effects.run(
@@ -42,23 +42,23 @@ def look_at(effects: Effects, places: InstallPlaces, environment: Path) -> Surve
 def refuse_in_use(effects: Effects, places: InstallPlaces) -> None:
     """Raise SetupError while the robot is armed, or may be, or a session is recorded."""
     try:
-        found = look_at(effects, places, places.current)
+        survey = look_at(effects, places, places.current)
     except CommandFailedError as failure:
         # It cannot even look at itself: an update may be what mends it.
-        found = Survey(problem=str(failure))
-    if found.armed:
+        survey = Survey(problem=str(failure))
+    if survey.armed:
         raise SetupError("The robot is armed. Disarm it first; nothing was changed.")
-    if found.armed is None and "runtime" in running_parts(DataFolder(places.data).run):
+    if survey.armed is None and "runtime" in running_parts(DataFolder(places.data).run):
         raise SetupError(
-            f"The robot may be armed: {found.problem} If you see that it is not, end its runtime: "
+            f"The robot may be armed: {survey.problem} If you see that it is not, end its runtime: "
             "sudo systemctl stop mucat-runtime. Nothing was changed."
         )
-    if found.recording:
+    if survey.recording:
         raise SetupError("A session is being recorded. Stop it first; nothing was changed.")
 
 
 def list_wrong(effects: Effects, places: InstallPlaces, environment: Path) -> dict[str, str]:
-    """Return what the doctor of a version finds wrong on this computer: names and texts."""
+    """Return the problems that a version's doctor finds on this computer: names and texts."""
     answer = effects.run(
         *("runuser", "-u", USER, "--", environment / "bin/mucat", "doctor", "--json"),
         environment=_environment(places),
@@ -67,13 +67,17 @@ def list_wrong(effects: Effects, places: InstallPlaces, environment: Path) -> di
         accepted=(0, 1),
     )
     try:
-        return {one["name"]: one["text"] for one in json.loads(answer) if one["verdict"] == "wrong"}
+        return {
+            finding["name"]: finding["text"]
+            for finding in json.loads(answer)
+            if finding["verdict"] == "wrong"
+        }
     except (ValueError, TypeError, KeyError) as problem:
         raise CommandFailedError(f"The doctor of {environment.name} cannot be asked: {problem}.") from problem
 
 
 def write_services_of(effects: Effects, environment: Path) -> None:
-    """Write a version's services, by itself. Raises CommandFailedError."""
+    """Have a version write its services. Raise CommandFailedError."""
     effects.run(environment / "bin/python", "-I", "-m", "server.features.installation.services")
 
 

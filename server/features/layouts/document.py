@@ -32,7 +32,7 @@ class ShownChart(RequestBody):
 
 
 class PlacedPanel(RequestBody):
-    """A panel, and its place in columns and rows of the grid from the upper left corner."""
+    """A panel, and its position in columns and rows of the grid from the upper left corner."""
 
     id: Word
     panel: PanelName
@@ -43,7 +43,7 @@ class PlacedPanel(RequestBody):
     chart: ShownChart | None = None
 
     def overlaps(self, other: "PlacedPanel") -> bool:
-        """True where both cover a common cell."""
+        """Return True where both panels cover a common cell."""
         return (
             self.x < other.x + other.width
             and other.x < self.x + self.width
@@ -53,7 +53,7 @@ class PlacedPanel(RequestBody):
 
 
 class LayoutDocument(RequestBody):
-    """The places of the panels of Operate."""
+    """The positions of the panels of Operate."""
 
     format: Literal["mucat-layout"]
     version: int
@@ -75,17 +75,17 @@ class LayoutDocument(RequestBody):
 
     @model_validator(mode="after")
     def _stand_apart(self) -> Self:
-        if len({one.id for one in self.panels}) < len(self.panels):
+        if len({panel.id for panel in self.panels}) < len(self.panels):
             raise _wrong("Two of its panels have the same id.")
-        for one in self.panels:
-            if one.x + one.width > COLUMNS or one.y + one.height > ROWS_MOST:
-                raise _wrong(f"{one.panel} does not fit into {COLUMNS} columns and {ROWS_MOST} rows.")
-        for one, other in combinations(self.panels, 2):
-            if one.overlaps(other):
-                raise _wrong(f"{one.panel} and {other.panel} lie over each other.")
+        for panel in self.panels:
+            if panel.x + panel.width > COLUMNS or panel.y + panel.height > ROWS_MOST:
+                raise _wrong(f"{panel.panel} does not fit into {COLUMNS} columns and {ROWS_MOST} rows.")
+        for panel, other in combinations(self.panels, 2):
+            if panel.overlaps(other):
+                raise _wrong(f"{panel.panel} and {other.panel} lie over each other.")
         return self
 
 
-def _wrong(words: str) -> PydanticCustomError:
+def _wrong(text: str) -> PydanticCustomError:
     # A text of pydantic's own is a template, in which braces mean something.
-    return PydanticCustomError("layout", "{words}", {"words": words})
+    return PydanticCustomError("layout", "{words}", {"words": text})

@@ -48,13 +48,13 @@ class Layouts:
         self._store = store
 
     def list(self) -> Sequence[SavedLayout]:
-        """All of them, by name."""
+        """Return all layouts, by name."""
         whole = select(LayoutRow).options(defer(LayoutRow.document))  # type: ignore[arg-type]
         with self._store.read() as database:
             return [_show(row) for row in database.exec(whole.order_by(func.lower(LayoutRow.name)))]
 
     def get(self, layout: int) -> LayoutDetails:
-        """The layout of this number. Raises UnknownLayoutError."""
+        """Return the layout of this number. Raise UnknownLayoutError."""
         with self._store.read() as database:
             row = database.get(LayoutRow, layout)
             if row is None:
@@ -66,17 +66,17 @@ class Layouts:
     ) -> SavedLayout:
         """Save a layout, replacing one of the same name.
 
-        `base` is the version that it replaces, 0 for a new layout; None replaces any. Raises RefusedError if
+        `base` is the version that it replaces, 0 for a new layout; None replaces any. Raise RefusedError if
         there are too many, ChangedMeanwhileError.
         """
         text, now = document.model_dump_json(exclude_none=True), time.time()
         columns = (col(LayoutRow.id), col(LayoutRow.version), col(LayoutRow.author))
 
         def write(connection: Connection) -> SavedLayout:
-            found = connection.execute(select(*columns).where(LayoutRow.name == name)).first()
-            there, version, last = found or (None, 0, "")
+            existing = connection.execute(select(*columns).where(LayoutRow.name == name)).first()
+            there, version, last = existing or (None, 0, "")
             if base is not None and base != version:
-                raise ChangedMeanwhileError(f"The layout “{name}”", last, gone=found is None)
+                raise ChangedMeanwhileError(f"The layout “{name}”", last, gone=existing is None)
             row = LayoutRow(id=there, name=name, document=text, saved=now, author=author, version=version + 1)
             values = row.model_dump(exclude={"id"})
             if there is not None:
@@ -91,7 +91,7 @@ class Layouts:
         return await self._store.write(write)
 
     async def delete(self, layout: int) -> None:
-        """Delete a layout for good. Raises UnknownLayoutError."""
+        """Delete a layout for good. Raise UnknownLayoutError."""
 
         def write(connection: Connection) -> None:
             if connection.execute(delete(LayoutRow).where(col(LayoutRow.id) == layout)).rowcount == 0:

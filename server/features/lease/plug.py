@@ -1,13 +1,13 @@
-"""The plug of control: who has it, and what the runtime knows of it."""
+"""The plug of control: its holder, and its epoch for the runtime."""
 
 from collections.abc import Coroutine, Sequence
 from typing import Any, ClassVar
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import STATE
+from server.driving.arbiter import ControlArbiter
+from server.driving.sync import LeaseSync
 from server.feature import Plug
-from server.features.lease.arbiter import ControlArbiter
-from server.features.lease.sync import LeaseSync
 from server.http.audit import AuditLog
 from server.http.sign_in.access import SocketClosers
 from server.platform.notices import Notices
@@ -18,14 +18,14 @@ from server.stream.hub import Hub
 
 
 def make_sync(bridge: Bridge) -> LeaseSync:
-    """Sends the runtime the epoch of control."""
+    """Return the sender of control's epoch to the runtime."""
     return LeaseSync(bridge.send_lease)
 
 
 def make_arbiter(
     clock: Clock, sync: LeaseSync, hub: Hub, bridge: Bridge, notices: Notices, audit: AuditLog
 ) -> ControlArbiter:
-    """Grants control."""
+    """Return the arbiter of control."""
 
     def notify(message: dict[str, Any]) -> None:
         sync.see_epoch(message["epoch"])
@@ -41,18 +41,25 @@ def make_arbiter(
 
 
 class LeasePlug(Plug):
-    """Takes control from those who are dismissed, and tells the runtime."""
+    """The plug that takes control from dismissed clients, and informs the runtime."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_sync, make_arbiter)
 
     def __init__(
-        self, arbiter: ControlArbiter, sync: LeaseSync, bridge: Bridge, feed: Feed, closers: SocketClosers
+        self,
+        arbiter: ControlArbiter,
+        sync: LeaseSync,
+        bridge: Bridge,
+        hub: Hub,
+        feed: Feed,
+        closers: SocketClosers,
     ) -> None:
         self._arbiter = arbiter
         self._sync = sync
+        hub.programs = arbiter.programs_in_control
         closers.add(lambda device, _: arbiter.dismiss(device))
         feed.listen(lambda _: sync.see_run(bridge.run), STATE)
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
-        """End control that nobody renews, and send each new epoch."""
+        """End control that is not renewed, and send each new epoch."""
         return (self._arbiter.run(), self._sync.run())

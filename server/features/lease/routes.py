@@ -1,8 +1,8 @@
 """Operations on the control of the robot."""
 
-from server.features.lease import schemas
-from server.features.lease.admission import OwnClient
-from server.features.lease.arbiter import ControlArbiter
+from server.driving import schemas
+from server.driving.admission import OwnClient
+from server.driving.arbiter import ControlArbiter
 from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.sign_in.policy import Need
@@ -22,7 +22,7 @@ async def take_control(
 ) -> schemas.ControlState:
     """Take control.
 
-    Takes free control, or with `over` takes it over from another client, whose stick commands no longer
+    Take free control, or with `over` take it over from another client, whose stick commands no longer
     count. A page has control until it releases it or its live socket closes. The programs of one token share
     it, until none of them has made a request that needs control for 10 s.
     """

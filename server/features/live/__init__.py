@@ -4,5 +4,5 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="live",
-    routes=("server.features.live.routes:router",),
+    routes=("server.features.live.routes:router", "server.features.live.past_routes:router"),
 )

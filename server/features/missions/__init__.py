@@ -4,7 +4,7 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="missions",
-    routes=("server.features.missions.routes:router",),
+    routes=("server.features.missions.routes:router", "server.features.missions.run_routes:router"),
     commands={"mission": "server.features.missions.command:mission"},
     plug="server.features.missions.plug:MissionsPlug",
 )

@@ -23,7 +23,7 @@ SILENT_SECONDS = 2.0
 
 @click.group()
 def mission() -> None:
-    """Check, try and run missions: what the robot does by itself.
+    """Check, try and run missions: the robot's autonomous tasks.
 
     A MISSION is a TOML file, or the name of one in the list.
     """
@@ -35,15 +35,16 @@ def list_all(settings: Settings) -> None:
     """List the missions."""
     from server.features.missions.library import MissionLibrary
 
-    for one in MissionLibrary(settings.data.missions, settings.missions).describe():
-        echo(f"{one.name:<24} {one.title}{'' if one.shipped else f' (your own, version {one.versions})'}")
+    for entry in MissionLibrary(settings.data.missions, settings.mission_limits).describe():
+        own = "" if entry.shipped else f" (your own, version {entry.versions})"
+        echo(f"{entry.name:<24} {entry.title}{own}")
 
 
 @mission.command()
 @MISSION
 @with_settings
 def check(settings: Settings, file: str) -> None:
-    """Show what is wrong with a mission, or that nothing is."""
+    """Show the problems of a mission, if any."""
     from robot_runtime.config import load
     from robot_runtime.contract.limits import ConfigError
     from robot_runtime.missions.checks import check_sights
@@ -70,7 +71,7 @@ def show(settings: Settings, file: str) -> None:
     for step in read.root.walk():
         indent = "  " * len(step.path)
         note = f" ({step.node.note})" if step.node.note else ""
-        echo(f"{indent}{step.place or '-'} {step.node.words}{note}")
+        echo(f"{indent}{step.number or '-'} {step.node.label}{note}")
 
 
 @mission.command("try")
@@ -83,7 +84,7 @@ def try_out(settings: Settings, file: str, seeds: int) -> int:
     from server.features.missions.trials import MissionTrials
 
     text, read = _read(file, settings)
-    called = MissionLibrary(settings.data.missions, settings.missions).called_by(text)
+    called = MissionLibrary(settings.data.missions, settings.mission_limits).called_by(text)
 
     async def perform() -> MissionTrials:
         trials = MissionTrials(settings)
@@ -92,12 +93,13 @@ def try_out(settings: Settings, file: str, seeds: int) -> int:
         return trials
 
     trial = asyncio.run(perform()).state()
-    for one in trial.results:
-        outcome = one.phase or "did not begin"
-        echo(f"seed {one.seed:>3}  {outcome:<9} {one.elapsed:7.1f} s  {one.deepest:5.2f} m  {one.text}")
+    for result in trial.results:
+        outcome = result.phase or "did not begin"
+        measured = f"{result.elapsed:7.1f} s  {result.deepest:5.2f} m"
+        echo(f"seed {result.seed:>3}  {outcome:<9} {measured}  {result.text}")
     if trial.problem:
         raise SetupError(trial.problem)
-    good = [one for one in trial.results if one.phase == "succeeded"]
+    good = [result for result in trial.results if result.phase == "succeeded"]
     echo(f"{len(good)} of {seeds} succeeded.{_describe_span(good)}")
     return 0 if len(good) == seeds else 1
 
@@ -105,7 +107,7 @@ def try_out(settings: Settings, file: str, seeds: int) -> int:
 def _describe_span(good: "list[MissionTrialResult]") -> str:
     if not good:
         return ""
-    times, depths = [one.elapsed for one in good], [one.deepest for one in good]
+    times, depths = [result.elapsed for result in good], [result.deepest for result in good]
     return f" They took {min(times):.1f} to {max(times):.1f} s and went down to {max(depths):.2f} m."
 
 
@@ -115,7 +117,7 @@ def _describe_span(good: "list[MissionTrialResult]") -> str:
 @with_settings
 def run(settings: Settings, file: str, take_over: bool) -> int:
     """Arm the robot of the running server, begin a mission, and follow it to its end. Ctrl-C ends it."""
-    from server.features.lease.command import in_control, renew_control
+    from server.driving.shell_control import in_control, renew_control
     from server.platform.running_server import ask
 
     text, read = _read(file, settings)
@@ -126,7 +128,7 @@ def run(settings: Settings, file: str, take_over: bool) -> int:
         ask(folder, "POST", "/missions/start", {"text": text}, seconds=30.0)
         echo(f"{read.title} begins.")
         seen = ask(folder, "GET", "/robot")["time"]
-        said: set[tuple[str, str, int]] = set()
+        shown: set[tuple[str, str, int]] = set()
         try:
             while True:
                 renew_control(folder)
@@ -134,7 +136,7 @@ def run(settings: Settings, file: str, take_over: bool) -> int:
                 # Not by its number: a runtime that was restarted counts from 1 again.
                 if state is not None and _began(state) > before:
                     seen = state["time"]
-                    _print_changes(state, said)
+                    _print_changes(state, shown)
                     if state["phase"] not in ("running", "paused"):
                         echo(f"{state['phase']}: {state['text']}")
                         return 0 if state["phase"] == "succeeded" else 1
@@ -146,12 +148,12 @@ def run(settings: Settings, file: str, take_over: bool) -> int:
 
 
 def _began(state: dict[str, Any]) -> float:
-    """Returns the time at which a mission began, s of the steady clock."""
+    """Return the time at which a mission began, s of the steady clock."""
     return float(state["time"] - state["elapsed"] - state["paused"])
 
 
 def _require_swimming(seen: float, robot: dict[str, Any]) -> None:
-    """Raises SetupError where the robot was disarmed, and the mission told no end: its runtime was killed.
+    """Raise SetupError where the robot was disarmed without the mission's end: its runtime was killed.
 
     `seen`: the time of its newest state, s of the steady clock.
     """
@@ -159,11 +161,11 @@ def _require_swimming(seen: float, robot: dict[str, Any]) -> None:
         raise SetupError("The mission broke off: the runtime was restarted. The robot is disarmed.")
 
 
-def _print_changes(state: dict[str, Any], said: set[tuple[str, str, int]]) -> None:
+def _print_changes(state: dict[str, Any], shown: set[tuple[str, str, int]]) -> None:
     for step in state["steps"]:
         change = (step["path"], step["status"], step["rounds"])
-        if step["status"] != "waiting" and change not in said:
-            said.add(change)
+        if step["status"] != "waiting" and change not in shown:
+            shown.add(change)
             echo(f"{state['elapsed']:8.1f} s  {step['path'] or '-'} {step['words']}: {step['status']}")
 
 
@@ -172,7 +174,7 @@ def _read(file: str, settings: Settings) -> "tuple[str, MissionDocument]":
     from robot_runtime.contract.text_input import TextError, load_text
     from server.features.missions.library import MissionLibrary
 
-    library = MissionLibrary(settings.data.missions, settings.missions)
+    library = MissionLibrary(settings.data.missions, settings.mission_limits)
     there = library.texts()
     try:
         text = there[file] if file in there else load_text(Path(file))

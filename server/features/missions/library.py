@@ -20,6 +20,7 @@ from server.features.missions.schemas import MissionText, MissionVersion, summar
 from server.platform.disk_space import FileWriteError, explain_write_error
 from server.platform.edited_meanwhile import ChangedMeanwhileError, mark_text
 from server.platform.errors import NotFoundError
+from server.platform.settings import Settings
 
 log = logging.getLogger(__name__)
 
@@ -50,33 +51,33 @@ class MissionLibrary:
         self._limits = limits
 
     def texts(self) -> dict[str, str]:
-        """The newest text of every mission by name; unreadable files are left out."""
-        found = dict(shipped_missions())
+        """Return the newest text of every mission by name; unreadable files are left out."""
+        texts = dict(shipped_missions())
         for folder in sorted(self._own.iterdir()) if self._own.is_dir() else ():
             if NAME.fullmatch(folder.name) and folder.name not in SHIPPED:
                 versions = _versions(folder)
                 text = _read(versions[-1]) if versions else None
                 if text is not None:
-                    found[folder.name] = text
-        return found
+                    texts[folder.name] = text
+        return texts
 
     def read(self, text: str) -> MissionDocument:
-        """The mission of this text, with what it calls. Raises ConfigError with all problems."""
+        """Return the mission of this text, with what it calls. Raise ConfigError with all problems."""
         return read_mission(text, self.texts(), self._limits)
 
     def called_by(self, text: str) -> dict[str, str]:
-        """The texts of the missions that this one calls."""
+        """Return the texts of the missions that this one calls."""
         return called_by(text, self.texts())
 
     def describe(self) -> list[MissionText]:
-        """The shipped missions, then one's own by name."""
+        """Return the shipped missions, then the user's own by name."""
         texts = self.texts()
         return [self._describe(name, texts) for name in texts]
 
     def versions(self, name: str) -> list[MissionVersion]:
-        """The versions of one's own mission, the newest first. Raises UnknownMissionError."""
-        found = _versions(self._own / name) if NAME.fullmatch(name) else []
-        if not found:
+        """Return the versions of the user's own mission, the newest first. Raise UnknownMissionError."""
+        versions = _versions(self._own / name) if NAME.fullmatch(name) else []
+        if not versions:
             raise UnknownMissionError(f"The library has no own mission {name!r}.")
         authors = _read_authors(self._own / name)
         return [
@@ -86,15 +87,15 @@ class MissionLibrary:
                 author=authors.get(path.stem, ""),
                 text=text,
             )
-            for path in reversed(found)
+            for path in reversed(versions)
             if (text := _read(path)) is not None
         ]
 
     def keep(self, text: str, author: str = "", base: str | None = None) -> MissionDocument:
-        """Stores a mission under its own name, as a new version where it differs from the newest.
+        """Store a mission under its own name, as a new version where it differs from the newest.
 
         `base` is the mark (`mark_text`) of the version that the editing began from, "" for a new mission;
-        None replaces any. Raises ConfigError if it is not valid, RefusedError if it may not be written,
+        None replaces any. Raise ConfigError if it is not valid, RefusedError if it may not be written,
         ChangedMeanwhileError, FileWriteError.
         """
         mission = self.read(text)
@@ -119,7 +120,7 @@ class MissionLibrary:
             )
         path = folder / f"{int(versions[-1].stem) + 1 if versions else 1}.toml"
         remaining = [*versions, path][-VERSIONS_MAX:]
-        authors = {one.stem: authors[one.stem] for one in remaining if one.stem in authors} | {
+        authors = {file.stem: authors[file.stem] for file in remaining if file.stem in authors} | {
             path.stem: author
         }
         try:
@@ -133,7 +134,7 @@ class MissionLibrary:
             raise FileWriteError(explain_write_error(problem, path)) from problem
 
     def delete(self, name: str) -> None:
-        """Deletes one's own mission with its versions. Raises UnknownMissionError, RefusedError."""
+        """Delete the user's own mission with its versions. Raise UnknownMissionError, RefusedError."""
         if name in SHIPPED:
             raise RefusedError(f"{name} ships with the program and stays.")
         with _STORING:
@@ -149,7 +150,7 @@ class MissionLibrary:
                 raise RefusedError(f"{self._own / name} cannot be deleted: {problem.strerror}.") from problem
 
     def _describe(self, name: str, texts: dict[str, str]) -> MissionText:
-        """A mission; the title of an invalid one is its name."""
+        """Return a mission; the title of an invalid one is its name."""
         try:
             summary = summarize_mission(read_mission(texts[name], texts, self._limits))
         except ConfigError:
@@ -169,14 +170,20 @@ class MissionLibrary:
 
 
 def _versions(folder: Path) -> list[Path]:
-    """The files of a mission's versions, the oldest first."""
-    if not folder.is_dir():
+    """Return the files of a mission's versions, the oldest first."""
+    # Whether the folder is there is not asked first: it may be deleted meanwhile.
+    try:
+        files = [*folder.iterdir()]
+    except (FileNotFoundError, NotADirectoryError):
         return []
-    return sorted((one for one in folder.glob("*.toml") if one.stem.isdigit()), key=lambda one: int(one.stem))
+    return sorted(
+        (file for file in files if file.suffix == ".toml" and file.stem.isdigit()),
+        key=lambda file: int(file.stem),
+    )
 
 
 def _read_authors(folder: Path) -> dict[str, str]:
-    """The authors by the versions' numbers; those of older versions of the program are not known."""
+    """Return the authors by the versions' numbers; older versions of the program stored none."""
     try:
         return {str(key): str(name) for key, name in json.loads((folder / AUTHORS).read_bytes()).items()}
     except (OSError, ValueError, AttributeError):
@@ -195,10 +202,15 @@ def _read(path: Path) -> str | None:
 
 
 def read_table(text: str) -> dict[str, JsonValue] | None:
-    """A mission's TOML as a table, for the page's editor; None where it is no TOML, or not JSON either."""
+    """Return a mission's TOML as a table for the page's editor; None where TOML or JSON cannot express it."""
     try:
         table: dict[str, JsonValue] = read_toml(text)
         json.dumps(table, allow_nan=False)
     except (TomlError, TypeError, ValueError):
         return None
     return table
+
+
+def open_library(settings: Settings) -> MissionLibrary:
+    """Return the library of this server's missions."""
+    return MissionLibrary(settings.data.missions, settings.mission_limits)

@@ -1,4 +1,4 @@
-"""Puts the marks of missions into the session that records."""
+"""The marks of missions, put into the recording session."""
 
 import asyncio
 import json
@@ -6,16 +6,16 @@ import logging
 
 from robot_runtime.contract.documents import MISSION_MARK
 from robot_runtime.transport.blocks import Block
-from server.features.sessions.bookmarks import Bookmarks
-from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.recorder import Recorder
+from server.library.bookmarks import Bookmarks
+from server.library.catalogue import Catalogue
 from server.platform.errors import ApiError
+from server.recording.recorder import Recorder
 
 log = logging.getLogger(__name__)
 
 
 class MissionMarks:
-    """Makes bookmarks of the runtime's events of the kind `MISSION_MARK`.
+    """Bookmarks made of the runtime's events of the kind `MISSION_MARK`.
 
     A server that has been restarted gets those of the last minutes again.
     """
@@ -27,7 +27,7 @@ class MissionMarks:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def see(self, block: Block) -> None:
-        """Takes a block of events."""
+        """Take a block of events."""
         session = self._recorder.session
         if session is None or MISSION_MARK.encode() not in block.payload:
             return
@@ -38,7 +38,7 @@ class MissionMarks:
                 task.add_done_callback(self._tasks.discard)
 
     async def close(self) -> None:
-        """Waits for the marks that are being stored."""
+        """Wait until all marks are stored."""
         await asyncio.gather(*self._tasks)
 
     async def _add(self, session: int, moment: float, text: str) -> None:

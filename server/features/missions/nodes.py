@@ -1,11 +1,10 @@
 """The leaves and branches as the page's editor shows them, from their classes."""
 
-import types
 from dataclasses import MISSING, Field, fields
 from inspect import cleandoc
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal
 
-from robot_runtime.contract.limits import Range
+from robot_runtime.contract.hints import Hint, read_fields
 from robot_runtime.missions import leaves  # noqa: F401 - declares them
 from robot_runtime.missions.branches import CallBranch
 from robot_runtime.missions.leaf import NODES, Branch, MissionNode
@@ -15,13 +14,13 @@ FieldKind = Literal["number", "whole", "text", "value", "sight", "parameter", "m
 
 
 def list_node_kinds() -> list[MissionNodeKind]:
-    """Every leaf and branch that documents may have."""
+    """Return every leaf and branch that documents may have."""
     return [_describe(do, cls) for do, cls in NODES.items()]
 
 
 def _describe(do: str, cls: type[MissionNode]) -> MissionNodeKind:
     branch = issubclass(cls, Branch)
-    hints = get_type_hints(cls, include_extras=True)
+    hints = read_fields(cls)
     return MissionNodeKind(
         do=do,
         branch=branch,
@@ -29,41 +28,31 @@ def _describe(do: str, cls: type[MissionNode]) -> MissionNodeKind:
         most=cls.most if issubclass(cls, Branch) else 0,
         meaning=cleandoc(cls.__doc__ or "").replace("\n", " "),
         fields=[
-            _describe_field(one, hints[one.name], cls)
-            for one in fields(cls)
-            if one.init and one.name != "note"
+            _describe_field(field, hints[field.name], cls)
+            for field in fields(cls)
+            if field.init and field.name != "note"
         ],
     )
 
 
-def _describe_field(one: "Field[Any]", hint: Any, cls: type[MissionNode]) -> NodeField:
-    limits = _limits(hint)
-    default = None if one.default is MISSING else one.default
-    kind: FieldKind = one.metadata.get("kind") or ("mission" if cls is CallBranch else _kind(hint))
+def _describe_field(field: "Field[Any]", hint: Hint, cls: type[MissionNode]) -> NodeField:
+    limits = next((member.limits for member in hint.members if member.limits is not None), hint.limits)
+    default = None if field.default is MISSING else field.default
+    kind: FieldKind = field.metadata.get("kind") or ("mission" if cls is CallBranch else _kind(hint))
     return NodeField(
-        name=one.name,
+        name=field.name,
         kind=kind,
-        meaning=one.metadata.get("description", ""),
-        unit=one.metadata.get("unit", ""),
+        meaning=field.metadata.get("description", ""),
+        unit=field.metadata.get("unit", ""),
         minimum=limits.minimum if limits else None,
         maximum=limits.maximum if limits else None,
-        required=one.default is MISSING,
+        required=field.default is MISSING,
         default=default,
     )
 
 
-def _limits(hint: Any) -> Range | None:
-    if get_origin(hint) is Annotated:
-        return next((one for one in get_args(hint)[1:] if isinstance(one, Range)), None)
-    if get_origin(hint) in (types.UnionType, Union):
-        return next((found for one in get_args(hint) if (found := _limits(one)) is not None), None)
-    return None
-
-
-def _kind(hint: Any) -> FieldKind:
-    if get_origin(hint) is Annotated:
-        return _kind(get_args(hint)[0])
-    if get_origin(hint) in (types.UnionType, Union):
-        kinds = [one for one in get_args(hint) if one is not types.NoneType]
-        return _kind(kinds[0]) if len(kinds) == 1 else "value"
-    return "whole" if hint is int else "number" if hint is float else "text"
+def _kind(hint: Hint) -> FieldKind:
+    forms = [member.form for member in hint.members]
+    if len(forms) > 1:
+        return "value"
+    return "whole" if forms == ["whole number"] else "number" if forms == ["number"] else "text"

@@ -8,7 +8,7 @@ from server.stream.feed import Feed
 
 
 class MissionsPlug(Plug):
-    """Puts the marks of missions into what is recorded."""
+    """The plug that puts the marks of missions into the recording."""
 
     def __init__(self, marks: MissionMarks, trials: MissionTrials, feed: Feed) -> None:
         self._marks = marks

@@ -1,5 +1,6 @@
 """Schemas of missions."""
 
+from dataclasses import asdict
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field, JsonValue
@@ -71,7 +72,7 @@ class MissionText(BaseModel):
 
 
 class MissionVersion(BaseModel):
-    """A version of a mission of one's own."""
+    """A version of the user's own mission."""
 
     version: int
     made: float = Field(description="s since 1970")
@@ -147,27 +148,21 @@ class MissionTrial(BaseModel):
 
 
 def summarize_mission(mission: MissionDocument) -> MissionSummary:
-    """The summary of a mission."""
-    limits = mission.limits
+    """Return the summary of a mission."""
     return MissionSummary(
         name=mission.name,
         title=mission.title,
         description=mission.description,
         longest=mission.longest,
-        depth=limits.depth,
-        time=limits.time,
-        battery=limits.battery,
-        unwatched=limits.unwatched,
-        alone=limits.alone,
-        pause=limits.pause,
+        **asdict(mission.limits),
         steps=[
             MissionStepSummary(
-                path=one.place,
-                do=one.node.do,
-                words=one.node.words,
-                note=one.node.note,
-                longest=one.longest,
+                path=step.number,
+                do=step.node.do,
+                words=step.node.label,
+                note=step.node.note,
+                longest=step.longest,
             )
-            for one in mission.root.walk()
+            for step in mission.root.walk()
         ],
     )

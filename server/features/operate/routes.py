@@ -7,14 +7,15 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
 from robot_runtime.contract.documents import State
+from robot_runtime.contract.topics import STATE
 from robot_runtime.link.dissection import Dissection
-from server.features.operate.performing import (
+from server.driving.changes import COMMAND_ERRORS
+from server.driving.checked_commands import (
     CheckedCommands,
     UnknownCommandError,
     explain_unknown_command,
 )
-from server.features.parameters.changes import COMMAND_ERRORS
-from server.features.parameters.schemas import Restored
+from server.driving.schemas import Restored
 from server.health.monitor import Health, HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Operations
@@ -57,7 +58,7 @@ async def get_health(monitor: Provided[HealthMonitor]) -> Health:
 
 @router.operation("GET /alive", Need.NOTHING, NotAliveError, tags=["health"])
 async def check_alive(monitor: Provided[HealthMonitor]) -> None:
-    """Answer whether the robot works.
+    """Check that the robot works.
 
     Without a sign-in and without data, for programs that watch computers: 204, or 503 where the database or
     the robot's runtime fails.
@@ -76,10 +77,10 @@ async def get_link_frames(bridge: Provided[Bridge]) -> LinkFrames:
 async def get_robot(monitor: Provided[HealthMonitor], bridge: Provided[Bridge]) -> object:
     """Return the robot's newest state.
 
-    The runtime sent it at its `time` (s, steady clock), after the last command that it answered. 503
-    where that is too long ago to be the present state.
+    The runtime sent it at its `time` (s, steady clock), after the last command that it answered. 503 where
+    that state is too old to be the present one.
     """
-    await monitor.catch_up("state", bridge.answered)
+    await monitor.catch_up(STATE, bridge.answered)
     state = monitor.state()
     if state is None:
         raise UnavailableError("The robot's runtime has sent no state yet. /api/health says why.")
@@ -91,9 +92,9 @@ async def get_robot(monitor: Provided[HealthMonitor], bridge: Provided[Bridge]) 
 async def stop_robot(bridge: Provided[Bridge]) -> None:
     """Disarm at once.
 
-    STOP is never refused, and goes before everything else.
+    STOP is never refused, and precedes everything else.
     """
-    await bridge.command("stop", {})
+    await bridge.stop()
 
 
 def _add_command(cls: type[RobotCommand], need: Need) -> None:
@@ -122,5 +123,5 @@ for _cls in http_commands():
 
 @router.operation("POST /robot/commands/{name}", Need.VIEWER, UnknownCommandError, include_in_schema=False)
 async def refuse_command(name: str) -> None:
-    """Refuse a command that there is not."""
+    """Refuse an unknown command."""
     raise UnknownCommandError(explain_unknown_command(name))

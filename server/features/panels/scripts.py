@@ -34,13 +34,13 @@ class OwnPanelScript(BaseModel):
 
 
 def list_panels(folder: Path) -> Sequence[OwnPanel]:
-    """The `*.js` of the folder by name, at most `PANELS_SHOWN`; none if there is no such folder."""
+    """Return the `*.js` of the folder by name, at most `PANELS_SHOWN`; none if there is no such folder."""
     files = sorted(folder.glob("*.js"))[:PANELS_SHOWN]
     return [OwnPanel(name=_readable(file.stem), problem=_problem(file)) for file in files]
 
 
 def read_panel(folder: Path, name: str) -> OwnPanelScript:
-    """The panel of this name. Raises UnknownPanelError, with the reason."""
+    """Return the panel of this name. Raise UnknownPanelError, with the reason."""
     # Found in the folder's list, so that no requested name becomes a path.
     for file in folder.glob("*.js"):
         if file.stem != name:
@@ -67,5 +67,5 @@ def _problem(file: Path) -> str:
 
 
 def _readable(name: str) -> str:
-    """A file's name without what cannot be sent: it may have come in another encoding than UTF-8."""
+    """Return a file's name without bytes that are not UTF-8 and cannot be sent."""
     return os.fsencode(name).decode(errors="replace")

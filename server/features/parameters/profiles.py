@@ -14,7 +14,8 @@ from sqlmodel import col, select
 from robot_runtime.contract.text_input import TextError, read_json
 from robot_runtime.errors import RefusedError
 from server import VERSION
-from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Value, Values
+from server.driving.schemas import Value
+from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Values
 from server.platform.errors import InvalidError, NotFoundError
 from server.platform.models import ProfileRow
 from server.platform.store import Store, insert_row
@@ -49,13 +50,13 @@ class Profiles:
         self._store = store
 
     def list(self) -> list[Profile]:
-        """All profiles, in alphabetical order. Blocks."""
+        """Return all profiles, in alphabetical order. Blocks."""
         with self._store.read() as database:
             rows = database.exec(select(ProfileRow)).all()
-        return sorted((_show(row) for row in rows), key=lambda one: one.name.casefold())
+        return sorted((_show(row) for row in rows), key=lambda profile: profile.name.casefold())
 
     def find(self, profile: int) -> Profile:
-        """The profile of this number. Blocks."""
+        """Return the profile of this number. Blocks."""
         with self._store.read() as database:
             row = database.get(ProfileRow, profile)
         if row is None:
@@ -63,7 +64,7 @@ class Profiles:
         return _show(row)
 
     async def save(self, name: str, note: str, values: Mapping[str, Value], author: str = "") -> Profile:
-        """Save these values. Raises RefusedError if the name is taken, or if there are too many profiles."""
+        """Save these values. Raise RefusedError if the name is taken, or if there are too many profiles."""
         row = ProfileRow(
             name=name, note=note, saved=time(), parameters=json.dumps(dict(values)), author=author
         )
@@ -85,15 +86,15 @@ class Profiles:
         """Delete a profile for good."""
 
         def write(connection: Connection) -> None:
-            found = connection.execute(delete(ProfileRow).where(col(ProfileRow.id) == profile))
-            if found.rowcount == 0:
+            result = connection.execute(delete(ProfileRow).where(col(ProfileRow.id) == profile))
+            if result.rowcount == 0:
                 raise UnknownProfileError("There is no such profile; somebody may have deleted it.")
 
         await self._store.write(write, frees=True)
 
 
 def write_file(profile: Profile) -> str:
-    """The file of a profile, which `read_file` reads."""
+    """Return the file of a profile, which `read_file` reads."""
     content = {
         "format": FORMAT,
         "name": profile.name,
@@ -106,13 +107,13 @@ def write_file(profile: Profile) -> str:
 
 
 def file_name(profile: Profile) -> str:
-    """A file name for the profile, with characters that every file system takes."""
-    words = re.sub(r"[^A-Za-z0-9]+", "-", profile.name).strip("-")[:50].strip("-")
-    return f"profile-{words or profile.id}.json"
+    """Return a file name for the profile, with characters that every file system takes."""
+    slug = re.sub(r"[^A-Za-z0-9]+", "-", profile.name).strip("-")[:50].strip("-")
+    return f"profile-{slug or profile.id}.json"
 
 
 def read_file(text: str) -> ProfileFile:
-    """The profile in a file. Raises ProfileError."""
+    """Return the profile in a file. Raise ProfileError."""
     try:
         content: Any = read_json(text)
     except TextError as problem:
@@ -129,11 +130,11 @@ def read_file(text: str) -> ProfileFile:
     try:
         return ProfileFile.model_validate(content)
     except ValidationError as problem:
-        words = "; ".join(
-            f"{'.'.join(str(place) for place in error['loc'][:2])}: {error['msg']}"
+        reasons = "; ".join(
+            f"{'.'.join(str(part) for part in error['loc'][:2])}: {error['msg']}"
             for error in problem.errors()[:5]
         )
-        raise ProfileError(f"The profile in the file cannot be used. {words}.") from problem
+        raise ProfileError(f"The profile in the file cannot be used. {reasons}.") from problem
 
 
 def _writer(content: Mapping[str, Any]) -> str:

@@ -8,7 +8,8 @@ from starlette.responses import Response
 from robot_runtime.contract.commands import ParametersCommand
 from robot_runtime.contract.documents import Parameters
 from robot_runtime.errors import RefusedError
-from server.features.parameters.changes import COMMAND_ERRORS, Changes
+from server.driving.changes import COMMAND_ERRORS, Changes
+from server.driving.schemas import Change, Restored
 from server.features.parameters.profiles import (
     ProfileError,
     Profiles,
@@ -17,15 +18,7 @@ from server.features.parameters.profiles import (
     read_file,
     write_file,
 )
-from server.features.parameters.schemas import (
-    Change,
-    Imported,
-    NewProfile,
-    Profile,
-    ProfileText,
-    Restored,
-    Undo,
-)
+from server.features.parameters.schemas import Imported, NewProfile, Profile, ProfileText, Undo
 from server.http.dependencies import Provided
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.identity import Caller
@@ -38,7 +31,7 @@ router = Operations(prefix="/api", tags=["parameters"])
 
 
 async def ask_parameters(bridge: Bridge) -> dict[str, Any]:
-    """The present parameters of the runtime. Raises RuntimeSilentError, RefusedError."""
+    """Return the present parameters of the runtime. Raise RuntimeSilentError, RefusedError."""
     answer = await bridge.query("parameters")
     return {name: answer[name] for name in ("time", "parameters")}
 
@@ -76,7 +69,7 @@ async def save_profile(
 ) -> Profile:
     """Save all present parameter values as a profile."""
     listed = await ask_parameters(bridge)
-    values = {one["name"]: one["value"] for one in listed["parameters"]}
+    values = {parameter["name"]: parameter["value"] for parameter in listed["parameters"]}
     return await profiles.save(body.name, body.note, values, caller.name)
 
 
@@ -90,11 +83,11 @@ async def import_profile(
 
     The robot's parameters stay unchanged. The answer lists parameters that this robot does not know.
     """
-    found = read_file(body.text)
+    content = read_file(body.text)
     listed = await ask_parameters(bridge)
-    profile = await profiles.save(found.name, found.note, found.parameters, caller.name)
-    known = {one["name"] for one in listed["parameters"]}
-    return Imported(profile=profile, unknown=[name for name in found.parameters if name not in known])
+    profile = await profiles.save(content.name, content.note, content.parameters, caller.name)
+    known = {parameter["name"] for parameter in listed["parameters"]}
+    return Imported(profile=profile, unknown=[name for name in content.parameters if name not in known])
 
 
 @router.operation(
@@ -106,9 +99,9 @@ async def import_profile(
 )
 async def download_profile(profiles: Provided[Profiles], profile: Identifier) -> Response:
     """Download a profile as a JSON file."""
-    found = await run_in_threadpool(profiles.find, profile)
-    headers = {"Content-Disposition": f'attachment; filename="{file_name(found)}"'}
-    return Response(write_file(found), media_type="application/json", headers=headers)
+    saved = await run_in_threadpool(profiles.find, profile)
+    headers = {"Content-Disposition": f'attachment; filename="{file_name(saved)}"'}
+    return Response(write_file(saved), media_type="application/json", headers=headers)
 
 
 @router.operation("POST /profiles/{profile}/restore", Need.CONTROL, UnknownProfileError, *COMMAND_ERRORS)
@@ -119,11 +112,11 @@ async def restore_profile(
 
     Sets all of its parameters that can be set now. The answer lists those that are unknown or out of range.
     """
-    found = await run_in_threadpool(profiles.find, profile)
-    if not found.values:
-        raise RefusedError(f"The profile “{found.name}” holds no parameters.")
-    body = ParametersCommand(values=found.values, partly=True)
-    return await changes.command(caller.name, body, why=f"Profile “{found.name}”")
+    saved = await run_in_threadpool(profiles.find, profile)
+    if not saved.values:
+        raise RefusedError(f"The profile “{saved.name}” holds no parameters.")
+    body = ParametersCommand(values=saved.values, partly=True)
+    return await changes.command(caller.name, body, why=f"Profile “{saved.name}”")
 
 
 @router.operation("DELETE /profiles/{profile}", Need.OPERATOR, UnknownProfileError)

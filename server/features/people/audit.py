@@ -1,4 +1,4 @@
-"""Operations on the audit log: who did what when. Nobody can change it."""
+"""Operations on the audit log, the list of all acts. Nobody can change it."""
 
 import asyncio
 from collections.abc import Iterator, Sequence
@@ -36,7 +36,7 @@ class AuditFilter(BaseModel):
     until: float | None
 
     def fits(self, entry: AuditEntry) -> bool:
-        """True where the entry meets them; case and accents make no difference."""
+        """Return True where the entry meets the conditions, without regard to case and accents."""
         if self.since is not None and entry.time < self.since:
             return False
         if self.until is not None and entry.time > self.until:
@@ -47,7 +47,7 @@ class AuditFilter(BaseModel):
 
 
 class AuditList(BaseModel):
-    """Entries, newest first; `more` is true where there are older ones that fit."""
+    """Entries, newest first; `more`: older matching entries exist."""
 
     entries: list[AuditEntry]
     more: bool
@@ -64,19 +64,19 @@ Chosen = Annotated[AuditFilter, Depends(_choose)]
 
 @router.operation("GET", Need.OPERATOR)
 async def list_audit(audit: Provided[AuditLog], chosen: Chosen) -> AuditList:
-    """List who did what when, newest first, at most 200 entries.
+    """List the audit log, newest first, at most 200 entries.
 
-    `who` is looked for in name, role and address, `what` in action, its details and its outcome.
+    `who` is searched in name, role and address, `what` in action, details and outcome.
     """
-    found = await asyncio.to_thread(lambda: list(islice(_find(audit, chosen), LISTED_MOST + 1)))
-    return AuditList(entries=found[:LISTED_MOST], more=len(found) > LISTED_MOST)
+    entries = await asyncio.to_thread(lambda: list(islice(_find(audit, chosen), LISTED_MOST + 1)))
+    return AuditList(entries=entries[:LISTED_MOST], more=len(entries) > LISTED_MOST)
 
 
 @router.operation("GET /csv", Need.OPERATOR, media_type="text/csv")
 async def export_audit(
     audit: Provided[AuditLog], chosen: Chosen, spreadsheet: Spreadsheet = "none"
 ) -> Response:
-    """Download the entries that fit as CSV, newest first.
+    """Download the matching entries as CSV, newest first.
 
     `spreadsheet` is the decimal sign of the spreadsheet that reads it.
     """
@@ -91,10 +91,10 @@ def _find(audit: AuditLog, chosen: AuditFilter) -> Iterator[AuditEntry]:
 
 def _write_csv(entries: Iterator[AuditEntry], style: CsvStyle) -> str:
     lines: list[Sequence[object]] = [COLUMNS]
-    for one in entries:
-        moment = style.moment(datetime.fromtimestamp(one.time, UTC).isoformat(timespec="milliseconds"))
-        device = "" if one.device is None else one.device
-        texts = (one.who, one.role, one.address, one.action, one.about)
+    for entry in entries:
+        moment = style.moment(datetime.fromtimestamp(entry.time, UTC).isoformat(timespec="milliseconds"))
+        device = "" if entry.device is None else entry.device
+        texts = (entry.who, entry.role, entry.address, entry.action, entry.about)
         who, role, address, action, about = map(escape_formula, texts)
-        lines.append((moment, who, device, role, address, action, about, one.outcome, one.count))
+        lines.append((moment, who, device, role, address, action, about, entry.outcome, entry.count))
     return style.mark + style.write(lines)

@@ -23,7 +23,7 @@ SCOPE = click.Choice(["read", "operate", "administer"])
 @with_settings
 def pair(settings: Settings, role: str | None) -> None:
     """Print a link that signs one browser in."""
-    from server.features.people.welcome import invitation, shows_pictures
+    from server.http.sign_in.welcome import invitation, shows_pictures
 
     role = role or ("viewer" if _has_operator(settings.data) else "operator")
     made = ask(settings.data, "POST", "/access/codes", {"role": role})
@@ -87,7 +87,7 @@ def token(settings: Settings, name: str, scope: str, days: int, never_ends: bool
 
 def _has_operator(folder: DataFolder) -> bool:
     devices = ask(folder, "GET", "/access/devices")
-    return any((one["kind"], one["role"]) == ("browser", "operator") for one in devices)
+    return any((device["kind"], device["role"]) == ("browser", "operator") for device in devices)
 
 
 def _give_role(folder: DataFolder, number: int, role: str) -> None:
@@ -101,15 +101,15 @@ def _named(role: str) -> str:
 
 def _tabulate(devices: list[dict[str, Any]]) -> str:
     return "\n".join(
-        f"{one['id']:5}  {one['role']:8}  {one['kind']:7}  "
-        f"last seen {datetime.fromtimestamp(one['seen'], UTC):%Y-%m-%d %H:%M} UTC  "
-        f"{_rights(one)}{one['name']}"
-        for one in devices
+        f"{device['id']:5}  {device['role']:8}  {device['kind']:7}  "
+        f"last seen {datetime.fromtimestamp(device['seen'], UTC):%Y-%m-%d %H:%M} UTC  "
+        f"{_rights(device)}{device['name']}"
+        for device in devices
     )
 
 
 def _rights(device: dict[str, Any]) -> str:
-    """Words about a token's scope and end; empty where there is nothing to say."""
+    """Return a token's scope and end as text; empty where both are the default."""
     limited = "does not administer  " if device["limited"] and device["role"] == "operator" else ""
     if device["ended"] or device["ends"] is None:
         return limited + (f"{device['ended']}  " if device["ended"] else "")

@@ -5,7 +5,6 @@ from dataclasses import asdict
 
 from fastapi import Request, Response
 
-from server.features.people.pairing_links import pairing_link, qr_svg
 from server.features.people.schemas import (
     CallerDetails,
     Confirmation,
@@ -30,6 +29,7 @@ from server.http.sign_in.pairing_codes import (
     WrongCodeError,
     WrongConfirmationError,
 )
+from server.http.sign_in.pairing_links import pairing_link, qr_svg
 from server.http.sign_in.policy import Need, list_needs
 from server.platform.settings import Settings
 
@@ -83,10 +83,10 @@ async def pair_browser(
 async def confirm_browser(
     request: Request, access: Provided[Access], caller: Caller, body: Confirmation
 ) -> None:
-    """Confirm who uses this browser, with a new operator's code.
+    """Confirm the user of this browser, with a new operator's code.
 
     Dangerous acts of a browser (`administer`) need it where the browser has neither signed in nor confirmed
-    in the last ten minutes. The code is used up. One that this browser has made itself does not confirm.
+    in the last ten minutes. The code is used up. A code made by this browser does not confirm.
     Programs and the shell need no confirmation.
     """
     access.confirm(body.code, caller, address_of(request.scope))
@@ -175,7 +175,7 @@ def _describe_caller(
 ) -> CallerDetails:
     return CallerDetails(
         signed_in=identity is not None,
-        robot=settings.robot,
+        robot=settings.robot.name,
         identity=identity,
         ended=request.scope.get(SIGN_IN_ENDED, "") if identity is None else "",
         pairing_open=access.codes.any_valid,

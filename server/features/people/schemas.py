@@ -41,7 +41,7 @@ class Pairing(RequestBody):
 
 
 class Confirmation(RequestBody):
-    """A code that confirms who uses this browser."""
+    """A code that confirms the user of this browser."""
 
     code: Annotated[str, Field(min_length=1, max_length=64)]
 

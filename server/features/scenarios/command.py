@@ -29,15 +29,15 @@ def list_all(settings: Settings) -> None:
     """List the scenarios."""
     from server.features.scenarios.library import list_scenarios
 
-    for one in list_scenarios(settings.data.scenarios):
-        echo(f"{one.name:<24} {one.title}{'' if one.shipped else ' (your own)'}")
+    for entry in list_scenarios(settings.data.scenarios):
+        echo(f"{entry.name:<24} {entry.title}{'' if entry.shipped else ' (your own)'}")
 
 
 @scenario.command()
 @SCENARIO
 @with_settings
 def check(settings: Settings, file: str) -> None:
-    """Show what a scenario does, or what is wrong with it."""
+    """Show a scenario's events, or its problems."""
     _, scenario = _read(file, settings.data.scenarios)
     echo(_describe(scenario))
 
@@ -46,6 +46,7 @@ def check(settings: Settings, file: str) -> None:
 @SCENARIO
 @click.option(
     "--place",
+    "timing",
     type=click.Choice(["simulated", "live"]),
     default="simulated",
     help="In simulated time, or in real time on the robot of the running server.",
@@ -61,7 +62,7 @@ def check(settings: Settings, file: str) -> None:
 def run(
     settings: Settings,
     file: str,
-    place: Literal["simulated", "live"],
+    timing: Literal["simulated", "live"],
     board: Literal["host", "emulated"],
     take_over: bool,
 ) -> int:
@@ -70,7 +71,7 @@ def run(
     from server.features.scenarios.shell_run import run_scenario
 
     text, _ = _read(file, settings.data.scenarios)
-    return run_scenario(ScenarioStart(text=text, place=place, board=board), settings, take_over=take_over)
+    return run_scenario(ScenarioStart(text=text, place=timing, board=board), settings, take_over=take_over)
 
 
 def _read(file: str, own: Path) -> "tuple[str, Scenario]":
@@ -79,7 +80,7 @@ def _read(file: str, own: Path) -> "tuple[str, Scenario]":
     from robot_runtime.experiments.scenario.document import read_scenario
     from server.features.scenarios.library import list_scenarios
 
-    there = {one.name: one.text for one in list_scenarios(own)}
+    there = {entry.name: entry.text for entry in list_scenarios(own)}
     try:
         text = there[file] if file in there else load_text(Path(file))
         return text, read_scenario(text)

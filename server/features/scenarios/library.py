@@ -26,7 +26,7 @@ _STORING = threading.Lock()
 
 
 def list_scenarios(own: Path) -> list[ScenarioText]:
-    """The shipped scenarios, then those in the folder `own` by name; unreadable files are left out."""
+    """Return the shipped scenarios, then those in the folder `own` by name; unreadable files are left out."""
     return [_describe(name, text, shipped=True) for name, text in _shipped().items()] + [
         _describe(file.stem, text, shipped=False) for file, text in _own(own)
     ]
@@ -36,7 +36,7 @@ def keep_scenario(own: Path, text: str, base: str | None = None) -> Scenario:
     """Write a scenario into the folder `own`, under its own name.
 
     `base` is the mark (`mark_text`) of the text that the editing began from, "" for a new scenario; None
-    replaces any. Raises ConfigError if it is not valid, RefusedError if it may not be written,
+    replaces any. Raise ConfigError if it is not valid, RefusedError if it may not be written,
     ChangedMeanwhileError, FileWriteError.
     """
     scenario = read_scenario(text)
@@ -64,20 +64,20 @@ def _shipped() -> dict[str, str]:
 
 
 def _own(folder: Path) -> list[tuple[Path, str]]:
-    found = []
+    texts = []
     for file in sorted(folder.glob("*.toml")):
         try:
             if file.stat().st_size <= BYTES_MAX:
-                found.append((file, load_text(file)))
+                texts.append((file, load_text(file)))
         except OSError as problem:
             log.warning("the scenario %s cannot be read: %s", file, problem)
         except TextError as problem:
             log.warning("the scenario %s cannot be read: it %s", file, problem)
-    return found
+    return texts
 
 
 def _describe(name: str, text: str, shipped: bool) -> ScenarioText:
-    """The scenario; the title of an invalid one is its file's name."""
+    """Return the scenario; the title of an invalid one is its file's name."""
     try:
         summary = summarize(read_scenario(text))
     except ConfigError:

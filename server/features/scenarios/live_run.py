@@ -1,4 +1,4 @@
-"""Runs a scenario on the robot in real time, by the commands that an operator would give."""
+"""A scenario on the robot in real time, by an operator's commands."""
 
 import asyncio
 import json
@@ -11,16 +11,16 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import LineFaultChange, TimedEvent
 from robot_runtime.simulation.water.parameters import SimulationParameters
-from server.features.parameters.changes import Changes, Send
+from server.driving.changes import Changes, Send
 from server.features.scenarios.live_setup import LiveSetup, SavedState
 from server.features.scenarios.recording import begin, describe_session, mark
 from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
-from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
 from server.processes.managed_process import Notify
 from server.processes.supervisor import ProcessSupervisor
+from server.recording.recorder import Recorder, RecordingRefusedError
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 POLL_SECONDS = 0.1
@@ -32,7 +32,7 @@ NEEDED = ("board", "runtime", "simulator")
 
 
 class LiveExecutor:
-    """Performs scenarios on the running robot with its simulated water and its recorder."""
+    """Executor of scenarios on the running robot with its simulated water and its recorder."""
 
     def __init__(
         self,
@@ -65,7 +65,7 @@ class LiveExecutor:
             raise RefusedError(" ".join(reasons))
 
     async def perform(self, run: RunRecord) -> None:
-        """Perform a run. Raises the errors that `ScenarioExecutor.perform` names."""
+        """Perform a run. Raise the errors of `ScenarioExecutor.perform`."""
         self.check(run.scenario)
         run.phase = "preparing"
         processes = self._process_ids()
@@ -102,13 +102,13 @@ class LiveExecutor:
             )
         finally:
             self._recovering = False
-        words = "The server was killed during a scenario."
+        text = "The server was killed during a scenario."
         if disarmed and restored:
-            words += " The robot is disarmed and has its previous settings."
-        self._notify("scenario", "caution", words)
+            text += " The robot is disarmed and has its previous settings."
+        self._notify("scenario", "caution", text)
 
     async def _close_recording(self, session: int, killed: float) -> None:
-        """End the recording of a killed server's run, as far as the disk takes it."""
+        """End the recording of a killed server's run, as far as the disk allows."""
         with suppress(StoreError):
             await mark(self._store, session, killed, "The server was killed; the scenario ends here.")
         with suppress(StoreError, RecordingRefusedError):
@@ -143,14 +143,14 @@ class LiveExecutor:
 
     async def _apply_event(self, run: RunRecord, event: TimedEvent, began: float, send: Send) -> None:
         assert run.session is not None
-        words = event.words
+        text = event.label
         try:
             await self._setup.apply(event, send)
         except (RefusedError, RuntimeSilentError) as problem:
             # The robot may refuse a command, as to an operator; the experiment continues.
-            words = f"{words}: refused. {problem}"
-            run.remarks.append(f"At {event.at:g} s: {words}")
-        await mark(self._store, run.session, max(self._clock.now(), began), words)
+            text = f"{text}: refused. {problem}"
+            run.remarks.append(f"At {event.at:g} s: {text}")
+        await mark(self._store, run.session, max(self._clock.now(), began), text)
 
     def _check_processes(self, run: RunRecord, processes: Mapping[str, int | None]) -> None:
         """Raise RunCancelledError or RunFailedError if the run can no longer continue."""
@@ -170,20 +170,20 @@ class LiveExecutor:
             await self._recorder.stop(session)
 
     async def _disarm(self) -> bool:
-        """Disarm, and let the sensors follow; false, with an alarm, if the robot could not be disarmed."""
+        """Disarm, and let the sensors follow; return False, with an alarm, if the robot stays armed."""
         try:
             await self._setup.disarm()
         except (RefusedError, RuntimeSilentError) as problem:
-            words = f"The robot could not be disarmed after the scenario: {problem}"
-            self._notify("scenario", "alarm", words)
+            text = f"The robot could not be disarmed after the scenario: {problem}"
+            self._notify("scenario", "alarm", text)
             return False
         await asyncio.sleep(SETTLE_SECONDS)
         return True
 
     async def _put_back(self, before: SavedState, send: Send | None) -> bool:
-        """Restore the previous state, without `send` that of the water and the board alone.
+        """Restore the previous state; without `send` only that of the water and the board.
 
-        False, with a notice, if some of it is not restored.
+        Return False, with a notice, if some of it is not restored.
         """
         problems = await self._setup.put_back(before, send)
         if problems:
@@ -198,7 +198,7 @@ class LiveExecutor:
         recording = self._recorder.session
         if self._recovering:
             return ["The state before an interrupted scenario is being restored. Wait a moment."]
-        if self._settings.mode == "robot":
+        if self._settings.robot.mode == "robot":
             return [
                 "A scenario changes the water, and this robot swims in real water: robot.mode is “robot”."
             ]
@@ -222,10 +222,10 @@ class LiveExecutor:
         return reasons
 
     def _find_differences(self, scenario: Scenario) -> list[str]:
-        """The differences between the running robot and the scenario's."""
+        """Return the differences between the running robot and the scenario's."""
         reasons = []
         if not self._settings.emulated_board and any(
-            isinstance(one, LineFaultChange) for one in scenario.events
+            isinstance(event, LineFaultChange) for event in scenario.events
         ):
             reasons.append("It disturbs the serial line, which needs an emulated board.")
         if scenario.robot not in (
@@ -245,7 +245,7 @@ class LiveExecutor:
         return reasons
 
     async def _next_state(self) -> dict[str, Any]:
-        """A state that the runtime sends from now on: the newest one may be from before the last change."""
+        """Return the next state of the runtime: the newest one may precede the last change."""
         asked = self._clock.now()
         try:
             async with asyncio.timeout(STATE_SECONDS):

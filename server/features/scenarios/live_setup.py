@@ -1,4 +1,4 @@
-"""Sets up the running robot and its water for a scenario, and restores the previous state."""
+"""The set-up of the running robot and its water for a scenario, and the restoring of the previous state."""
 
 import asyncio
 import json
@@ -28,7 +28,7 @@ from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import CommandEvent, LineFaultChange, TimedEvent, WaterEvent
 from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 from robot_runtime.simulation.water.surroundings import Trim
-from server.features.parameters.changes import Send
+from server.driving.changes import Send
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 log = logging.getLogger(__name__)
@@ -56,12 +56,12 @@ class SavedState:
     sight: Request | None
 
     def write(self, path: Path) -> None:
-        """Write it to the disk, where it survives a power cut. Raises OSError."""
+        """Write the state to the disk, durably. Raise OSError."""
         write_whole(path, json.dumps(asdict(self)).encode())
 
     @classmethod
     def read(cls, path: Path) -> "SavedState | None":
-        """The state that a killed server has left; None if there is none or it is not readable."""
+        """Return the state stored by a killed server; None if there is none or it is not readable."""
         try:
             return cls(**json.loads(path.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError):
@@ -69,7 +69,7 @@ class SavedState:
 
 
 class LiveSetup:
-    """Sends a scenario's settings to the runtime, the simulator and the board.
+    """Set-up of a scenario at the runtime, the simulator and the board.
 
     `board_socket` is None for a real board. Every method may raise RefusedError or RuntimeSilentError.
     `patience` is the time in s in which `disarm` and `put_back` try a step without an answer again.
@@ -81,7 +81,7 @@ class LiveSetup:
         self._patience = patience
 
     async def read(self, robot: Request) -> SavedState:
-        """The present state; `robot` is the newest `state`."""
+        """Return the present state; `robot` is the newest `state`."""
         water = await self._bridge.ask_simulator("surroundings", {})
         try:
             return SavedState(robot, water, await self._bridge.scene("contents", {}))
@@ -109,7 +109,7 @@ class LiveSetup:
             await send(CardCommand())
 
     async def apply(self, event: TimedEvent, send: Send) -> None:
-        """Carry out an event at runtime, simulator or board; a bookmark asks nothing of them."""
+        """Perform an event at runtime, simulator or board; a bookmark needs none of them."""
         if isinstance(event, LineFaultChange):
             await self._order(event.command)
         elif isinstance(event, WaterEvent):
@@ -122,7 +122,7 @@ class LiveSetup:
         await _insist(self._bridge.disarm, self._deadline())
 
     async def put_back(self, before: SavedState, send: Send | None) -> list[str]:
-        """Restore the previous state, without `send` all but the robot's; returns the problems in words."""
+        """Restore the previous state, without `send` all but the robot's; return the problems as text."""
         robot = before.robot
         steps: list[Callable[[], Awaitable[None]]] = [
             lambda: self._clean_line(0),
@@ -177,7 +177,7 @@ class LiveSetup:
 
 
 async def _insist(step: Callable[[], Awaitable[object]], end: float) -> None:
-    """Take a step, again and again until `end` (loop time) if nobody answers; then RuntimeSilentError."""
+    """Take a step, repeated without an answer until `end` (loop time). Raise RuntimeSilentError then."""
     loop = asyncio.get_running_loop()
     while True:
         try:
@@ -196,7 +196,7 @@ def _order(socket: Path, command: str) -> None:
 
 
 def _water_of(scenario: Scenario) -> Request:
-    """The scenario's water as requests to the simulator."""
+    """Return the scenario's water as requests to the simulator."""
     basin, robot = scenario.scene.basin, scenario.robot
     trim = scenario.trim or Trim.of(robot)
     return {
@@ -204,38 +204,44 @@ def _water_of(scenario: Scenario) -> Request:
         "current": asdict(scenario.water.current),
         "waves": asdict(scenario.water.waves),
         "trim": asdict(trim),
-        "beacons": {"positions": [list(one) for one in scenario.scene.beacons]},
+        "beacons": {"positions": [list(beacon) for beacon in scenario.scene.beacons]},
         "faults": [],
     }
 
 
 def _sight_of(scenario: Scenario) -> Request:
-    """The scenario's scene as requests to the simulator."""
+    """Return the scenario's scene as requests to the simulator."""
     scene = scenario.scene
     return {
         "world": {"kind": scene.kind, "turbidity": scene.turbidity},
-        "targets": {"targets": [asdict(one) | {"position": list(one.position)} for one in scene.targets]},
+        "targets": {
+            "targets": [asdict(target) | {"position": list(target.position)} for target in scene.targets]
+        },
     }
 
 
 def _gains_of(scenario: Scenario) -> dict[str, dict[str, float]]:
-    """Every gain of every depth controller, the default unless the scenario sets it."""
+    """Return every gain of every depth controller, the default unless the scenario sets it."""
     return {
-        one.name: _defaults(one) | scenario.control.gains.get(one.name, {}) for one in CONTROLLERS["depth"]
+        controller.name: _defaults(controller) | scenario.control.gains.get(controller.name, {})
+        for controller in CONTROLLERS["depth"]
     }
 
 
 def _at_rest(loop: LoopName) -> LoopCommand:
-    """The command that sets a loop to its state at the runtime's start."""
+    """Return the command that sets a loop to its state at the runtime's start."""
     first = CONTROLLERS[loop][0]
     return LoopCommand(name=loop, on=False, set_point=0.0, controller=first.name, gains=_defaults(first))
 
 
 def _commands_of(robot: Request) -> list[RobotCommand]:
-    """The commands that set control and vision to this state of the robot."""
+    """Return the commands that set control and vision to this state of the robot."""
     depth = next(loop for loop in robot["loops"] if loop["name"] == "depth")
     return [
-        *(ControllerCommand(name=one["name"], gains=_values(one["gains"])) for one in depth["controllers"]),
+        *(
+            ControllerCommand(name=controller["name"], gains=_values(controller["gains"]))
+            for controller in depth["controllers"]
+        ),
         ControllerCommand(name=depth["controller"]),
         SetPointsCommand(default=robot["set_point_default"], detected=robot["set_point_detected"]),
         *_loops_of(robot),
@@ -245,15 +251,15 @@ def _commands_of(robot: Request) -> list[RobotCommand]:
 
 
 def _loops_of(robot: Request) -> list[LoopCommand]:
-    """The commands that restore heading, pitch and roll."""
+    """Return the commands that restore heading, pitch and roll."""
     commands: list[LoopCommand] = []
     for loop in robot["loops"]:
         if loop["name"] not in ATTITUDE_LOOPS:
             continue
         name = loop["name"]
         commands += [
-            LoopCommand(name=name, controller=one["name"], gains=_values(one["gains"]))
-            for one in loop["controllers"]
+            LoopCommand(name=name, controller=controller["name"], gains=_values(controller["gains"]))
+            for controller in loop["controllers"]
         ]
         commands.append(
             LoopCommand(name=name, controller=loop["controller"], on=loop["on"], set_point=loop["set_point"])

@@ -4,18 +4,18 @@ from collections.abc import Coroutine, Sequence
 from typing import Any, ClassVar
 
 from robot_runtime.clock import Clock
+from server.driving.changes import Changes
 from server.feature import Plug
-from server.features.parameters.changes import Changes
 from server.features.scenarios.live_run import LiveExecutor
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.simulated_run import SimulatedExecutor
-from server.features.sessions.recorder import Recorder
 from server.health.monitor import HealthMonitor
 from server.health.occupation import Occupation
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.supervisor import ProcessSupervisor
+from server.recording.recorder import Recorder
 from server.services import Maker
 from server.stream.bridge import Bridge
 from server.stream.hub import Hub
@@ -32,17 +32,17 @@ def make_live(
     clock: Clock,
     notices: Notices,
 ) -> LiveExecutor:
-    """Runs scenarios on the robot."""
+    """Return the executor of scenarios on the robot."""
     return LiveExecutor(settings, store, recorder, bridge, changes, monitor, processes, clock, notices.notify)
 
 
 def make_scenarios(live: LiveExecutor, simulated: SimulatedExecutor, hub: Hub) -> ScenarioRunner:
-    """Runs scenarios."""
+    """Return the runner of scenarios."""
     return ScenarioRunner(live, simulated, hub.notify)
 
 
 class ScenariosPlug(Plug):
-    """Ends a scenario on the robot at a STOP."""
+    """The plug that ends a scenario on the robot at a STOP."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_live, make_scenarios)
 
@@ -55,7 +55,7 @@ class ScenariosPlug(Plug):
         occupation.robot.append(self._explain)
 
     async def start(self) -> None:
-        """Send the pages the state."""
+        """Send the state to the pages."""
         self._scenarios.announce()
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
@@ -63,7 +63,7 @@ class ScenariosPlug(Plug):
         return (self._live.recover(),)
 
     async def stop(self) -> None:
-        """Cancel what runs."""
+        """Cancel the running work."""
         await self._scenarios.close()
 
     def _explain(self) -> str | None:

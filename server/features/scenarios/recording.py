@@ -8,15 +8,15 @@ from sqlmodel import col, desc, select
 
 from robot_runtime.clock import Clock
 from server.features.scenarios.run import RunRecord
-from server.features.sessions.recorder import Recorder
-from server.features.sessions.session import new_row
 from server.platform.models import BookmarkRow, SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.recording.recorder import Recorder
+from server.recording.session import new_row
 
 
 def describe_session(settings: Settings, clock: Clock, run: RunRecord, robot_state: str) -> SessionRow:
-    """The session of a run that begins now."""
+    """Return the session of a run that begins now."""
     scenario = run.scenario
     row = new_row(settings, clock, scenario.title, scenario.description, robot_state)
     row.origin = "scenario" if run.place == "live" else "simulated"
@@ -27,7 +27,7 @@ def describe_session(settings: Settings, clock: Clock, run: RunRecord, robot_sta
 
 
 async def begin(recorder: Recorder, store: Store, run: RunRecord, row: SessionRow) -> int:
-    """Start recording the run, and return the session's number. Raises RecordingRefusedError, StoreError."""
+    """Start recording the run, and return the session's number. Raise RecordingRefusedError, StoreError."""
     run.before = await asyncio.to_thread(_find_before, store, row.scenario_name)
     session = await recorder.start(row)
     run.session, run.phase = session.id, "running"
@@ -43,6 +43,6 @@ def _find_before(store: Store, name: str) -> int | None:
 
 
 async def mark(store: Store, session: int, moment: float, text: str) -> None:
-    """Add a bookmark at a moment (s, the session's clock). Raises StoreError."""
+    """Add a bookmark at a moment (s, the session's clock). Raise StoreError."""
     values = {"session_id": session, "time": moment, "text": text, "made": time()}
     await store.execute(insert(BookmarkRow).values(values))

@@ -5,7 +5,7 @@ from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.scenario.document import read_scenario
-from server.features.lease.admission import admit, require_control
+from server.driving.admission import admit, require_control
 from server.features.scenarios import library
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import (
@@ -75,7 +75,7 @@ async def start_scenario(
     caller: Caller,
     body: ScenarioStart,
 ) -> ScenarioStarted:
-    """Run a scenario: live at once, or refused with the reasons; in simulated time in its turn."""
+    """Run a scenario: live at once, or refused with the reasons; in simulated time after queued ones."""
     if body.place == "live":
         require_control(request)
     scenario = await run_in_threadpool(lambda: read_scenario(body.text, settings.read_craft()))
@@ -89,5 +89,5 @@ async def start_scenario(
 
 @router.operation("POST /cancel", Need.OPERATOR, RunOverError)
 async def cancel_scenario(scenarios: Provided[ScenarioRunner], run: MeantRun = None) -> None:
-    """Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay."""
+    """Cancel this run; without one cancel the active run and clear the queue. Recordings stay."""
     scenarios.cancel(run)

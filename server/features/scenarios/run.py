@@ -60,7 +60,7 @@ class RunRecord:
         await self._cancelled.wait()
 
     async def sleep(self, seconds: float) -> None:
-        """Wait. Raises RunCancelledError."""
+        """Wait. Raise RunCancelledError."""
         try:
             async with asyncio.timeout(max(seconds, 0.0)):
                 await self._cancelled.wait()
@@ -69,9 +69,9 @@ class RunRecord:
         self.check()
 
     def describe(self) -> ActiveRun:
-        """The run as sent to the pages."""
+        """Return the run as sent to the pages."""
         events = describe_events(self.scenario)
-        coming = (one for one in events if one.at > self.elapsed or self.phase == "preparing")
+        coming = (event for event in events if event.at > self.elapsed or self.phase == "preparing")
         return ActiveRun(
             run=self.run,
             name=self.scenario.name,
@@ -87,7 +87,7 @@ class RunRecord:
         )
 
     def end(self, state: End, problem: str) -> EndedRun:
-        """The end of the run, as sent to the pages."""
+        """Return the end of the run for the pages."""
         return EndedRun(
             run=self.run,
             name=self.scenario.name,

@@ -1,4 +1,4 @@
-"""Runs scenarios one after the other; those in simulated time may wait in a queue."""
+"""The runner of scenarios, one after the other; those in simulated time may wait in a queue."""
 
 import asyncio
 import logging
@@ -11,10 +11,10 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
 from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
 from server.features.scenarios.schemas import BoardKind, End, EndedRun, Place, QueuedRun, ScenarioState
-from server.features.sessions.recorder import RecordingRefusedError
 from server.platform.errors import explain_internal_error
 from server.platform.runs import RunOverError, new_run
 from server.platform.store import StoreError
+from server.recording.recorder import RecordingRefusedError
 from server.stream.bridge import RuntimeSilentError
 
 log = logging.getLogger(__name__)
@@ -24,7 +24,7 @@ NOTIFY_SECONDS = 0.25
 
 
 class ScenarioExecutor(Protocol):
-    """Performs scenarios, on the robot or in simulated time."""
+    """Executor of scenarios, on the robot or in simulated time."""
 
     def check(self, scenario: Scenario) -> None:
         """Raise RefusedError with all reasons against a run now."""
@@ -32,12 +32,12 @@ class ScenarioExecutor(Protocol):
     async def perform(self, run: RunRecord) -> None:
         """Perform a run.
 
-        Raises RunCancelledError, RunFailedError, RefusedError, RuntimeSilentError, StoreError, OSError.
+        Raise RunCancelledError, RunFailedError, RefusedError, RuntimeSilentError, StoreError, OSError.
         """
 
 
 class ScenarioRunner:
-    """At most one scenario runs at a time; `notify` reports progress."""
+    """Runner of at most one scenario at a time; `notify` reports progress."""
 
     def __init__(
         self, live: ScenarioExecutor, simulated: ScenarioExecutor, notify: Callable[[dict[str, Any]], None]
@@ -55,7 +55,7 @@ class ScenarioRunner:
         return self._active
 
     def state(self) -> ScenarioState:
-        """The active run, the queue and the last run."""
+        """Return the active run, the queue and the last run."""
         return ScenarioState(
             active=None if self._active is None else self._active.describe(),
             queued=[
@@ -65,14 +65,14 @@ class ScenarioRunner:
             last=self._last,
         )
 
-    def start(self, scenario: Scenario, text: str, place: Place, board: BoardKind, who: str = "") -> str:
-        """Start or queue the scenario of this text, and return its run. Raises RefusedError."""
-        if place == "live" and self._active is not None:
+    def start(self, scenario: Scenario, text: str, timing: Place, board: BoardKind, who: str = "") -> str:
+        """Start or queue the scenario of this text, and return its run. Raise RefusedError."""
+        if timing == "live" and self._active is not None:
             raise RefusedError(f"“{self._active.scenario.title}” is running. Wait for its end, or cancel it.")
         if len(self._queue) >= QUEUE_MAX:
             raise RefusedError(f"{QUEUE_MAX} scenarios are waiting already. Wait until some have ended.")
-        self._executors[place].check(scenario)
-        run = RunRecord(new_run(), scenario, text, place, board, who)
+        self._executors[timing].check(scenario)
+        run = RunRecord(new_run(), scenario, text, timing, board, who)
         self._queue.append(run)
         if self._task is None or self._task.done():
             # Set here, before the task begins, so that the next request finds it active.
@@ -82,14 +82,14 @@ class ScenarioRunner:
         return run.run
 
     def cancel(self, run: str | None = None) -> None:
-        """Cancel this run alone; without one cancel the active run and clear the queue. Recordings stay.
+        """Cancel this run; without one cancel the active run and clear the queue. Recordings stay.
 
-        Raises RunOverError if this run neither is active nor waits.
+        Raise RunOverError if this run is neither active nor queued.
         """
         active = () if self._active is None else (self._active,)
-        if run is not None and run not in (one.run for one in (*active, *self._queue)):
+        if run is not None and run not in (record.run for record in (*active, *self._queue)):
             raise RunOverError("run of a scenario")
-        self._queue = deque(one for one in self._queue if run not in (None, one.run))
+        self._queue = deque(record for record in self._queue if run not in (None, record.run))
         if self._active is not None and run in (None, self._active.run):
             self._active.cancel("It was cancelled.")
         self.announce()

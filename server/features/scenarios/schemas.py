@@ -137,7 +137,7 @@ class ScenarioState(BaseModel):
 
 
 def summarize(scenario: Scenario) -> ScenarioSummary:
-    """The summary of a scenario."""
+    """Return the summary of a scenario."""
     controller = scenario.control.controller
     return ScenarioSummary(
         name=scenario.name,
@@ -146,11 +146,11 @@ def summarize(scenario: Scenario) -> ScenarioSummary:
         duration=scenario.duration,
         seed=scenario.seed,
         scene=scenario.scene.kind,
-        controller=next(one.title for one in CONTROLLERS["depth"] if one.name == controller),
+        controller=next(kind.title for kind in CONTROLLERS["depth"] if kind.name == controller),
         events=describe_events(scenario),
     )
 
 
 def describe_events(scenario: Scenario) -> list[ScenarioEvent]:
-    """The events of a scenario, in order."""
-    return [ScenarioEvent(at=event.at, do=event.do, words=event.words) for event in scenario.events]
+    """Return the events of a scenario, in order."""
+    return [ScenarioEvent(at=event.at, do=event.do, words=event.label) for event in scenario.events]

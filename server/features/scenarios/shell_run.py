@@ -1,4 +1,4 @@
-"""Runs a scenario from a shell: in simulated time if no server uses the data folder, else by the server."""
+"""A scenario from a shell: in simulated time if no server uses the data folder, else by the server."""
 
 import asyncio
 import math
@@ -9,7 +9,7 @@ from time import sleep
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.experiments.scenario.document import read_scenario
-from server.features.lease.command import in_control, renew_control
+from server.driving.shell_control import in_control, renew_control
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState
 from server.features.scenarios.simulated_run import SimulatedExecutor
@@ -28,9 +28,9 @@ TAKEN_OUT = "The run was taken out of the queue."
 
 
 def run_scenario(start: ScenarioStart, settings: Settings, *, take_over: bool) -> int:
-    """Run a scenario and print its events as they come. Exit status: 1 if it did not complete.
+    """Run a scenario and print its events as they come. Return the exit status: 1 if it did not complete.
 
-    Raises SetupError if it cannot start.
+    Raise SetupError if it cannot start.
     """
     with ExitStack() as claimed:
         if start.place == "simulated" and _enter(claimed, claim(settings.data)):
@@ -39,7 +39,7 @@ def run_scenario(start: ScenarioStart, settings: Settings, *, take_over: bool) -
 
 
 def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
-    """True if the data folder was claimed; false if a server uses it or it is not usable."""
+    """Return True if the data folder was claimed; False if a server uses it or it is not usable."""
     try:
         claimed.enter_context(claim)
     except SetupError:
@@ -68,7 +68,7 @@ async def _simulate(start: ScenarioStart, settings: Settings, store: Store) -> E
 
 
 def _run_there(start: ScenarioStart, folder: DataFolder, *, take_over: bool) -> EndedRun:
-    """Run it by the running server; Ctrl-C cancels it there."""
+    """Run the scenario by the running server; Ctrl-C cancels it there."""
     if start.place == "simulated":
         run = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
         return _follow(run, folder, lambda: None)
@@ -78,7 +78,7 @@ def _run_there(start: ScenarioStart, folder: DataFolder, *, take_over: bool) -> 
 
 
 def _follow(run: str, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
-    """Print the run's events until its end. Raises SetupError where its end is not known."""
+    """Print the run's events until its end. Raise SetupError where its end is not known."""
     progress = _Progress()
     began = False
     try:
@@ -90,7 +90,7 @@ def _follow(run: str, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
                 return state.last
             active = state.active is not None and state.active.run == run
             began |= active
-            if not active and run not in (one.run for one in state.queued):
+            if not active and run not in (record.run for record in state.queued):
                 raise SetupError(ENDED if began else TAKEN_OUT)
             sleep(POLL_SECONDS)
     except KeyboardInterrupt:
@@ -99,13 +99,13 @@ def _follow(run: str, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
 
 
 def _conclude(last: EndedRun) -> int:
-    words = f"{last.title}: {last.state}. {last.problem}".strip()
-    echo(words if last.session is None else f"{words} Session {last.session}.")
+    text = f"{last.title}: {last.state}. {last.problem}".strip()
+    echo(text if last.session is None else f"{text} Session {last.session}.")
     return 0 if last.state == "complete" else 1
 
 
 class _Progress:
-    """Prints each event as the run reaches it."""
+    """The printed events of a run, in step with it."""
 
     def __init__(self) -> None:
         self._run: str | None = None
@@ -113,7 +113,7 @@ class _Progress:
         self._printed = 0
 
     def notify(self, state: ScenarioState) -> None:
-        """Print the events that are new in this state."""
+        """Print the new events of this state."""
         active, last = state.active, state.last
         if last is not None and last.run == self._run and last.state == "complete":
             # A fast run may end before its last events are reported.

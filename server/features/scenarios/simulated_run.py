@@ -1,4 +1,4 @@
-"""Runs a scenario in simulated time, in a process of low priority, and records its blocks.
+"""A scenario in simulated time, in a process of low priority, and the recording of its blocks.
 
 `python -m robot_runtime.experiments.scenario` reads the text from its standard input, and writes messages to
 its standard output: `u32 size | u8 kind | bytes` (little-endian), kind 0 a JSON object, kind 1 blocks.
@@ -22,11 +22,11 @@ from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.transport.blocks import Block, read_blocks
 from server.features.scenarios.recording import begin, describe_session, mark
 from server.features.scenarios.run import RunFailedError, RunRecord
-from server.features.sessions.recorder import Recorder
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.exit_status import describe_status
+from server.recording.recorder import Recorder
 
 HEADER = Struct("<IB")
 EVENTS, BLOCKS = 0, 1
@@ -44,12 +44,12 @@ class ScenarioClock:
         self.time = 0.0
 
     def now(self) -> float:
-        """s."""
+        """Return the time, s."""
         return self.time
 
 
 class SimulatedExecutor:
-    """Performs scenarios in simulated time, each in its own process."""
+    """Executor of scenarios in simulated time, each in its own process."""
 
     def __init__(self, settings: Settings, store: Store, notices: Notices) -> None:
         self._settings = settings
@@ -60,7 +60,7 @@ class SimulatedExecutor:
         """Accept every scenario."""
 
     async def perform(self, run: RunRecord) -> None:
-        """Perform a run. Raises RunCancelledError, RunFailedError, StoreError, OSError."""
+        """Perform a run. Raise RunCancelledError, RunFailedError, StoreError, OSError."""
         clock = ScenarioClock()
         recorder = Recorder(self._store, clock, self._notices, lambda: None)
         run.phase = "preparing"
@@ -70,8 +70,8 @@ class SimulatedExecutor:
                 status = await process.wait()
                 run.check()
                 if status != 0:
-                    said = " / ".join(errors)
-                    raise RunFailedError(f"The simulation {describe_status(status)}. {said}".strip())
+                    output = " / ".join(errors)
+                    raise RunFailedError(f"The simulation {describe_status(status)}. {output}".strip())
         finally:
             run.phase = "ending"
             if recorder.session is not None:
@@ -79,7 +79,7 @@ class SimulatedExecutor:
 
 
 class _Playback:
-    """Stores the events and samples of the process."""
+    """The storage of a process's events and samples."""
 
     def __init__(
         self, run: RunRecord, settings: Settings, store: Store, recorder: Recorder, clock: ScenarioClock
@@ -93,7 +93,7 @@ class _Playback:
         self._ended: dict[str, Any] | None = None
 
     async def take(self, process: Process) -> None:
-        """Store everything up to its end. Raises RunFailedError, StoreError."""
+        """Store everything up to the process's end. Raise RunFailedError, StoreError."""
         assert process.stdout is not None
         try:
             while (message := await _read(process.stdout)) is not None:
@@ -138,7 +138,7 @@ class _Playback:
 
 @asynccontextmanager
 async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Process, deque[str]]]:
-    """The process of a scenario; `errors` are the last lines of its standard error."""
+    """Run the process of a scenario; `errors` are the last lines of its standard error."""
     command = [
         sys.executable,
         "-m",
@@ -202,7 +202,10 @@ def _signal(process: Process, number: signal.Signals) -> None:
 
 
 async def _read(stream: asyncio.StreamReader) -> tuple[int, bytes] | None:
-    """One message; None after the last. Raises ValueError, and IncompleteReadError if it is cut off."""
+    """Return one message; None after the last.
+
+    Raise ValueError, and IncompleteReadError for a truncated one.
+    """
     try:
         size, kind = HEADER.unpack(await stream.readexactly(HEADER.size))
     except asyncio.IncompleteReadError as problem:

@@ -1,12 +1,12 @@
-"""Sessions: recording, search, annotation, replay and retention."""
+"""The library of sessions: search, texts, bookmarks, replay and retention."""
 
 from server.feature import Feature
-from server.features.sessions.config import SessionsConfig
+from server.library.config import SessionsConfig
 
 FEATURE = Feature(
     name="sessions",
     section=SessionsConfig,
-    routes=("server.features.sessions.routes:router",),
+    routes=("server.features.sessions.routes:router", "server.features.sessions.bookmark_routes:router"),
     commands={
         "sessions": "server.features.sessions.command:sessions",
         "record": "server.features.sessions.command:record",

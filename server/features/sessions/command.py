@@ -1,6 +1,6 @@
 """`mucat sessions` and `mucat record`: sessions from a shell.
 
-Changes go through the server that uses the data folder, since nothing else may write its database. Without
+Changes go through the server that uses the data folder, since only it may write the database. Without
 a server the command makes them itself.
 """
 
@@ -18,8 +18,9 @@ from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
-    from server.features.sessions.listing import Listing
-    from server.features.sessions.schemas import Session, SessionDetail
+    from server.library.listing import Listing
+    from server.library.schemas import SessionDetail
+    from server.recording.schemas import Session
 
 SESSION = click.argument("session", type=int)
 REQUESTS = {
@@ -35,17 +36,17 @@ def sessions() -> None:
 
 
 @sessions.command("list")
-@click.argument("words", nargs=-1)
+@click.argument("search", nargs=-1, metavar="[WORDS]...")
 @click.option("--tag", multiple=True, help="Only sessions with this tag; can be repeated.")
 @click.option("--deleted", is_flag=True, help="Show the sessions in the bin instead.")
 @with_settings
-def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ...], deleted: bool) -> None:
+def list_sessions(settings: Settings, search: tuple[str, ...], tag: tuple[str, ...], deleted: bool) -> None:
     """List sessions, newest first.
 
     With WORDS, only those that have each of them in name, note, tags or scenario.
     """
     with _open_listing(settings) as listing:
-        for page in listing.pages(" ".join(words), tag, deleted=deleted):
+        for page in listing.pages(" ".join(search), tag, deleted=deleted):
             echo(_tabulate(page))
 
 
@@ -67,7 +68,7 @@ def tag(settings: Settings, session: int, tags: tuple[str, ...], remove: tuple[s
     """Add tags to a session, or remove some."""
     with _open_listing(settings) as listing:
         present = listing.find(session).tags
-    chosen = [one for one in dict.fromkeys([*present, *tags]) if one not in remove]
+    chosen = [name for name in dict.fromkeys([*present, *tags]) if name not in remove]
     _change(settings.data, session, tags=chosen)
 
 
@@ -116,7 +117,7 @@ def start(settings: Settings, name: str, note: str) -> None:
 def stop(settings: Settings) -> None:
     """End the present recording."""
     with _open_listing(settings) as listing:
-        recording = [one.id for one in listing.page(state="recording").sessions]
+        recording = [session.id for session in listing.page(state="recording").sessions]
     if not recording:
         raise SetupError("Nothing is being recorded.")
     session = ask(settings.data, "POST", f"/sessions/{recording[0]}/stop")
@@ -125,7 +126,7 @@ def stop(settings: Settings) -> None:
 
 @contextmanager
 def _open_listing(settings: Settings) -> "Iterator[Listing]":
-    from server.features.sessions.listing import Listing
+    from server.library.listing import Listing
     from server.platform.shell_store import open_reader
 
     with open_reader(settings.data) as store:
@@ -135,7 +136,7 @@ def _open_listing(settings: Settings) -> "Iterator[Listing]":
 def _change(folder: DataFolder, session: int, **values: Any) -> None:
     from pydantic import ValidationError
 
-    from server.features.sessions.schemas import SessionChanges
+    from server.library.schemas import SessionChanges
 
     try:
         changes = SessionChanges(**values).model_dump(exclude_unset=True)
@@ -145,7 +146,7 @@ def _change(folder: DataFolder, session: int, **values: Any) -> None:
 
 
 def _perform(folder: DataFolder, action: str, session: int, outcome: str, **changes: Any) -> None:
-    from server.features.sessions.catalogue import Catalogue
+    from server.library.catalogue import Catalogue
     from server.platform.shell_store import open_writer
 
     if server_runs(folder):
@@ -157,18 +158,18 @@ def _perform(folder: DataFolder, action: str, session: int, outcome: str, **chan
     echo(f"“{name}” {outcome}.")
 
 
-def _tabulate(found: "list[Session]") -> str:
-    if not found:
+def _tabulate(rows: "list[Session]") -> str:
+    if not rows:
         return "No matching session."
     return "\n".join(
-        f"{one.id:5}  {one.started:%Y-%m-%d %H:%M} UTC  {one.duration:8.1f} s  {one.state:11}  {one.name}"
-        + (f"  [{', '.join(one.tags)}]" if one.tags else "")
-        for one in found
+        f"{row.id:5}  {row.started:%Y-%m-%d %H:%M} UTC  {row.duration:8.1f} s  {row.state:11}  {row.name}"
+        + (f"  [{', '.join(row.tags)}]" if row.tags else "")
+        for row in rows
     )
 
 
 def _describe(session: "SessionDetail") -> str:
-    from server.features.sessions.crafts import describe_crafts
+    from server.library.crafts import describe_crafts
 
     lines = [
         f"{session.id}  {session.name}",

@@ -1,45 +1,33 @@
-"""Sessions: recording, search, description, bookmarks, replay, and the storage that they take."""
+"""Sessions: search, description, replay, and the storage that they take."""
 
-import json
 from typing import Annotated
 
 from fastapi import Depends, Query, Request
-from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 
-from robot_runtime.clock import Clock
-from server.features.sessions.bookmarks import Bookmarks
-from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.listing import PAGE, PAGE_MAX
-from server.features.sessions.missions import RecordedMission, read_missions
-from server.features.sessions.recorder import Recorder, RecordingRefusedError
-from server.features.sessions.recording import Recording, reading_content
-from server.features.sessions.replay import HISTORY_MAX, read_blocks_between
-from server.features.sessions.retention import RetentionWorker
-from server.features.sessions.schemas import (
-    Bookmark,
-    BookmarkChanges,
-    NewBookmark,
-    NewSession,
-    Origin,
-    Session,
-    SessionChanges,
-    SessionDetail,
-    State,
-)
-from server.features.sessions.session import UnknownSessionError, find_row, new_row
-from server.features.sessions.storage import Storage, measure
-from server.features.sessions.timeline import Timeline, read_timeline
-from server.health.monitor import HealthMonitor
+from robot_runtime.contract.topics import THUMBNAIL
 from server.http.dependencies import Provided
 from server.http.heavy_requests import RecordingTurn, TooManyHeavyError
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
+from server.library.catalogue import Catalogue
+from server.library.content import Recording, reading_content
+from server.library.listing import PAGE, PAGE_MAX
+from server.library.missions import RecordedMission, read_missions
+from server.library.replay import HISTORY_MAX, read_blocks_between
+from server.library.retention import RetentionWorker
+from server.library.schemas import (
+    SessionChanges,
+    SessionDetail,
+)
+from server.library.storage import Storage, measure
+from server.library.timeline import Timeline, read_timeline
 from server.platform.errors import ConflictError, InvalidError, NotFoundError
 from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.stream.bridge import Bridge
+from server.recording.schemas import Origin, Session, State
+from server.recording.session import UnknownSessionError, find_row
 
 SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
@@ -48,8 +36,6 @@ TOTAL_COUNT = "Total-Count"
 """The header that says how many sessions match."""
 
 router = Operations(prefix="/api", tags=["sessions"])
-
-NO_BOOKMARK = {404: "There is no such session, or it has no such bookmark"}
 
 Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
 
@@ -81,7 +67,7 @@ def list_sessions(
 ) -> list[Session]:
     """List the sessions that match every given condition, newest first, a page at a time.
 
-    The header `Total-Count` says how many match. Where more follow, the header `Link` has the next page's
+    The header `Total-Count` counts all matches. Where more follow, the header `Link` has the next page's
     address (`rel="next"`): the same with `before` as the last number of this one.
     """
     page = catalogue.page(search, tag or (), origin, state=state, deleted=deleted, before=before, limit=limit)
@@ -98,26 +84,9 @@ def list_tags(catalogue: Provided[Catalogue]) -> list[str]:
     return catalogue.tags()
 
 
-@router.operation("POST /sessions", Need.OPERATOR, ConflictError, status_code=201)
-async def start_session(
-    bridge: Provided[Bridge],
-    monitor: Provided[HealthMonitor],
-    settings: Provided[Settings],
-    clock: Provided[Clock],
-    recorder: Provided[Recorder],
-    body: NewSession,
-) -> Session:
-    """Start recording everything; refused while another session records or a test uses the board."""
-    if bridge.reserved_reason is not None:
-        raise RecordingRefusedError(bridge.reserved_reason)
-    state = json.dumps(monitor.state())
-    row = await run_in_threadpool(new_row, settings, clock, body.name, body.note, state)
-    return await recorder.start(row)
-
-
 @router.operation("GET /sessions/{session}", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
 def get_session(_: RecordingTurn, catalogue: Provided[Catalogue], session: Identifier) -> SessionDetail:
-    """Return a session with everything that is known of it except its samples; also from the bin.
+    """Return a session with all data except its samples; also from the bin.
 
     Long lists are cut off: `markers` and `gap_count` count all, and an archive of the session has all.
     """
@@ -130,15 +99,6 @@ async def change_session(
 ) -> Session:
     """Change name, note, tags or protection of a session; tags are replaced as a whole."""
     return await catalogue.change(session, **body.model_dump())
-
-
-@router.operation("POST /sessions/{session}/stop", Need.OPERATOR, UnknownSessionError, ConflictError)
-async def stop_session(
-    catalogue: Provided[Catalogue], recorder: Provided[Recorder], session: Identifier
-) -> Session:
-    """Stop recording; everything that arrived before is stored when this answers."""
-    await run_in_threadpool(catalogue.find, session)
-    return await recorder.stop(session)
 
 
 @router.operation("DELETE /sessions/{session}", Need.OPERATOR, UnknownSessionError, ConflictError)
@@ -187,41 +147,9 @@ def get_thumbnail(
     headers = {"cache-control": "private, no-cache", "etag": tag}
     if request.headers.get("if-none-match") == tag:
         return Response(status_code=304, headers=headers)
-    for _moment, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):
+    for _moment, jpeg in recording.pictures(THUMBNAIL.name, recording.row.started_steady + time):
         return Response(jpeg, media_type="image/jpeg", headers=headers)
     raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")
-
-
-@router.operation(
-    "POST /sessions/{session}/markers", Need.OPERATOR, NO_BOOKMARK, ConflictError, status_code=201
-)
-async def add_mark(
-    bookmarks: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, body: NewBookmark
-) -> Bookmark:
-    """Bookmark a moment; without a time it is now.
-
-    Refused beyond the session's end, and without a time after the session has ended.
-    """
-    mark = await bookmarks.add(session, body.time, body.text)
-    catalogue.notify(session)
-    return mark
-
-
-@router.operation("PATCH /sessions/{session}/markers/{mark}", Need.OPERATOR, NO_BOOKMARK, ConflictError)
-async def change_mark(
-    bookmarks: Provided[Bookmarks], session: Identifier, mark: Identifier, body: BookmarkChanges
-) -> Bookmark:
-    """Change the time or the text of a bookmark."""
-    return await bookmarks.change(session, mark, body.time, body.text)
-
-
-@router.operation("DELETE /sessions/{session}/markers/{mark}", Need.OPERATOR, NO_BOOKMARK, ConflictError)
-async def remove_mark(
-    bookmarks: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, mark: Identifier
-) -> None:
-    """Remove a bookmark for good."""
-    await bookmarks.remove(session, mark)
-    catalogue.notify(session)
 
 
 @router.operation("GET /sessions/{session}/timeline", Need.VIEWER, UnknownSessionError, TooManyHeavyError)
@@ -235,7 +163,7 @@ def get_timeline(_: RecordingTurn, recording: OpenRecording) -> Timeline:
 def list_session_missions(
     _: RecordingTurn, recording: OpenRecording, response: Response
 ) -> list[RecordedMission]:
-    """List the missions of a session: document, last state, and when each step began.
+    """List the missions of a session: document, last state, and the start of each step.
 
     At most the first hundred: the header `Left-Out` counts the others, which an archive of the session has.
     """
@@ -269,9 +197,9 @@ def get_blocks(
         raise InvalidError(f"The end, {end:g} s, lies before the start, {start:g} s.")
     zero = recording.row.started_steady
     with reading_content(recording.row):
-        found = read_blocks_between(recording, zero + start, zero + end, history)
-    headers = {LEFT_OUT: str(found.left_out), "Cache-Control": "no-store"}
-    return Response(found.data, media_type="application/octet-stream", headers=headers)
+        blocks = read_blocks_between(recording, zero + start, zero + end, history)
+    headers = {LEFT_OUT: str(blocks.left_out), "Cache-Control": "no-store"}
+    return Response(blocks.data, media_type="application/octet-stream", headers=headers)
 
 
 @router.operation("GET /storage", Need.VIEWER)

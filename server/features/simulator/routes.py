@@ -1,4 +1,4 @@
-"""Operations on the simulator: the computer that it runs on, and the bystander's view."""
+"""Operations on the simulator: its computer, and the bystander's view."""
 
 from typing import Annotated, Literal
 
@@ -17,7 +17,7 @@ router = Operations(prefix="/api")
 
 
 class SimulatorPlace(RequestBody):
-    """The computer of the simulator; `here` is true for this one."""
+    """The computer of the simulator; `here`: this one."""
 
     here: bool
 
@@ -41,12 +41,12 @@ async def put_simulator(
 ) -> None:
     """Start or end the simulator on this computer.
 
-    Only with hardware in the loop. Ending it disarms the robot, which then has no depth.
+    Only with hardware in the loop. Ending the simulator disarms the robot, which then has no depth.
     """
     if not settings.in_the_loop:
         raise RefusedError(
             "The simulator can be moved only with hardware in the loop: set robot.mode to hil in robot.toml "
-            f"(it is {settings.mode})."
+            f"(it is {settings.robot.mode})."
         )
     for name in SIMULATION:
         if body.here:

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from math import isnan
 from typing import Any
 
+from robot_runtime.contract.chunks import unpack
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Motor
+from robot_runtime.contract.topics import CONTROL, MOTOR, TURNING
 from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.transport.blocks import Block, read_rows
-from server.features.sessions.chunks import unpack
 
 DIGITS = 6
 """Stored decimals of times and values."""
-TURNING = ("heading", "pitch", "roll")
+ANGLE_LOOPS = ("heading", "pitch", "roll")
 FINS = 4
 
 
@@ -39,19 +40,19 @@ class TuningCurve:
             column.append(number)
 
     def between(self, start: float, end: float, zero: float) -> "TuningCurve":
-        """The ticks from `start` up to, but not at, `end`, with times relative to `zero`."""
-        inside = [place for place, time in enumerate(self.times) if start <= time < end]
-        times = [round(self.times[place] - zero, DIGITS) for place in inside]
-        rest = ([round(column[place], DIGITS) for place in inside] for column in self._columns()[1:])
+        """Return the ticks from `start` up to, but not at, `end`, with times relative to `zero`."""
+        inside = [index for index, time in enumerate(self.times) if start <= time < end]
+        times = [round(self.times[index] - zero, DIGITS) for index in inside]
+        rest = ([round(column[index], DIGITS) for index in inside] for column in self._columns()[1:])
         return TuningCurve(times, *rest)
 
     def to_bytes(self) -> bytes:
-        """The curve as it is stored."""
+        """Return the curve's bytes for storage."""
         return zlib.compress(json.dumps(self._columns()).encode())
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "TuningCurve":
-        """The stored curve; empty where none was stored."""
+        """Return the stored curve; empty where none was stored."""
         return cls(*json.loads(unpack(data))) if data else cls([], [], [], [])
 
     def _columns(self) -> tuple[list[float], list[float], list[float], list[float]]:
@@ -59,7 +60,7 @@ class TuningCurve:
 
 
 class SampleBuffer:
-    """Collects the samples that a run on this loop needs, block by block."""
+    """The samples that a run on this loop needs, collected block by block."""
 
     def __init__(self, loop: str) -> None:
         self.curve = TuningCurve([], [], [], [])
@@ -70,27 +71,26 @@ class SampleBuffer:
 
     def see(self, block: Block) -> None:
         """Process a block of any topic."""
-        name = block.topic.name
-        if name == "motor":
+        if block.topic is MOTOR:
             for time, motor in read_rows(block):
                 assert isinstance(motor, Motor)
                 self.fin_times.append(time)
                 for column, angle in zip(self.fins, motor.angle, strict=True):
                     column.append(angle)
-        elif name == "control" and self._loop == "depth":
+        elif block.topic is CONTROL and self._loop == "depth":
             for time, tick in read_rows(block):
                 assert isinstance(tick, Control)
                 self.curve.add(time, tick.set_point, tick.depth, tick.output)
-        elif name == "turning" and self._loop in TURNING:
-            place = TURNING.index(self._loop)
+        elif block.topic is TURNING and self._loop in ANGLE_LOOPS:
+            index = ANGLE_LOOPS.index(self._loop)
             for time, tick in read_rows(block):
                 turning: Any = tick
                 self._add_angle(
-                    time, turning.set_point[place], turning.measured[place], turning.output[place]
+                    time, turning.set_point[index], turning.measured[index], turning.output[index]
                 )
 
     def _add_angle(self, time: float, set_point: float, value: float, output: float) -> None:
-        """Add a tick of an angle without the jump at ±π: each set point the short way from the one before."""
+        """Add a tick of an angle without the jump at ±π: each set point goes the short way from the last."""
         before = self.curve.set_points[-1] if self.curve.set_points else set_point
         near = before + wrap_angle(set_point - before)
         self.curve.add(time, near, near + wrap_angle(value - set_point), output)

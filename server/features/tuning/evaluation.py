@@ -1,4 +1,4 @@
-"""Evaluates a run that has ended."""
+"""The evaluation of an ended run."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,7 +19,7 @@ def measure_run(
     state: RunState,
     problem: str,
 ) -> tuple[dict[str, Any], TuningCurve, str]:
-    """The results, the curve, and the reason for missing results.
+    """Return the results, the curve, and the reason for missing results.
 
     `starts` are the starts of the phases (s, steady clock). Only a complete run is evaluated.
     """

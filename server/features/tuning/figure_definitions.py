@@ -8,17 +8,17 @@ NEAR_DEGREES = 2.0
 
 
 def is_angle(loop: str) -> bool:
-    """True if the loop's unit is rad, shown in degrees; else it is m."""
+    """Return True if the loop's unit is rad, shown in degrees; else it is m."""
     return loop != "depth"
 
 
 def near(loop: str) -> float:
-    """The band of the second settling time, m or degrees."""
+    """Return the band of the second settling time, m or degrees."""
     return NEAR_DEGREES if is_angle(loop) else NEAR
 
 
 def meanings(loop: str) -> list[FigureMeaning]:
-    """The figures of a step response of this loop, from the step on, in their order."""
+    """Return the figures of a step response of this loop, from the step on, in their order."""
     unit, decimals = ("°", 2) if is_angle(loop) else ("m", 3)
     band = f"{NEAR_DEGREES:g}°" if is_angle(loop) else f"{100 * NEAR:g} cm"
     return [

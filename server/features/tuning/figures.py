@@ -18,7 +18,7 @@ STEADY = 0.5
 def measure_response(
     curve: TuningCurve, samples: SampleBuffer, loop: str, began: float, ended: float
 ) -> dict[str, Figure]:
-    """All figures of a step at 0 s of the curve; fins count from `began` to `ended` (s, steady clock)."""
+    """Return the figures of a step at 0 s of the curve; fin strokes count from `began` to `ended` (s)."""
     series, set_points, outputs = _after_step(curve, loop)
     if series.times.size < 2:
         return {}
@@ -48,7 +48,7 @@ def _after_step(curve: TuningCurve, loop: str) -> tuple[Series, Floats, Floats]:
 
 
 def _in_shown_unit(values: list[float], loop: str) -> Floats:
-    return np.array([degrees(one) for one in values] if is_angle(loop) else values)
+    return np.array([degrees(value) for value in values] if is_angle(loop) else values)
 
 
 def _step_figures(share: StepResponse | None, near: StepResponse | None) -> dict[str, Figure]:

@@ -4,8 +4,8 @@ from collections.abc import Coroutine, Sequence
 from typing import Any, ClassVar
 
 from robot_runtime.clock import Clock
+from server.driving.changes import Changes
 from server.feature import Plug
-from server.features.parameters.changes import Changes
 from server.features.tuning.runner import TuningRunner
 from server.features.tuning.runs import TuningStore
 from server.health.occupation import Occupation
@@ -25,12 +25,12 @@ def make_runner(
     notices: Notices,
     occupation: Occupation,
 ) -> TuningRunner:
-    """Runs tuning experiments."""
+    """Return the runner of tuning experiments."""
     return TuningRunner(runs, bridge, changes, clock, hub.notify, notices.notify, occupation.of_robot)
 
 
 class TuningPlug(Plug):
-    """Collects the samples of experiments."""
+    """The plug that collects the samples of experiments."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_runner,)
 
@@ -40,11 +40,11 @@ class TuningPlug(Plug):
         feed.listen(tuning.see)
 
     async def open(self) -> None:
-        """Mark runs that were cut off."""
+        """Mark interrupted runs."""
         await self._runs.mark_interrupted()
 
     async def start(self) -> None:
-        """Send the pages the state."""
+        """Send the state to the pages."""
         self._tuning.announce()
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
@@ -52,5 +52,5 @@ class TuningPlug(Plug):
         return (self._tuning.run(),)
 
     async def stop(self) -> None:
-        """End what runs, and store it."""
+        """End the running experiment, and store it."""
         await self._tuning.close()

@@ -16,12 +16,12 @@ SPREAD_MAX = 0.2
 
 
 def measure_limit_cycle(curve: TuningCurve, began: float, hysteresis: float) -> MeasuredLimitCycle:
-    """Period, swing and ultimate gain over the cycles from `began` (s of the curve) on.
+    """Return period, swing and ultimate gain over the cycles from `began` (s of the curve) on.
 
     Each is the median over whole cycles, from one switch of the relay to its greater command to the next.
-    Raises ValueError without a whole cycle, or if the swing does not exceed the hysteresis.
+    Raise ValueError without a whole cycle, or if the swing does not exceed the hysteresis.
     """
-    times, values, outputs = (np.array(one) for one in (curve.times, curve.values, curve.outputs))
+    times, values, outputs = (np.array(column) for column in (curve.times, curve.values, curve.outputs))
     counts = outputs[times >= began - TIME_TOLERANCE]
     bias = float(counts.max() + counts.min()) / 2 if counts.size else 0.0
     greater = outputs > bias
@@ -31,8 +31,8 @@ def measure_limit_cycle(curve: TuningCurve, began: float, hysteresis: float) -> 
         raise ValueError("there is no whole cycle")
     cycles = [slice(first, last) for first, last in pairwise(turns)]
     periods = np.diff(times[turns])
-    swings = np.array([np.ptp(values[one]) / 2 for one in cycles])
-    halves = np.array([2 * float(greater[one].mean()) - 1 for one in cycles])
+    swings = np.array([np.ptp(values[cycle]) / 2 for cycle in cycles])
+    halves = np.array([2 * float(greater[cycle].mean()) - 1 for cycle in cycles])
     period, swing = float(np.median(periods)), float(np.median(swings))
     amplitude = float(counts.max() - counts.min()) / 2
     asymmetry = float(np.median(halves))
@@ -50,7 +50,7 @@ def measure_limit_cycle(curve: TuningCurve, began: float, hysteresis: float) -> 
 
 def _remarks(periods: Floats, swings: Floats, asymmetry: float) -> list[str]:
     remarks = []
-    if any(np.ptp(one) > SPREAD_MAX * np.median(one) for one in (periods, swings)):
+    if any(np.ptp(series) > SPREAD_MAX * np.median(series) for series in (periods, swings)):
         remarks.append(
             "The cycles differ by more than 20 %: the water moves, or there are too few of them. "
             "Run it again."

@@ -3,7 +3,7 @@
 from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.limits import LoopName
-from server.features.parameters.changes import COMMAND_ERRORS
+from server.driving.changes import COMMAND_ERRORS
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.runner import TuningRunner
 from server.features.tuning.runs import UnknownTuningRunError
@@ -44,7 +44,7 @@ async def start_tuning_run(tuning: Provided[TuningRunner], caller: Caller, body:
 
 @router.operation("POST /stop", Need.CONTROL, *COMMAND_ERRORS)
 async def stop_tuning_run(tuning: Provided[TuningRunner], run: MeantNumber = None) -> None:
-    """Stop the active run and store what was measured; the robot stays armed."""
+    """Stop the active run and store its measurements; the robot stays armed."""
     await tuning.stop(run)
 
 

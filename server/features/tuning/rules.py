@@ -30,7 +30,7 @@ class Rule:
     """True if it holds only for a value that drifts under a constant command, as depth and heading do."""
 
     def gains(self, ultimate_gain: float, ultimate_period: float) -> dict[str, float]:
-        """kp, ki and kd."""
+        """Return kp, ki and kd."""
         kp = self.gain * ultimate_gain
         return {
             "kp": kp,
@@ -80,9 +80,9 @@ RULES = (
 
 
 def ultimate_gain(amplitude: float, swing: float, hysteresis: float) -> float:
-    """The ultimate gain from a relay of ±`amplitude` with `hysteresis`, whose limit cycle swings ±`swing`.
+    """Return the ultimate gain from a relay of ±`amplitude` with `hysteresis` and a limit cycle of ±`swing`.
 
-    Åström and Hägglund, Automatica 20, 1984: 4 d / (π √(a² - ε²)), by the relay's describing function. Raises
+    Åström and Hägglund, Automatica 20, 1984: 4 d / (π √(a² - ε²)), by the relay's describing function. Raise
     ValueError where the swing is no larger than the hysteresis.
     """
     if swing <= hysteresis:
@@ -93,14 +93,14 @@ def ultimate_gain(amplitude: float, swing: float, hysteresis: float) -> float:
 def propose(
     loop: LoopName, cycle: MeasuredLimitCycle, limits: Mapping[str, tuple[float, float]]
 ) -> list[Proposal]:
-    """The gains by each rule that holds for the loop. `limits` are those of each gain, by name."""
+    """Return the gains by each rule for this loop. `limits` are those of each gain, by name."""
     proposals = []
     for rule in RULES:
         # Pitch and roll have the hull's righting moment: a constant command holds them at an angle.
         if rule.integrating and loop in ("pitch", "roll"):
             continue
-        found = rule.gains(cycle.ultimate_gain, cycle.period)
-        gains = {name: float(f"{value:.{DIGITS}g}") for name, value in found.items()}
+        computed = rule.gains(cycle.ultimate_gain, cycle.period)
+        gains = {name: float(f"{value:.{DIGITS}g}") for name, value in computed.items()}
         proposals.append(
             Proposal(
                 rule=rule.name,

@@ -1,4 +1,4 @@
-"""Runs tuning experiments: starts them in the runtime, collects their samples, evaluates and stores them."""
+"""The runner of tuning experiments: it starts, collects, evaluates and stores them."""
 
 import asyncio
 import json
@@ -12,9 +12,10 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.contract.commands import EndExperimentCommand
 from robot_runtime.contract.documents import ExperimentPhase
+from robot_runtime.contract.topics import EXPERIMENT
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block
-from server.features.parameters.changes import Changes
+from server.driving.changes import Changes
 from server.features.tuning.curve import SampleBuffer
 from server.features.tuning.figure_definitions import is_angle
 from server.features.tuning.runs import TuningStore
@@ -63,7 +64,7 @@ class _Active:
         return self.phase in ENDED
 
     def describe(self) -> ActiveTuning:
-        """The run as sent to the pages."""
+        """Return the run as sent to the pages."""
         return ActiveTuning(
             run=self.run,
             kind=self.experiment.kind,
@@ -78,7 +79,7 @@ class _Active:
 
 
 class TuningRunner:
-    """Runs one experiment at a time; `notify` reports progress, `occupied` a reason against a start."""
+    """Runner of one experiment at a time; `notify` reports progress, `occupied` a reason against a start."""
 
     def __init__(
         self,
@@ -104,12 +105,12 @@ class TuningRunner:
         self._ending: asyncio.Task[None] | None = None
 
     def state(self) -> TuningState:
-        """The active run and the last one."""
+        """Return the active run and the last one."""
         active = None if self._active is None else self._active.describe()
         return TuningState(active=active, last=self._last)
 
     async def start(self, who: str, experiment: StepStart | RelayStart) -> int:
-        """Start a run and return its number. Raises RefusedError, RuntimeSilentError, StoreError."""
+        """Start a run and return its number. Raise RefusedError, RuntimeSilentError, StoreError."""
         self._check()
         self._starting = True
         try:
@@ -134,7 +135,7 @@ class TuningRunner:
     async def delete(self, run: int) -> None:
         """Remove a run for good.
 
-        Raises SessionStateError while it runs, UnknownTuningRunError, StoreError.
+        Raise SessionStateError while it runs, UnknownTuningRunError, StoreError.
         """
         await self.runs.delete(run)
         if self._last is not None and self._last.id == run:
@@ -142,9 +143,9 @@ class TuningRunner:
             self.announce()
 
     async def stop(self, run: int | None = None) -> None:
-        """Stop the active run, or this one alone; its curve so far is stored.
+        """Stop the active run, or only this one; its curve so far is stored.
 
-        Raises RefusedError if nothing runs, RunOverError, RuntimeSilentError.
+        Raise RefusedError if nothing runs, RunOverError, RuntimeSilentError.
         """
         require_run(run, None if self._active is None else self._active.run, "experiment")
         if self._active is None:
@@ -154,7 +155,7 @@ class TuningRunner:
     def see(self, block: Block) -> None:
         """Process a block from the robot."""
         active = self._active
-        if block.topic.name == "experiment":
+        if block.topic is EXPERIMENT:
             for document in json.loads(block.payload):
                 self._take_progress(document)
         elif active is not None and not active.over:
@@ -179,7 +180,7 @@ class TuningRunner:
                     await self._changes.command(SERVER, EndExperimentCommand())
 
     async def close(self) -> None:
-        """Stop the active run, and store what was measured."""
+        """Stop the active run, and store its measurements."""
         active = self._active
         if active is not None and not active.over:
             with suppress(RefusedError, RuntimeSilentError):
@@ -226,24 +227,24 @@ class TuningRunner:
             # NumPy is loaded at its first use.
             from server.features.tuning.evaluation import measure_run
 
-            found, curve, problem = await asyncio.to_thread(
+            results, curve, problem = await asyncio.to_thread(
                 measure_run, active.experiment, active.samples, active.starts, state, problem
             )
             state = "failed" if problem and state == "complete" else state
-            await self.runs.end(active.run, state, problem, found, curve)
+            await self.runs.end(active.run, state, problem, results, curve)
             self._last = await asyncio.to_thread(self.runs.detail, active.run)
-            words = {"complete": "is complete", "stopped": "was stopped", "failed": "failed"}[state]
-            self._notice("tuning", "info", f"“{self._last.name}” {words}. {problem}".strip())
+            text = {"complete": "is complete", "stopped": "was stopped", "failed": "failed"}[state]
+            self._notice("tuning", "info", f"“{self._last.name}” {text}. {problem}".strip())
         except StoreError as why:
             self._notice("tuning", "caution", f"The run could not be stored: {why}.")
         except Exception as why:
             log.exception("a tuning run could not be measured")
-            words = explain_internal_error(why)
+            text = explain_internal_error(why)
             curve = active.samples.curve.between(-inf, inf, active.began)
             with suppress(StoreError):
-                await self.runs.end(active.run, "failed", words, {}, curve)
+                await self.runs.end(active.run, "failed", text, {}, curve)
                 self._last = await asyncio.to_thread(self.runs.detail, active.run)
-            self._notice("tuning", "caution", f"The run could not be measured. {words}")
+            self._notice("tuning", "caution", f"The run could not be measured. {text}")
         finally:
             self._active = None
             self.announce()
@@ -263,17 +264,17 @@ def _format(value: float, loop: str) -> str:
 def _in_force(
     state: Mapping[str, Any], loop: str
 ) -> tuple[ControllerInForce, dict[str, tuple[float, float]]]:
-    """The loop's controller, and the limits of its PID's gains.
+    """Return the loop's controller, and the limits of its PID's gains.
 
-    Raises RefusedError if no run can start on it.
+    Raise RefusedError if no run can start on it.
     """
     if state["mode"] != "automatic":
         raise RefusedError(f"The robot is {state['mode']}. Arm it, in automatic, before an experiment.")
-    one = next((one for one in state["loops"] if one["name"] == loop), None)
-    if one is None:
+    described = next((entry for entry in state["loops"] if entry["name"] == loop), None)
+    if described is None:
         raise RefusedError(f"This robot's runtime has no loop {loop!r}.")
-    choices = {choice["name"]: choice for choice in one["controllers"]}
-    chosen = choices[one["controller"]]
+    choices = {choice["name"]: choice for choice in described["controllers"]}
+    chosen = choices[described["controller"]]
     force = ControllerInForce(
         controller=chosen["name"],
         title=chosen["title"],

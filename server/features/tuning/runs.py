@@ -11,7 +11,6 @@ from sqlmodel import col
 from sqlmodel import select as select_rows
 
 from robot_runtime.contract.limits import LoopName
-from server.features.sessions.session import SessionStateError
 from server.features.tuning.curve import TuningCurve
 from server.features.tuning.rules import propose
 from server.features.tuning.schemas import (
@@ -25,6 +24,7 @@ from server.features.tuning.schemas import (
 from server.platform.errors import NotFoundError
 from server.platform.models import TuningRunRow
 from server.platform.store import Store, insert_row
+from server.recording.session import SessionStateError
 
 LISTED_MOST = 500
 
@@ -43,7 +43,7 @@ class TuningStore:
         self._store = store
 
     def list(self, loop: LoopName) -> Sequence[TuningRun]:
-        """Runs on this loop without their curves, the newest first."""
+        """Return the runs on this loop without their curves, the newest first."""
         columns = [column for column in TuningRunRow.__table__.columns if column.name != "curve"]  # type: ignore[attr-defined]
         query = select(*columns).where(col(TuningRunRow.loop) == loop)
         newest = query.order_by(col(TuningRunRow.id).desc()).limit(LISTED_MOST)
@@ -52,7 +52,7 @@ class TuningStore:
         return [TuningRun(**_summarize(TuningRunRow(**row, curve=b""))) for row in rows]
 
     def detail(self, run: int) -> TuningRunDetail:
-        """One run with its curve."""
+        """Return one run with its curve."""
         with self._store.read() as database:
             row = database.exec(select_rows(TuningRunRow).where(col(TuningRunRow.id) == run)).one_or_none()
         if row is None:
@@ -85,13 +85,13 @@ class TuningStore:
         return await self._store.write(lambda connection: insert_row(connection, TuningRunRow, values))
 
     async def end(
-        self, run: int, state: RunState, problem: str, found: dict[str, Any], curve: TuningCurve
+        self, run: int, state: RunState, problem: str, results: dict[str, Any], curve: TuningCurve
     ) -> None:
         """Store the end of a run and its results, in one transaction."""
         values = {
             "state": state,
             "problem": problem,
-            "figures": json.dumps(found),
+            "figures": json.dumps(results),
             "curve": curve.to_bytes(),
         }
         await self._store.execute(update(TuningRunRow).where(col(TuningRunRow.id) == run).values(values))
@@ -103,7 +103,7 @@ class TuningStore:
             raise UnknownTuningRunError(run)
 
     async def delete(self, run: int) -> None:
-        """Remove a run for good. Raises SessionStateError while it runs."""
+        """Remove a run for good. Raise SessionStateError while it runs."""
 
         def change(connection: Connection) -> None:
             state = connection.execute(
@@ -129,13 +129,13 @@ class TuningStore:
 
 
 def _summarize(row: TuningRunRow) -> dict[str, Any]:
-    found = json.loads(row.figures)
+    stored = json.loads(row.figures)
     force = json.loads(row.parameters)
     return {
         **row.model_dump(include={"id", "name", "kind", "loop", "state", "problem"}),
         "started": datetime.fromtimestamp(row.started, UTC),
         "settings": json.loads(row.settings),
         "force": {name: force[name] for name in ControllerInForce.model_fields},
-        "figures": found.get("figures", {}),
-        "cycle": found.get("cycle"),
+        "figures": stored.get("figures", {}),
+        "cycle": stored.get("cycle"),
     }

@@ -50,7 +50,7 @@ class StepStart(Limits):
     duration: Annotated[ExperimentSeconds, Field(description="s from the step on")]
 
     def command(self, run: int) -> ExperimentCommand:
-        """The command that begins it. Raises RefusedError."""
+        """Return the command that begins it. Raise RefusedError."""
         return _command(StepExperimentCommand, self, run)
 
 
@@ -66,7 +66,7 @@ class RelayStart(Limits):
     duration: Annotated[ExperimentSeconds, Field(description="s after which it gives up")]
 
     def command(self, run: int) -> ExperimentCommand:
-        """The command that begins it. Raises RefusedError."""
+        """Return the command that begins it. Raise RefusedError."""
         return _command(RelayExperimentCommand, self, run)
 
 

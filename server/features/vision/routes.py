@@ -1,4 +1,4 @@
-"""Operations on the vision node: its settings, and the colour at a place in its picture."""
+"""Operations on the vision node: its settings, and the colour at a point in its picture."""
 
 from dataclasses import fields
 from typing import Any
@@ -12,7 +12,7 @@ from robot_runtime.contract.parsing import parse, read_value
 from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.contract.toml_text import TomlError, read_toml
 from robot_runtime.contract.vision_settings import VisionSettings
-from server.features.parameters.changes import COMMAND_ERRORS, Changes
+from server.driving.changes import COMMAND_ERRORS, Changes
 from server.features.vision.schemas import PickedColour, PickPlace, VisionEdit, VisionSetup, VisionText
 from server.http.dependencies import Provided
 from server.http.heavy_requests import TooManyHeavyError, Turn
@@ -42,8 +42,8 @@ async def edit_vision(
         if edit.base is not None:
             began = edit.base.settings
             present = parse(VisionSettings, (await bridge.query("vision"))["settings"])
-            names = [one.name for one in fields(present)]
-            differing = [one for one in names if getattr(present, one) != getattr(began, one)]
+            names = [field.name for field in fields(present)]
+            differing = [name for name in names if getattr(present, name) != getattr(began, name)]
             if differing and present != edit.settings.settings:
                 raise ChangedMeanwhileError(f"A vision setting ({', '.join(differing)})", "")
 
@@ -51,12 +51,12 @@ async def edit_vision(
 
 
 @router.operation("POST /pick", Need.VIEWER, {409: "There is no colour, or no picture"}, RuntimeSilentError)
-async def pick_colour(bridge: Provided[Bridge], place: PickPlace) -> PickedColour:
-    """Return the colour range at a place in the newest picture.
+async def pick_colour(bridge: Provided[Bridge], point: PickPlace) -> PickedColour:
+    """Return the colour range at a point in the newest picture.
 
     Changes nothing.
     """
-    answer = await bridge.query("pick", place.model_dump())
+    answer = await bridge.query("pick", point.model_dump())
     return PickedColour.model_validate(answer, extra="ignore")
 
 
@@ -80,9 +80,9 @@ def read_vision(_: Turn, document: VisionText) -> VisionSettings:
 
 
 def read_document(text: str) -> dict[str, Any]:
-    """The settings of the table [vision] in robot.toml, as `VisionSettings.table` gives them.
+    """Return the settings of the table [vision] in robot.toml, in the form of `VisionSettings.table`.
 
-    Settings that are not named have their defaults. Raises ConfigError if there is no such table, or if it is
+    Settings that are not named have their defaults. Raise ConfigError if there is no such table, or if it is
     not valid.
     """
     try:

@@ -24,7 +24,7 @@ class VisionSetup(BaseModel):
 
 
 class VisionEdit(RequestBody):
-    """All settings, and those that the editing began from."""
+    """All settings, and those at the beginning of the editing."""
 
     # The numbers within are strict of themselves; a dataclass is read from JSON only where the whole is not.
     model_config = ConfigDict(strict=False)
@@ -47,7 +47,7 @@ class PickPlace(RequestBody):
 
 
 class PickedColour(BaseModel):
-    """A colour range, and the share of the picture that lies in it."""
+    """A colour range, and the share of the picture within it."""
 
     colour: ColourRange
     share: float

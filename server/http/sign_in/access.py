@@ -39,18 +39,18 @@ NO_PAGE_SECRET = (
 
 
 def cookie_name(port: int) -> str:
-    """The name of a browser's cookie: browsers keep the cookies of all ports of a computer together."""
+    """Return the name of a browser's cookie: browsers share cookies between all ports of a computer."""
     return f"mucat_{port}"
 
 
 class SocketClosers:
-    """Ends the sockets of a device everywhere."""
+    """The functions that end the sockets of a device."""
 
     def __init__(self) -> None:
         self._closers: list[CloseSockets] = []
 
     def add(self, close: CloseSockets) -> None:
-        """Add what ends sockets of one kind."""
+        """Add the function that ends sockets of one kind."""
         self._closers.append(close)
 
     def close(self, device: int, reason: str) -> None:
@@ -73,7 +73,7 @@ class Access:
         close_sockets: CloseSockets,
         token: str,
     ) -> None:
-        self.cookie = cookie_name(settings.port)
+        self.cookie = cookie_name(settings.server.port)
         self.codes = PairingCodes(clock)
         self.confirmations = Confirmations(clock)
         self.devices = Devices(store)
@@ -84,7 +84,7 @@ class Access:
         self._limit_reported = False
 
     def open(self) -> None:
-        """Load the devices, and write the token of this computer's shell. Raises StoreError."""
+        """Load the devices, and write the token of this computer's shell. Raise StoreError."""
         self.devices.load()
         try:
             self._write_token()
@@ -94,10 +94,10 @@ class Access:
     def identify(
         self, connection: HTTPConnection, cookie_suffices: Callable[[], bool] = lambda: False
     ) -> Identity | None:
-        """The caller's identity. An authorization header counts alone: a cookie beside it is ignored.
+        """Return the caller's identity. With an authorization header, a cookie is ignored.
 
         A browser shows its page's secret beside the cookie, unless `cookie_suffices`.
-        Raises SignInEndedError.
+        Raise SignInEndedError.
         """
         header = connection.headers.get("authorization")
         if header is not None:
@@ -111,32 +111,33 @@ class Access:
         return self._see(device)
 
     def identify_program(self, connection: HTTPConnection) -> Identity | None:
-        """The identity by a token alone, in the header or the query. Raises SignInEndedError."""
+        """Return the identity by a token alone, in the header or the query. Raise SignInEndedError."""
         header = connection.headers.get("authorization")
         if header is not None:
             return self.identify(connection)
         return self.identify_token(connection.query_params.get("token", ""))
 
     def identify_token(self, token: str) -> Identity | None:
-        """The identity of a program's token. Raises SignInEndedError where it counts no longer."""
+        """Return the identity of a program's token. Raise SignInEndedError where it counts no longer."""
         return self._find_bearer(token)
 
     def identify_certificate(self, common_name: str) -> Identity | None:
-        """The identity of a program's certificate, whose common name is the digest of the program's token.
+        """Return the identity of a program's certificate; its common name is the digest of the program's
+        token.
 
-        Raises SignInEndedError where it counts no longer.
+        Raise SignInEndedError where it counts no longer.
         """
         return self._see(self.devices.find_digest(common_name, "program"))
 
     def refresh(self, identity: Identity | None) -> Identity | None:
-        """The caller's identity as it is now, perhaps in another role; None where access has ended."""
+        """Return the caller's identity as it is now, perhaps in another role; None where access has ended."""
         if identity is None or identity == SHELL:
             return identity
         device = self.devices.find_valid(identity.device)
         return None if device is None else device.identity
 
     def explain_change(self, identity: Identity) -> str | None:
-        """Reason why this is not the caller's identity any more; None while it is."""
+        """Return the reason why this is not the caller's identity any more; None while it is."""
         present = self.refresh(identity)
         if present is None:
             return REVOKED
@@ -145,10 +146,10 @@ class Access:
     async def pair(
         self, code: str, name: str, known: Identity | None, address: str
     ) -> tuple[Identity, BrowserSecrets | None]:
-        """Sign a browser in; its identity and its new secrets, None where it has them, being `known`.
+        """Sign a browser in; return its identity and its new secrets, None if it is `known` and has them.
 
-        Such a one keeps its name, and its role where the code's is not a higher one.
-        Raises WrongCodeError, TooManyTriesError, RefusedError, StoreError.
+        A known browser keeps its name, and its role unless the code's role is higher.
+        Raise WrongCodeError, TooManyTriesError, RefusedError, StoreError.
         """
         with self._reporting_wrong_codes(address):
             role = self.codes.use(code, address)
@@ -163,9 +164,9 @@ class Access:
         return device.identity, secrets
 
     def confirm(self, code: str, identity: Identity, address: str) -> None:
-        """Confirm who uses this browser, for dangerous acts of the next ten minutes.
+        """Confirm the user of this browser, for dangerous acts within the next ten minutes.
 
-        Raises WrongConfirmationError, TooManyTriesError.
+        Raise WrongConfirmationError, TooManyTriesError.
         """
         with self._reporting_wrong_codes(address):
             self.codes.confirm(code, identity.device, address)
@@ -174,9 +175,9 @@ class Access:
     async def make_program(
         self, name: str, scope: Scope, days: int | None, by: Identity
     ) -> tuple[Device, str]:
-        """Add a program; returns its device and token, which ends after `days` (None: never).
+        """Add a program; return its device and token, which ends after `days` (None: never).
 
-        Raises RefusedError, StoreError.
+        Raise RefusedError, StoreError.
         """
         device, token = await self.devices.add_program(name, scope, days)
         self._notify("access", "info", f"“{by.name}” made a token for “{name}”, with the scope {scope}.")
@@ -185,7 +186,7 @@ class Access:
     async def set_role(self, number: int, role: Role, by: Identity) -> None:
         """Change a device's role; its live sockets are closed, and open again in the new role.
 
-        Raises UnknownDeviceError, RefusedError, StoreError.
+        Raise UnknownDeviceError, RefusedError, StoreError.
         """
         device = self.devices.get(number)
         if device.role == device.stored_role == role:
@@ -202,7 +203,7 @@ class Access:
     async def revoke(self, number: int, by: Identity) -> None:
         """Revoke a device, also on its live sockets.
 
-        Raises UnknownDeviceError, RefusedError, StoreError.
+        Raise UnknownDeviceError, RefusedError, StoreError.
         """
         device = self.devices.get(number)
         self._keep_an_operator(device, by)
@@ -212,7 +213,7 @@ class Access:
     async def sign_out(self, identity: Identity) -> None:
         """Sign the caller out, even the last operator.
 
-        Raises RefusedError for the shell, StoreError.
+        Raise RefusedError for the shell, StoreError.
         """
         if identity == SHELL:
             raise RefusedError("The shell of this computer is not signed in, and needs not sign out.")
@@ -268,7 +269,7 @@ class Access:
 
 
 def _page_secret(connection: HTTPConnection) -> str:
-    """The secret that a page shows: in a header, or as the second subprotocol of its socket."""
+    """Return the secret that a page shows: in a header, or as the second subprotocol of its socket."""
     if connection.scope["type"] == "http":
         return connection.headers.get(PAGE_HEADER, "")
     match connection.scope["subprotocols"]:

@@ -33,13 +33,13 @@ class Confirmations:
         self._confirmed: dict[int, float] = {}
 
     def confirm(self, device: int) -> None:
-        """Note that this browser has signed in or confirmed now."""
-        self._confirmed = {one: when for one, when in self._confirmed.items() if self._fresh(when)}
+        """Record that this browser has signed in or confirmed now."""
+        self._confirmed = {device: when for device, when in self._confirmed.items() if self._fresh(when)}
         self._confirmed[device] = self._clock.now()
 
     def require(self, identity: Identity) -> None:
         """Check that a browser has confirmed lately. Programs and the shell need not: a token's scope was
-        chosen, and the shell is the robot's own. Raises UnconfirmedError."""
+        chosen, and the shell is the robot's own. Raise UnconfirmedError."""
         when = self._confirmed.get(identity.device)
         if identity.kind == "browser" and (when is None or not self._fresh(when)):
             raise UnconfirmedError

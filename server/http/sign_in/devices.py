@@ -84,7 +84,7 @@ class Device:
     used: float = -inf
 
     def has_page_secret(self, secret: str) -> bool:
-        """Check the second secret of a browser; one that was paired without it has none that fits."""
+        """Check the second secret of a browser; a browser that was paired without one fails."""
         return self.page_secret is not None and compare_digest(digest(secret), self.page_secret)
 
     @property
@@ -114,7 +114,7 @@ class Devices:
         """Held from the look at the names there are until a new one is stored."""
 
     def load(self) -> None:
-        """Load all devices from the database. Raises StoreError."""
+        """Load all devices from the database. Raise StoreError."""
         with self._store.read() as session:
             for row in session.exec(select(DeviceRow)):
                 assert row.id is not None
@@ -124,32 +124,31 @@ class Devices:
                     self._keep(row.id, row)
 
     def all(self) -> list[Device]:
-        """All devices, by number."""
+        """Return all devices, by number."""
         return [self._devices[number] for number in sorted(self._devices)]
 
     def get(self, number: int) -> Device:
-        """The device of this number. Raises UnknownDeviceError."""
+        """Return the device of this number. Raise UnknownDeviceError."""
         if number not in self._devices:
             raise UnknownDeviceError(number)
         return self._devices[number]
 
     def find(self, secret: str, kind: Kind) -> Device | None:
-        """The device of this kind that has this secret, also where its time is over."""
+        """Return the device of this kind that has this secret, even if it has expired."""
         return self.find_digest(digest(secret), kind)
 
     def find_digest(self, secret: str, kind: Kind) -> Device | None:
-        """The same by the digest of the secret."""
+        """Return the device of this kind by the digest of its secret."""
         device = self._devices.get(self._by_secret.get(secret, 0))
         return device if device is not None and device.kind == kind else None
 
     def find_valid(self, number: int) -> Device | None:
-        """The device of this number; None where its time is over, or it is revoked, also while that is still
-        being stored."""
+        """Return the device of this number; None if expired or revoked, even before that is stored."""
         device = self._devices.get(number) if number in self._by_secret.values() else None
         return None if device is None or self.explain_end(device) is not None else device
 
     def explain_end(self, device: Device) -> str | None:
-        """Reason why a device's time is over; None while it is not."""
+        """Return the reason why a device's time is over; None while it is not."""
         if device.ends is not None and not is_set(self._utc()):
             return CLOCK_NOT_SET
         if device.ends is not None and self._utc() >= device.ends:
@@ -163,23 +162,24 @@ class Devices:
         return None
 
     def count_seconds(self, number: int) -> float | None:
-        """Seconds until the device's token ends; None where it never does."""
+        """Return the seconds until the device's token ends; None where it never does."""
         ends = self.get(number).ends if number in self._devices else None
         return None if ends is None else max(0.0, ends - self._utc())
 
     @property
     def operators(self) -> list[Device]:
-        """Operators that are browsers; only they can admit others."""
+        """The operators that are browsers; only they can admit others."""
         return [
-            one
-            for one in self._devices.values()
-            if (one.kind, one.role) == ("browser", "operator") and self.find_valid(one.id) is not None
+            device
+            for device in self._devices.values()
+            if (device.kind, device.role) == ("browser", "operator")
+            and self.find_valid(device.id) is not None
         ]
 
     async def add_browser(self, name: str, role: Role) -> tuple[Device, BrowserSecrets]:
-        """A new browser, and its secrets, which are not stored.
+        """Add a browser; return it and its secrets, which are not stored.
 
-        Its name gets a number where another has it, or a removed one had it. Raises RefusedError
+        Its name gets a number where another has it, or a removed one had it. Raise RefusedError
         where there are too many devices, StoreError.
         """
         page = make_token()
@@ -189,9 +189,10 @@ class Devices:
         return device, BrowserSecrets(cookie, page)
 
     async def add_program(self, name: str, scope: Scope, days: int | None) -> tuple[Device, str]:
-        """A new program, and its token, which is not stored; it ends after `days`, never where that is None.
+        """Add a program; return it and its token, which is not stored. The token ends after `days` (None:
+        never).
 
-        Raises RefusedError where there are too many devices, another has the name, or the clock has
+        Raise RefusedError where there are too many devices, another has the name, or the clock has
         not been set and the token is to end, StoreError.
         """
         if days is not None and not is_set(self._utc()):
@@ -234,7 +235,7 @@ class Devices:
     async def set_role(self, number: int, role: Role) -> None:
         """Change a role: a lower one holds at once, a higher one when it is stored.
 
-        Raises UnknownDeviceError, StoreError.
+        Raise UnknownDeviceError, StoreError.
         """
         device = self.get(number)
         if role == "viewer":
@@ -245,7 +246,7 @@ class Devices:
     async def rename(self, number: int, name: str) -> None:
         """Rename a device.
 
-        Raises UnknownDeviceError, RefusedError where another has the name, StoreError.
+        Raise UnknownDeviceError, RefusedError where another has the name, StoreError.
         """
         async with self._naming:
             device = self.get(number)
@@ -254,8 +255,8 @@ class Devices:
             device.name = name
 
     def _list_names(self, but: int | None = None) -> list[str]:
-        """The names of the shell and of all devices but this one."""
-        return [SHELL.name, *(one.name for one in self._devices.values() if one.id != but)]
+        """Return the names of the shell and of all devices but this one."""
+        return [SHELL.name, *(device.name for device in self._devices.values() if device.id != but)]
 
     @staticmethod
     def _refuse_same(name: str, others: list[str]) -> None:
@@ -266,9 +267,9 @@ class Devices:
             )
 
     async def remove(self, number: int) -> None:
-        """Remove a device; its secret is invalid at once. Raises UnknownDeviceError, StoreError."""
+        """Remove a device; its secret is invalid at once. Raise UnknownDeviceError, StoreError."""
         name = self.get(number).name
-        self._by_secret = {secret: one for secret, one in self._by_secret.items() if one != number}
+        self._by_secret = {secret: owner for secret, owner in self._by_secret.items() if owner != number}
 
         def forget(connection: Connection) -> None:
             # No digest of a secret is such a text.
@@ -282,7 +283,7 @@ class Devices:
             self._former.append(name)
 
     def see(self, device: Device) -> None:
-        """Note a request of the device."""
+        """Record a request of the device."""
         device.seen, device.used = self._utc(), self._steady()
         # The clock may also have been set back.
         if abs(device.seen - device.stored) < SEEN_SECONDS:

@@ -34,7 +34,7 @@ class Identity:
 
 
 async def identify_caller(connection: HTTPConnection) -> Identity:
-    """The identity behind a request that was admitted."""
+    """Return the identity behind a request that was admitted."""
     identity = connection.scope[IDENTITY]
     assert isinstance(identity, Identity)
     return identity

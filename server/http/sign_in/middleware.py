@@ -62,11 +62,11 @@ class SignInMiddleware:
 
 
 class _RevokedError(Exception):
-    """The caller's access was revoked while an answer was being sent; its rest is not sent."""
+    """The caller's access was revoked during an answer, whose rest is not sent."""
 
 
 def _stop_when_revoked(send: Send, access: Access, identity: Identity) -> Send:
-    """The `send` of a request, which ends a long answer, such as a download, with the caller's access."""
+    """Return a request's `send`, which ends a long answer, such as a download, with the caller's access."""
 
     async def send_piece(message: Message) -> None:
         if message.get("more_body") and access.refresh(identity) is None:
@@ -81,7 +81,7 @@ def _is_api(path: str) -> bool:
 
 
 def _foreign(connection: HTTPConnection, identity: Identity) -> str | None:
-    """Reason why a foreign page may have caused this request of a browser."""
+    """Return the reason why a foreign page may have caused this request of a browser."""
     socket = connection.scope["type"] == "websocket"
     if identity.kind != "browser" or (not socket and connection.scope["method"] in SAFE_METHODS):
         return None
@@ -91,7 +91,7 @@ def _foreign(connection: HTTPConnection, identity: Identity) -> str | None:
 
 
 def _is_link(connection: HTTPConnection) -> bool:
-    """True for a link or a picture on the page, which a browser fetches with the cookie alone."""
+    """Return True for a link or a picture on the page, which a browser fetches with the cookie alone."""
     scope = connection.scope
     if scope.get("method") != "GET" or PAGE_HEADER in connection.headers:
         return False

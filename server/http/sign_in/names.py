@@ -1,4 +1,4 @@
-"""Names of browsers and programs: what they may contain, and which of them are the same."""
+"""Names of browsers and programs: their characters, and their comparison."""
 
 from collections.abc import Collection
 from unicodedata import category, normalize
@@ -11,7 +11,7 @@ _SELECTORS = (range(0xFE00, 0xFE10), range(0xE0100, 0xE01F0))
 
 
 def clean_name(name: str) -> str:
-    """A name in the form in which it is stored: NFKC, single spaces. Raises ValueError."""
+    """Return a name in the form in which it is stored: NFKC, single spaces. Raise ValueError."""
     name = " ".join(normalize("NFKC", name).split())
     if not name or not name.isprintable() or any(map(_is_unseen, name)):
         raise ValueError("must have visible characters, and no control characters")
@@ -23,13 +23,13 @@ def clean_name(name: str) -> str:
 
 
 def find_same(name: str, others: Collection[str]) -> str | None:
-    """The first of the others that is this name but for case and form; None where none is."""
+    """Return the first of the others that differs from this name only in case and form; None without any."""
     folded = _fold(name)
     return next((other for other in others if _fold(other) == folded), None)
 
 
 def number_name(name: str, others: Collection[str]) -> str:
-    """This name, or with the first number from 2 on with which it is none of the others."""
+    """Return this name, with the lowest number from 2 on if another has it."""
     taken = {_fold(other) for other in others}
     numbered, number = name, 1
     while _fold(numbered) in taken:
@@ -40,7 +40,7 @@ def number_name(name: str, others: Collection[str]) -> str:
 
 
 def _fold(name: str) -> str:
-    """A name without case and compatible forms, as Unicode compares them (section 3.13, D146)."""
+    """Return a name without case and compatible forms, as Unicode compares them (section 3.13, D146)."""
     return normalize("NFKC", normalize("NFKC", name).casefold())
 
 

@@ -82,31 +82,31 @@ class PairingCodes:
 
     @property
     def many_wrong(self) -> bool:
-        """True where somebody has just tried many wrong codes."""
+        """True shortly after many wrong codes."""
         return len(self._wrong) == MANY and self._wrong[0] > self._clock.now() - MANY_SECONDS
 
     def make(self, role: Role, maker: int = SHELL.device) -> str:
-        """A new code, for one pairing in this role; `maker` is the device that asks for it."""
+        """Return a new code, for one pairing in this role; `maker` is the device that asks for it."""
         code = make_code()
         self._codes.append(_Code(digest(normal_code(code)), role, self._clock.now() + CODE_SECONDS, maker))
         return code
 
     def discard(self, maker: int) -> None:
-        """Make all codes of this device void: it may not admit anybody any more."""
-        for code in [one for one in self._codes if one.maker == maker]:
+        """Make all codes of this device void: it may admit no others any more."""
+        for code in [candidate for candidate in self._codes if candidate.maker == maker]:
             self._codes.remove(code)
 
     def use(self, typed: str, address: str) -> Role:
-        """The role of a code, which is then void.
+        """Return the role of a code, which is then void.
 
-        Raises WrongCodeError, after which this address waits, and TooManyTriesError while it does.
+        Raise WrongCodeError, after which this address waits, and TooManyTriesError while it does.
         """
         return self._use(typed, address, lambda _: True, WrongCodeError())
 
     def confirm(self, typed: str, device: int, address: str) -> None:
-        """Use a code up that confirms who uses this device: an operator's, made by anybody else.
+        """Use up a code that confirms the user of this device: an operator's code from another device.
 
-        Raises WrongConfirmationError, after which this address waits, and TooManyTriesError while it does.
+        Raise WrongConfirmationError, after which this address waits, and TooManyTriesError while it does.
         """
 
         def fits(code: _Code) -> bool:
@@ -116,19 +116,19 @@ class PairingCodes:
 
     def _use(self, typed: str, address: str, fits: Callable[[_Code], bool], wrong: WrongCodeError) -> Role:
         now = self._clock.now()
-        self._waiting = {one: until for one, until in self._waiting.items() if until > now}
+        self._waiting = {client: until for client, until in self._waiting.items() if until > now}
         if (until := self._waiting.get(address)) is not None:
             raise TooManyTriesError(until - now)
         self._forget_old()
         typed_digest = digest(normal_code(typed))
         # Every code is compared in full, so that the time taken reveals nothing.
-        found = [code for code in self._codes if compare_digest(code.digest, typed_digest) and fits(code)]
-        if not found:
+        matching = [code for code in self._codes if compare_digest(code.digest, typed_digest) and fits(code)]
+        if not matching:
             self._wrong.append(now)
             self._waiting[address] = now + TRY_SECONDS
             raise wrong
-        self._codes.remove(found[0])
-        return found[0].role
+        self._codes.remove(matching[0])
+        return matching[0].role
 
     def _forget_old(self) -> None:
         now = self._clock.now()

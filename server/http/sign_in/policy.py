@@ -17,29 +17,33 @@ LINKED = "x-linked"
 
 
 def needs(need: Need) -> dict[str, Any]:
-    """A route's `openapi_extra` that declares its need. Where the need depends on what is asked (a scenario
-    on the robot), the route itself asks for more."""
+    """Return a route's `openapi_extra` that declares its need.
+
+    Where the need depends on the request (a scenario on the robot), the route itself checks for more.
+    """
     return {DECLARED: need.name.lower()}
 
 
 def is_linked(routes: Iterable[BaseRoute], path: str) -> bool:
-    """True where the page links to this path, or shows it as a picture or a frame, as its route declares."""
+    """Return True where the path's route declares that the page links to it, or shows it."""
     return any(
-        LINKED in (getattr(one, "openapi_extra", None) or {}) and one.path_regex.match(path) is not None
-        for one in iter_route_contexts([*routes])
+        LINKED in (getattr(route, "openapi_extra", None) or {}) and route.path_regex.match(path) is not None
+        for route in iter_route_contexts([*routes])
     )
 
 
 def need_of(route: Any) -> Need | None:
-    """The need that a route declares; None where it declares none."""
+    """Return the need that a route declares; None where it declares none."""
     declared = (getattr(route, "openapi_extra", None) or {}).get(DECLARED)
     return None if declared is None else Need[declared.upper()]
 
 
 def list_needs(routes: Iterable[BaseRoute]) -> dict[str, Need | None]:
-    """The needs of all operations, by `operation_id`."""
-    found = ((getattr(one, "operation_id", None), need_of(one)) for one in iter_route_contexts([*routes]))
-    return {operation: need for operation, need in found if operation is not None}
+    """Return the needs of all operations, by `operation_id`."""
+    pairs = (
+        (getattr(route, "operation_id", None), need_of(route)) for route in iter_route_contexts([*routes])
+    )
+    return {operation: need for operation, need in pairs if operation is not None}
 
 
 MESSAGES: dict[str, Need] = {
@@ -52,12 +56,15 @@ MESSAGES: dict[str, Need] = {
 
 
 def may_say(identity: Identity, op: str) -> str | None:
-    """Reason to refuse this message of a live socket; None if it is allowed."""
+    """Return the reason to refuse this message of a live socket; None if it is allowed."""
     return refusal(identity, MESSAGES.get(op))
 
 
 def refusal(identity: Identity | None, need: Need | None) -> str | None:
-    """Reason to refuse the caller; None if it is allowed. Without a declared need, everybody is refused."""
+    """Return the reason to refuse the caller; None if it is allowed.
+
+    Without a declared need, everybody is refused.
+    """
     if need is None:
         return "Nobody may ask for this: the server does not declare what it needs."
     if need == Need.NOTHING:

@@ -12,21 +12,21 @@ CODE_LENGTH = 10
 
 
 def make_token(prefix: str = "") -> str:
-    """256 random bits as text."""
+    """Return 256 random bits as text."""
     return prefix + secrets.token_urlsafe(TOKEN_BYTES)
 
 
 def make_code() -> str:
-    """A code that can also be read aloud, such as 7K3PX-Q2M9D."""
+    """Return a code that can also be read aloud, such as 7K3PX-Q2M9D."""
     letters = "".join(secrets.choice(CODE_ALPHABET) for _ in range(CODE_LENGTH))
     return f"{letters[: CODE_LENGTH // 2]}-{letters[CODE_LENGTH // 2 :]}"
 
 
 def normal_code(typed: str) -> str:
-    """A typed code in the form in which it was made."""
+    """Return a typed code in its original form."""
     return "".join(letter for letter in typed.upper() if letter.isalnum())
 
 
 def digest(secret: str) -> str:
-    """The SHA-256 of a secret, which is random enough to need no salt."""
+    """Return the SHA-256 of a secret, which is random enough to need no salt."""
     return sha256(secret.encode()).hexdigest()

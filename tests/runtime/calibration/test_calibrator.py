@@ -19,7 +19,7 @@ from robot_runtime.contract.packets import Calibration, Imu, Packet, RequestCali
 from robot_runtime.errors import RefusedError
 
 
-class Rig:
+class CalibratorRig:
     """A calibrator, and a board that answers at once unless it is silent or full."""
 
     def __init__(self) -> None:
@@ -53,18 +53,18 @@ class Rig:
                 threading.Thread(target=self._answer, args=(self.late, self.kept)).start()
         return True
 
-    def _answer(self, late: Calibration | None, kept: Calibration) -> None:
+    def _answer(self, late: Calibration | None, stored: Calibration) -> None:
         if late is not None:
             self.calibrator.board.see(late)
             time.sleep(0.05)  # the line needs that
-        self.calibrator.board.see(kept)
+        self.calibrator.board.see(stored)
 
     def _hear(self, text: str, severity: Severity) -> None:
         self.told.append(f"{severity}: {text}")
         self.heard.set()
 
     def measure(self) -> str:
-        """Measures the gyroscope; returns what is told of it."""
+        """Measure the gyroscope; return what is told of it."""
         self.calibrator.measure_gyro()
         assert self.heard.wait(10)
         return self.told[-1]
@@ -77,11 +77,11 @@ class Rig:
 
 
 @pytest.fixture
-def rig() -> Rig:
-    return Rig()
+def rig() -> CalibratorRig:
+    return CalibratorRig()
 
 
-def test_the_board_is_asked_and_its_answer_published(rig: Rig) -> None:
+def test_the_board_is_asked_and_its_answer_published(rig: CalibratorRig) -> None:
     assert rig.calibrator.board.refusals() == ["The board has not told its calibration yet. Wait a moment."]
     rig.ask()
     assert rig.calibrator.board.values == EMULATED
@@ -89,7 +89,7 @@ def test_the_board_is_asked_and_its_answer_published(rig: Rig) -> None:
     assert (rig.published[-1].values, rig.published[-1].missing) == (EMULATED, [])
 
 
-def test_a_silent_board_is_asked_once_a_second(rig: Rig) -> None:
+def test_a_silent_board_is_asked_once_a_second(rig: CalibratorRig) -> None:
     rig.silent = True
     for _ in range(35):
         rig.calibrator.board.tick()
@@ -97,7 +97,7 @@ def test_a_silent_board_is_asked_once_a_second(rig: Rig) -> None:
     assert rig.sent == [RequestCalibration()] * 4
 
 
-def test_another_board_is_asked_again(rig: Rig) -> None:
+def test_another_board_is_asked_again(rig: CalibratorRig) -> None:
     rig.ask()
     rig.kept = replace(EMULATED, done=()).packet()
     rig.calibrator.board.forget()
@@ -107,13 +107,13 @@ def test_another_board_is_asked_again(rig: Rig) -> None:
     assert reason == f"The board is not calibrated. Missing: {'; '.join(STEPS.values())}."
 
 
-def test_impossible_axes_of_a_board_are_named(rig: Rig) -> None:
+def test_impossible_axes_of_a_board_are_named(rig: CalibratorRig) -> None:
     rig.kept = replace(EMULATED.packet(), axes=(0, 1, 2))
     rig.ask()
     assert "impossible axes" in rig.calibrator.board.refusals()[0]
 
 
-def test_a_stored_calibration_is_what_the_board_keeps(rig: Rig) -> None:
+def test_a_stored_calibration_is_what_the_board_keeps(rig: CalibratorRig) -> None:
     rig.ask()
     values = replace(EMULATED, fin_zeros=(1, 2, 3, 4), done=("fins",))
     rig.calibrator.store(values)
@@ -122,24 +122,26 @@ def test_a_stored_calibration_is_what_the_board_keeps(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize(
-    ("trouble", "words"),
+    ("trouble", "message"),
     [
         ("connected", "no connection"),
         ("worn", "did not store it"),
         ("armed", "only while it is disarmed"),
     ],
 )
-def test_what_is_not_stored_is_refused_with_the_reason(rig: Rig, trouble: str, words: str) -> None:
+def test_what_is_not_stored_is_refused_with_the_reason(
+    rig: CalibratorRig, trouble: str, message: str
+) -> None:
     rig.ask()
     setattr(rig, trouble, trouble != "connected")
-    with pytest.raises(RefusedError, match=words):
+    with pytest.raises(RefusedError, match=message):
         rig.calibrator.store(replace(EMULATED, fin_zeros=(1, 2, 3, 4)))
     assert rig.calibrator.board.values == EMULATED
 
 
 @contextmanager
 def readings(
-    rig: Rig, rate: Callable[[float], tuple[float, float, float]], noise: float = 1e-3
+    rig: CalibratorRig, rate: Callable[[float], tuple[float, float, float]], noise: float = 1e-3
 ) -> Iterator[None]:
     """The IMU's stream at 100 Hz, with this turn rate and noise (rad/s) at each time (s)."""
     over = threading.Event()
@@ -162,20 +164,20 @@ def readings(
         thread.join()
 
 
-def test_the_gyroscopes_offset_is_added_to_what_the_board_took_away(rig: Rig) -> None:
+def test_the_gyroscopes_offset_is_added_to_what_the_board_took_away(rig: CalibratorRig) -> None:
     before = (radians(1), radians(-2), 0.0)
     rig.kept = replace(EMULATED, gyro_bias=before, done=("fins",)).packet()
     rig.ask()
     with readings(rig, lambda _: (radians(0.5), radians(0.8), radians(20))):
-        told = rig.measure()
-    kept = rig.calibrator.board.require()
-    assert kept.gyro_bias == pytest.approx((radians(1.5), radians(-1.2), radians(20)), abs=3e-4)
-    assert kept.done == ("fins", "gyro")
-    assert told.endswith(", 20.00 °/s; the board keeps it.")
+        report = rig.measure()
+    stored = rig.calibrator.board.require()
+    assert stored.gyro_bias == pytest.approx((radians(1.5), radians(-1.2), radians(20)), abs=3e-4)
+    assert stored.done == ("fins", "gyro")
+    assert report.endswith(", 20.00 °/s; the board keeps it.")
 
 
 @pytest.mark.parametrize(
-    ("rate", "words"),
+    ("rate", "message"),
     [
         (lambda time: (0.03 if time % 0.5 < 0.25 else -0.03, 0.0, 0.0), "moved about its forward axis"),
         (lambda time: (0.0, 0.012 * time, 0.0), "moved about its right axis"),
@@ -183,25 +185,25 @@ def test_the_gyroscopes_offset_is_added_to_what_the_board_took_away(rig: Rig) ->
     ],
 )
 def test_a_robot_that_moves_is_not_measured(
-    rig: Rig, rate: Callable[[float], tuple[float, float, float]], words: str
+    rig: CalibratorRig, rate: Callable[[float], tuple[float, float, float]], message: str
 ) -> None:
     rig.ask()
     with readings(rig, rate):
-        told = rig.measure()
-    assert told.startswith("caution: The gyroscope was not measured.")
-    assert words in told
+        report = rig.measure()
+    assert report.startswith("caution: The gyroscope was not measured.")
+    assert message in report
     assert rig.calibrator.board.values == EMULATED
 
 
-def test_a_gyroscope_whose_readings_do_not_change_is_not_measured(rig: Rig) -> None:
+def test_a_gyroscope_whose_readings_do_not_change_is_not_measured(rig: CalibratorRig) -> None:
     rig.ask()
     with readings(rig, lambda _: (0.1, 0.0, 0.0), noise=0.0):
-        told = rig.measure()
-    assert "the IMU has stopped" in told
+        report = rig.measure()
+    assert "the IMU has stopped" in report
     assert rig.calibrator.board.values == EMULATED
 
 
-def test_what_was_stored_while_the_gyroscope_was_measured_stays(rig: Rig) -> None:
+def test_what_was_stored_while_the_gyroscope_was_measured_stays(rig: CalibratorRig) -> None:
     rig.ask()
     meanwhile = replace(EMULATED, fin_zeros=(1, 2, 3, 4))
     begun = threading.Event()
@@ -220,7 +222,7 @@ def test_what_was_stored_while_the_gyroscope_was_measured_stays(rig: Rig) -> Non
     assert rig.calibrator.board.values == meanwhile
 
 
-def test_an_answer_from_before_is_not_taken_for_that_to_what_is_stored(rig: Rig) -> None:
+def test_an_answer_from_before_is_not_taken_for_that_to_what_is_stored(rig: CalibratorRig) -> None:
     rig.ask()
     rig.calibrator.board.forget()
     rig.silent = True
@@ -231,7 +233,7 @@ def test_an_answer_from_before_is_not_taken_for_that_to_what_is_stored(rig: Rig)
     assert rig.calibrator.board.values == values
 
 
-def test_the_depth_is_zeroed_only_while_disarmed(rig: Rig) -> None:
+def test_the_depth_is_zeroed_only_while_disarmed(rig: CalibratorRig) -> None:
     rig.calibrator.zero_depth()
     assert rig.sent == [ZeroDepth()]
     rig.armed = True

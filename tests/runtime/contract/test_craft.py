@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import tomli_w
 
-from robot_runtime.config import Config, ControlConfig, CraftConfig, craft_in, craft_path
+from robot_runtime.config import Config, ControlConfig, CraftConfig, craft_in_force
 from robot_runtime.contract.craft import Craft, SensorQuality, craft_table, load_craft, read_craft
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.control.controllers.predictive import Predictive
@@ -58,15 +58,15 @@ def test_a_wrong_entry_is_refused_with_its_name(tmp_path: Path, text: str, why: 
 
 def test_the_configuration_names_the_craft_else_it_is_the_adopted_one(tmp_path: Path) -> None:
     config, data = tmp_path / "robot.toml", tmp_path / "data"
-    assert craft_in(craft_path(Config(), config, data)) == Craft()
+    assert craft_in_force(Config(), config, data) == Craft()
     data.mkdir()
     (data / "craft.toml").write_text('title = "Adopted"\n[craft]\nmass = 2.5')
-    assert craft_in(craft_path(Config(), config, data)).mass == 2.5
+    assert craft_in_force(Config(), config, data).mass == 2.5
     named = Config(craft=CraftConfig(file="mine.toml"))
     with pytest.raises(ConfigError, match=r"craft.file is 'mine.toml'; there is no file .*mine.toml"):
-        craft_path(named, config, data)
+        craft_in_force(named, config, data)
     (tmp_path / "mine.toml").write_text('title = "Mine"\n[craft]\nmass = 2')
-    assert craft_in(craft_path(named, config, data)).mass == 2
+    assert craft_in_force(named, config, data).mass == 2
 
 
 def test_a_scenario_takes_the_robot_s_craft_only_where_it_names_it() -> None:

@@ -23,14 +23,14 @@ def ellipsoid() -> tuple[float, ...]:
     a, b, c = (half**2 for half in HALVES)
     product = HALVES[0] * HALVES[1] * HALVES[2]
     mass = 4 / 3 * pi * product * DENSITY
-    shapes = [2 / 3 * product * float(elliprd(*one)) for one in ((b, c, a), (a, c, b), (a, b, c))]
+    shapes = [2 / 3 * product * float(elliprd(*sides)) for sides in ((b, c, a), (a, c, b), (a, b, c))]
 
     def turning(p: float, q: float, x: float, y: float) -> float:
         return mass / 5 * (p - q) ** 2 * (y - x) / (2 * (p - q) + (p + q) * (x - y))
 
     x, y, z = shapes
     return (
-        *(one / (2 - one) * mass for one in shapes),
+        *(shape / (2 - shape) * mass for shape in shapes),
         turning(b, c, y, z),
         turning(a, c, x, z),
         turning(a, b, x, y),

@@ -29,7 +29,7 @@ def _scaled(wire: Wire, count: int) -> float:
 @st.composite
 def packets(draw: st.DrawFn) -> Packet:
     """Any packet, each field at any count that its code can hold."""
-    cls = draw(st.sampled_from(sorted(PACKETS.values(), key=lambda one: one.type)))
+    cls = draw(st.sampled_from(sorted(PACKETS.values(), key=lambda packet: packet.type)))
     values: dict[str, Any] = {}
     for name, wire in cls.wires.items():
         bits = wire.size // wire.count * 8

@@ -65,9 +65,9 @@ def test_a_picture_is_sent_at_once_with_its_time() -> None:
 
 
 def test_several_blocks_in_one_message() -> None:
-    one = Block.of(BY_NAME["depth"], 1, 5, bytes(20)).data
+    data = Block.of(BY_NAME["depth"], 1, 5, bytes(20)).data
     two = Block.of(BY_NAME["debug"], 1, 6, b"[{}]").data
-    assert [block.first for block in read_blocks(one + two)] == [5, 6]
+    assert [block.first for block in read_blocks(data + two)] == [5, 6]
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,7 @@ _STROKE = 0.1
 
 
 def variants() -> dict[str, SimulationParameters]:
-    """The simulated robots: the nominal one, and variants with one property 30 % off.
+    """Return the simulated robots: the nominal one, and variants with one property 30 % off.
 
     Buoyancy means what is left over the weight, 0.3 % of it: 30 % of the whole would throw the robot out
     of the water. Mass is the hull's, trimmed anew; drag is the hull's, linear and quadratic; thrust is the
@@ -83,7 +83,7 @@ def known_crafts() -> dict[str, SimulationParameters]:
 
 
 @dataclass(frozen=True)
-class Figures:
+class DepthFigures:
     """Figures of one controller on one robot: the worst of the three steps, unless stated otherwise."""
 
     rmse: float
@@ -103,7 +103,7 @@ class Figures:
 
 
 @dataclass(frozen=True)
-class Sample:
+class DepthSample:
     """The true state: time (s), depth of the sensor (m) and fin angles (rad)."""
 
     time: float
@@ -112,7 +112,7 @@ class Sample:
 
 
 def read_truth(data: bytes, sensor: tuple[float, float, float]) -> Iterator[tuple[float, Truth, float]]:
-    """Each truth in these blocks: its time (s), the truth, and the depth (m) of this place of the hull."""
+    """Yield each truth in these blocks: time (s), truth, and depth (m) of this point of the hull."""
     for block in read_blocks(data):
         if block.topic.name == "truth":
             for time, truth in read_rows(block):
@@ -123,13 +123,13 @@ def read_truth(data: bytes, sensor: tuple[float, float, float]) -> Iterator[tupl
 
 class _TruthRecorder:
     def __init__(self, sensor: tuple[float, float, float]) -> None:
-        self.samples: list[Sample] = []
+        self.samples: list[DepthSample] = []
         self._sensor = sensor
 
     def blocks(self, data: bytes) -> None:
         """Store the truth."""
         for time, truth, depth in read_truth(data, self._sensor):
-            self.samples.append(Sample(time, depth, truth.fins))
+            self.samples.append(DepthSample(time, depth, truth.fins))
 
     def event(self, event: str, **more: Any) -> None:
         """Ignore the message."""
@@ -143,7 +143,10 @@ def experiment(
     seed: int = SEEDS[0],
     gains: Mapping[str, float] | None = None,
 ) -> Scenario:
-    """The scenario: three steps, and a sine. `gains` are those that differ from the controller's defaults."""
+    """Return the scenario: three steps, and a sine.
+
+    `gains` are those that differ from the controller's defaults.
+    """
     steps_end = ARMED + STEP * len(SET_POINTS)
     duration = steps_end + (SINE_PERIOD if sine else 0.0)
     events = [(ARMED + STEP * number, depth) for number, depth in enumerate(SET_POINTS) if number]
@@ -168,22 +171,24 @@ def perform(
     sine: bool = True,
     seed: int = SEEDS[0],
     gains: Mapping[str, float] | None = None,
-) -> Figures:
-    """Runs the scenario and returns its figures."""
+) -> DepthFigures:
+    """Run the scenario and return its figures."""
     taken = _TruthRecorder(robot.pressure_position)
     scenario = experiment(controller, robot, sine=sine, seed=seed, gains=gains)
     ScenarioRun(scenario, boards()["host"], taken).perform(lambda _: {})
     return judge(taken.samples)
 
 
-def judge(samples: Sequence[Sample]) -> Figures:
-    """The figures of the whole experiment; `sine` is NaN without one."""
+def judge(samples: Sequence[DepthSample]) -> DepthFigures:
+    """Return the figures of the whole experiment; `sine` is NaN without one."""
     starts = [ARMED + STEP * number for number in range(len(SET_POINTS))]
     overshoots, settlings, steadies, crossings = [], [], [], []
     squares: list[float] = []
     before = 0.0
     for start, set_point in zip(starts, SET_POINTS, strict=True):
-        part = [(one.time - start, one.depth) for one in samples if start <= one.time < start + STEP]
+        part = [
+            (sample.time - start, sample.depth) for sample in samples if start <= sample.time < start + STEP
+        ]
         size, side = abs(set_point - before), 1 if set_point > before else -1
         remaining = [(time, (set_point - depth) * side) for time, depth in part]
         squares += [error**2 for _, error in remaining]
@@ -195,44 +200,46 @@ def judge(samples: Sequence[Sample]) -> Figures:
         before = set_point
     end = starts[-1] + STEP
     # The first quarter is the transition to the sine.
-    waving = [one for one in samples if end + SINE_PERIOD / 4 <= one.time < end + SINE_PERIOD]
-    return Figures(
+    waving = [sample for sample in samples if end + SINE_PERIOD / 4 <= sample.time < end + SINE_PERIOD]
+    return DepthFigures(
         rmse=_root_mean(squares),
         overshoot=max(overshoots),
         settling=max(settlings),
         steady=max(steadies),
         crossings=tuple(crossings),
-        strokes=sum(_strokes([one.fins[fin] for one in samples if one.time < end]) for fin in range(4)),
-        sine=_root_mean([(one.depth - _sine(one.time - end)) ** 2 for one in waving]),
+        strokes=sum(
+            _strokes([sample.fins[fin] for sample in samples if sample.time < end]) for fin in range(4)
+        ),
+        sine=_root_mean([(sample.depth - _sine(sample.time - end)) ** 2 for sample in waving]),
     )
 
 
-def worst(runs: Sequence[Figures]) -> Figures:
-    """The worst of each figure."""
-    return Figures(
-        rmse=max(one.rmse for one in runs),
-        overshoot=max(one.overshoot for one in runs),
-        settling=max(one.settling for one in runs),
-        steady=max(one.steady for one in runs),
-        crossings=tuple(max(times) for times in zip(*(one.crossings for one in runs), strict=True)),
-        strokes=max(one.strokes for one in runs),
-        sine=max(one.sine for one in runs),
+def worst(runs: Sequence[DepthFigures]) -> DepthFigures:
+    """Return the worst of each figure."""
+    return DepthFigures(
+        rmse=max(run.rmse for run in runs),
+        overshoot=max(run.overshoot for run in runs),
+        settling=max(run.settling for run in runs),
+        steady=max(run.steady for run in runs),
+        crossings=tuple(max(times) for times in zip(*(run.crossings for run in runs), strict=True)),
+        strokes=max(run.strokes for run in runs),
+        sine=max(run.sine for run in runs),
     )
 
 
-def crossing_ratio(runs: Sequence[Figures], others: Sequence[Figures]) -> float:
+def crossing_ratio(runs: Sequence[DepthFigures], others: Sequence[DepthFigures]) -> float:
     """Ratio of the times to reach the set point, from the surface or in all three steps, whichever is worse.
 
     The phase of a limit cycle at the beginning of a step is random. So single later steps are not compared,
     and of the other controller the mean run counts.
     """
-    first = fmean(one.crossings[0] for one in others)
-    every = fmean(sum(one.crossings) for one in others)
-    return max(max(one.crossings[0] / first, sum(one.crossings) / every) for one in runs)
+    first = fmean(other.crossings[0] for other in others)
+    every = fmean(sum(other.crossings) for other in others)
+    return max(max(run.crossings[0] / first, sum(run.crossings) / every) for run in runs)
 
 
 def _scaled(six: Six, factor: float) -> Six:
-    a, b, c, d, e, f = (one * factor for one in six)
+    a, b, c, d, e, f = (number * factor for number in six)
     return a, b, c, d, e, f
 
 

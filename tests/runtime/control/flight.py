@@ -32,7 +32,7 @@ class Flight:
         self.events: list[Event] = []
         self.sent: list[tuple[float, Navigation]] = []
         self.sticks: list[float] | None = None
-        self.server = True
+        self.server = self.watched = True
         self._sequence = 0
         self._commands = Commands(self.robot).do
         self._water = changes(self.stage.simulator)
@@ -59,13 +59,13 @@ class Flight:
         end = self.now + seconds
         while self.now < end - 1e-6:
             if self.server:
-                self.supervisor.detector.see_server()
+                self.supervisor.detector.see_server(watched=self.watched)
             if self.sticks is not None and self._sequence * PUSH_EVERY <= self.now:
                 self.push(self.sticks)
             self._performance._until(min(self.now + STEP, end))
 
     def until(self, holds: Callable[[], bool], limit: float) -> float:
-        """Run until the condition holds; returns the s that it took. Fails beyond the limit."""
+        """Run until the condition holds; return the s that it took. Fails beyond the limit."""
         began = self.now
         while not holds():
             assert self.now - began <= limit + 1e-6, f"not within {limit} s: {self.supervisor.mode}"
@@ -75,11 +75,11 @@ class Flight:
     def push(self, axes: list[float], **more: Any) -> None:
         """A pilot's input, as the server passes it on."""
         self._sequence = int(self.now / PUSH_EVERY) + 1
-        words = {"lease": 0, "sequence": self._sequence, "taken": self.now, "axes": axes} | more
-        self.robot.take_pilot(json.dumps(words).encode())
+        text = {"lease": 0, "sequence": self._sequence, "taken": self.now, "axes": axes} | more
+        self.robot.take_pilot(json.dumps(text).encode())
 
-    def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
-        arming = self.supervisor.begin_arming(mode, alone)
+    def arm(self, mode: Mode = "automatic", alone: float = 0.0, unwatched: float | None = None) -> None:
+        arming = self.supervisor.begin_arming(mode, alone, unwatched)
         while not arming.over:
             self.run(0.1)
             self.supervisor.continue_arming()
@@ -100,8 +100,8 @@ class Flight:
             self.board.line(f"line {way} cut {'on' if on else 'off'}")
 
     def alarm(self, fault: str) -> bool:
-        """True if this alarm is active."""
-        return any(one.fault == fault and one.active for one in self.supervisor.alarms)
+        """Return True if this alarm is active."""
+        return any(alarm.fault == fault and alarm.active for alarm in self.supervisor.alarms)
 
     def _hear(self, document: object) -> None:
         assert isinstance(document, Event)

@@ -21,7 +21,7 @@ from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.supervisor import Supervisor
 
 
-class Board:
+class ObedientBoard:
     """A board that executes commands, unless the test changes that."""
 
     def __init__(self, baud: int) -> None:
@@ -34,19 +34,20 @@ class Board:
         self.flags = 0
         self.faults = 0
         self.epoch = 7
+        self.stack_free = 200
 
     def send(self, *packets: Packet) -> bool:
         self.sent += packets
         return self.connected
 
 
-class Rig:
+class SupervisorRig:
     """A supervisor, its board and its events."""
 
     def __init__(
         self, baud: int = 250_000, heartbeat: float | None = None, *, in_the_loop: bool = False
     ) -> None:
-        self.clock, self.board = SimulatedClock(100.0), Board(baud)
+        self.clock, self.board = SimulatedClock(100.0), ObedientBoard(baud)
         self.events: list[Event] = []
         self.hil = HilFeed(self.clock, lambda _: None, self.events.append) if in_the_loop else None
         self.on_start: Callable[[], None] = lambda: None
@@ -82,13 +83,13 @@ class Rig:
             frames_invalid=0,
             bytes_lost=0,
             debug_lost=0,
-            stack_free=500,
+            stack_free=self.board.stack_free,
         )
         self.supervisor.detector.see_messages()
         self.supervisor.see_status(status)
 
     def sense(self, depth: float = 0.3, tilt: float = 0.0, *, frozen: bool = False) -> None:
-        """Sends depth and attitude, like a working board."""
+        """Send depth and attitude, like a working board."""
         self.sense_depth(depth, frozen=frozen)
         self.sense_attitude(tilt)
 

@@ -10,21 +10,21 @@ from robot_runtime.contract.documents import Mode
 from robot_runtime.contract.packets import Start, StatusFlag, Stop
 from robot_runtime.control.transitions import ARMED, TRANSITIONS
 from robot_runtime.errors import RefusedError
-from tests.runtime.control.supervisor_rig import Rig
+from tests.runtime.control.supervisor_rig import SupervisorRig
 
 HEARTBEAT = 4.0
 LOOK = 0.1
 ALL_STOP = 0.6
 """s within which a lost depth, seen at the slowest look, ends control by depth."""
-_WAYS = {(one.before, one.after) for one in TRANSITIONS}
+_WAYS = {(transition.before, transition.after) for transition in TRANSITIONS}
 
 
-class Arming(RuleBasedStateMachine):
+class ArmingMachine(RuleBasedStateMachine):
     """One supervisor, with a board that executes commands or not; its states are compared with a model."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.rig = Rig(heartbeat=HEARTBEAT)
+        self.rig = SupervisorRig(heartbeat=HEARTBEAT)
         self.supervisor, self.board = self.rig.supervisor, self.rig.board
         self.depth = self.imu = self.server = self.pilot = self.speaks = True
         self.frozen = False
@@ -48,7 +48,7 @@ class Arming(RuleBasedStateMachine):
                 elif self.imu:
                     self.rig.sense_attitude()
             if self.server:
-                detector.see_server()
+                detector.see_server(watched=True)
             if self.pilot:
                 self.supervisor.pilot.taken = self.rig.clock.now()
             self._age(0.05)
@@ -84,11 +84,11 @@ class Arming(RuleBasedStateMachine):
     def arm(self, mode: Any, alone: float) -> None:
         """Request arming; a refusal is possible."""
         reasons, armed = self.supervisor.refusals(), self.supervisor.armed
-        before = sum(isinstance(one, Start) for one in self.board.sent)
+        before = sum(isinstance(packet, Start) for packet in self.board.sent)
         try:
             self.supervisor.begin_arming(mode, alone)
         except RefusedError:
-            assert sum(isinstance(one, Start) for one in self.board.sent) == before
+            assert sum(isinstance(packet, Start) for packet in self.board.sent) == before
         else:
             assert armed or not reasons
             self.alone = self.alone if armed else alone
@@ -112,7 +112,7 @@ class Arming(RuleBasedStateMachine):
         sent = len(self.board.sent)
         self.supervisor.stop("Stopped.")
         assert self.supervisor.mode == ("failsafe" if failsafe else "disarmed")
-        assert any(isinstance(one, Stop) for one in self.board.sent[sent:])
+        assert any(isinstance(packet, Stop) for packet in self.board.sent[sent:])
         self._look()
 
     @rule()
@@ -215,7 +215,7 @@ class Arming(RuleBasedStateMachine):
             assert any(alarm.severity == "alarm" for alarm in self.supervisor.alarms)
 
 
-TestArming = Arming.TestCase
+TestArming = ArmingMachine.TestCase
 TestArming.settings = settings(
     max_examples=100, stateful_step_count=30, deadline=None, suppress_health_check=list(HealthCheck)
 )

@@ -40,8 +40,8 @@ RELAY: dict[str, Any] = {
 }
 
 
-def begin(flight: Flight, wanted: dict[str, Any]) -> None:
-    kind, fields = wanted["kind"], {name: value for name, value in wanted.items() if name != "kind"}
+def begin(flight: Flight, request: dict[str, Any]) -> None:
+    kind, fields = request["kind"], {name: value for name, value in request.items() if name != "kind"}
     flight.command(f"{kind}_experiment", **fields)
 
 
@@ -57,15 +57,15 @@ class Lab:
         flight.robot.bus.on_document(EXPERIMENT, self._hear)
         flight.robot.bus.on_document(STATE, self._hear_state)
 
-    def begin(self, wanted: dict[str, Any]) -> None:
-        begin(self.flight, wanted)
+    def begin(self, request: dict[str, Any]) -> None:
+        begin(self.flight, request)
 
     def until_over(self, limit: float) -> Experiment:
         self.flight.until(lambda: bool(self.told) and self.told[-1].phase in OVER, limit)
         return self.told[-1]
 
     def phases(self) -> list[str]:
-        return list(dict.fromkeys(one.phase for one in self.told))
+        return list(dict.fromkeys(document.phase for document in self.told))
 
     def _hear(self, document: object) -> None:
         assert isinstance(document, Experiment)
@@ -89,9 +89,9 @@ def test_a_step_begins_once_settled_and_restores_everything() -> None:
         end = lab.until_over(30.0)
         assert (end.number, end.kind, end.loop, end.phase, end.text) == (3, "step", "depth", "complete", "")
         assert lab.phases() == ["settling", "running", "complete"]
-        began = next(one.since for one in lab.told if one.phase == "running")
+        began = next(document.since for document in lab.told if document.phase == "running")
         assert end.since - began == pytest.approx(6.0, abs=0.11)
-        progress = [one.progress for one in lab.told]
+        progress = [document.progress for document in lab.told]
         assert progress == sorted(progress)
         assert lab.set_points[-2:] == [STEP["target"], 0.6]
         flight.run(0.2)
@@ -100,7 +100,7 @@ def test_a_step_begins_once_settled_and_restores_everything() -> None:
 
 
 def test_a_start_that_never_settles_is_given_up_after_its_time_limit() -> None:
-    wanted = StepExperimentCommand(
+    expected = StepExperimentCommand(
         number=1,
         loop="depth",
         start=0.4,
@@ -112,7 +112,7 @@ def test_a_start_that_never_settles_is_given_up_after_its_time_limit() -> None:
         high=1.0,
     )
     clock = SimulatedClock(10.0)
-    experiment = StepExperiment(wanted, clock)
+    experiment = StepExperiment(expected, clock)
     set_points = []
     for tick in range(60):
         experiment.observe(0.4 + 0.05 * (-1) ** tick)
@@ -139,7 +139,7 @@ def test_a_relay_finds_the_load_and_a_steady_cycle() -> None:
 @pytest.mark.parametrize("load", [-0.2, 0.0, 0.15])
 def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
     """An integrator with friction and a constant load, with a known solution."""
-    wanted = RelayExperimentCommand(
+    expected = RelayExperimentCommand(
         number=1,
         loop="depth",
         set_point=1.0,
@@ -151,7 +151,7 @@ def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
         high=2.0,
     )
     clock = SimulatedClock(0.0)
-    experiment = RelayExperiment(wanted, clock)
+    experiment = RelayExperiment(expected, clock)
     position, speed = 0.9, 0.0
     while not experiment.over:
         experiment.observe(position)
@@ -256,9 +256,9 @@ def test_an_invalid_experiment_is_refused() -> None:
         with pytest.raises(RefusedError, match="The robot is disarmed"):
             begin(flight, STEP)
         flight.arm()
-        for wanted, why in WRONG:
+        for expected, why in WRONG:
             with pytest.raises(RefusedError, match=why):
-                begin(flight, wanted)
+                begin(flight, expected)
         flight.robot.experiments.require_none()
 
 

@@ -8,7 +8,7 @@ import pytest
 from robot_runtime.contract.packets import Motor, StatusFlag
 from robot_runtime.contract.topics import LINK, MOTOR
 from robot_runtime.control.fault_detector import TILT_MAX
-from robot_runtime.control.faults import BY_NAME
+from robot_runtime.control.faults import ROBOT_FAULTS
 from robot_runtime.control.pilot import PATIENCE
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.boards.stepped_board import PERIOD
@@ -59,12 +59,12 @@ def check_all_stop(flight: Flight, name: str, break_: Break) -> None:
     flight.run(3.0)
     assert flight.supervisor.mode == "automatic"
     break_(flight)
-    took = flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME[name].limit + LATE)
+    took = flight.until(lambda: flight.supervisor.mode == "failsafe", ROBOT_FAULTS[name].limit + LATE)
     assert took > 0.05 or name == "control_failed"
     flight.run(1.0)
     assert any(alarm.fault == name for alarm in flight.supervisor.alarms)
-    words = [event.text for event in flight.events if event.kind == name]
-    assert any(text.startswith(BY_NAME[name].what) for text in words)
+    message = [event.text for event in flight.events if event.kind == name]
+    assert any(text.startswith(ROBOT_FAULTS[name].what) for text in message)
     assert not any(time > flight.now - 0.9 for time, _ in flight.sent)
     with pytest.raises(RefusedError, match="Acknowledge the alarms"):
         flight.supervisor.begin_arming()
@@ -83,7 +83,7 @@ def test_a_capsized_robot_is_stopped(flight: Flight) -> None:
     flight.run(2.0)
     flight.water("trim", buoyancy=1.003, forward=0.0, right=0.0, above=-0.03)
     flight.until(lambda: tilt(flight) > TILT_MAX, 30.0)
-    took = flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME["capsized"].limit + LATE)
+    took = flight.until(lambda: flight.supervisor.mode == "failsafe", ROBOT_FAULTS["capsized"].limit + LATE)
     assert took > 1.8
     assert flight.alarm("capsized")
     flight.run(0.5)
@@ -106,7 +106,7 @@ def test_a_low_battery_turns_the_fins_down_and_is_an_alarm() -> None:
         flight.arm("manual")
         flight.until(lambda: flight.supervisor.mode == "failsafe", 25.0)
         # It is full enough until time 0.
-        assert 20.0 <= flight.now <= BY_NAME["battery_low"].limit
+        assert 20.0 <= flight.now <= ROBOT_FAULTS["battery_low"].limit
         assert flight.alarm("battery_low")
         flight.run(2.0)
         assert motors[-1].angle == pytest.approx([pi / 2] * 4, abs=0.1)
@@ -122,9 +122,13 @@ def test_a_fin_that_fails_is_an_alarm_and_forbids_the_next_arming(flight: Flight
     flight.arm()
     flight.run(2.0)
     flight.break_("encoder2", "bus")
-    flight.until(lambda: flight.alarm("fin_failing"), BY_NAME["fin_failing"].limit + LATE)
+    flight.until(lambda: flight.alarm("fin_failing"), ROBOT_FAULTS["fin_failing"].limit + LATE)
     assert "(encoder of the back left fin)" in flight.supervisor.alarms[0].what
+    failure = flight.robot.link.fault
+    assert failure is not None
+    assert failure.text == "the board reports a fault"
     flight.run(2.0)
+    assert flight.robot.link.fault is failure
     assert flight.supervisor.mode == "automatic"
     flight.break_("encoder2", "none")
     flight.until(lambda: not flight.alarm("fin_failing"), 1.5)
@@ -187,9 +191,9 @@ def test_pilot_input_moves_the_fins_and_its_silence_ends_the_mode(flight: Flight
     taken, flight.sticks = flight.supervisor.pilot.taken, None
     flight.until(lambda: flight.sent[-1][1].x == 0.0, PATIENCE + LATE)
     assert PATIENCE <= flight.sent[-1][0] - taken <= PATIENCE + 2 * PERIOD
-    flight.until(lambda: flight.alarm("pilot_quiet"), BY_NAME["pilot_quiet"].limit + LATE)
+    flight.until(lambda: flight.alarm("pilot_quiet"), ROBOT_FAULTS["pilot_quiet"].limit + LATE)
     assert flight.supervisor.mode == "manual"
-    flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME["pilot_lost"].limit + LATE)
+    flight.until(lambda: flight.supervisor.mode == "failsafe", ROBOT_FAULTS["pilot_lost"].limit + LATE)
     assert 2.8 < flight.now - taken <= 3.0 + LATE
     flight.sticks = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     flight.run(1.0)
@@ -233,7 +237,7 @@ def test_an_exception_in_the_fault_detector_stops_the_robot(
     flight.arm()
     flight.run(0.5)
     monkeypatch.setattr(flight.supervisor.detector, "active_faults", fail)
-    flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME["control_failed"].limit + LATE)
+    flight.until(lambda: flight.supervisor.mode == "failsafe", ROBOT_FAULTS["control_failed"].limit + LATE)
     assert [alarm.fault for alarm in flight.supervisor.alarms] == ["control_failed"]
 
 
@@ -241,7 +245,7 @@ def test_in_manual_a_lost_depth_is_only_an_alarm_and_blocks_automatic(flight: Fl
     flight.sticks = [0.0] * 6
     flight.arm("manual")
     flight.break_("pressure", "bus")
-    flight.until(lambda: flight.alarm("depth_stale"), BY_NAME["depth_stale"].limit + LATE)
+    flight.until(lambda: flight.alarm("depth_stale"), ROBOT_FAULTS["depth_stale"].limit + LATE)
     flight.run(5.0)
     assert flight.supervisor.mode == "manual"
     with pytest.raises(RefusedError, match="pressure sensor does not answer"):
@@ -284,6 +288,6 @@ def test_the_fin_check_finds_the_fin_that_does_not_follow(
     assert list(flight.supervisor.fin_check.failed()) == failed
     flight.run(0.5)
     assert not flight.supervisor.board_armed
-    words = next(event for event in flight.events if event.kind == "fin_check")
-    assert words.severity == ("caution" if failed else "info")
+    text = next(event for event in flight.events if event.kind == "fin_check")
+    assert text.severity == ("caution" if failed else "info")
     assert [alarm.fault for alarm in flight.supervisor.alarms] == ["fin_failing"] * bool(failed)

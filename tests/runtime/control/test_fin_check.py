@@ -22,13 +22,13 @@ def flap(direction: float, lag: float = 0.0, size: float = 0.4) -> Fin:
     return lambda time: wrap(direction + size * sin(STROKE * (time - lag)))
 
 
-def judge(wanted: Fin, angle: Fin) -> dict[str, str]:
-    """The check of a fin; the other three follow."""
+def judge(expected: Fin, angle: Fin) -> dict[str, str]:
+    """Return the check of a fin; the other three follow."""
     check = FinCheck(SimulatedClock())
     sound = flap(0.0)
     for step in range(400):
         time = step * 0.02
-        points = (sound(time), wanted(time), sound(time), sound(time))
+        points = (sound(time), expected(time), sound(time), sound(time))
         angles = (sound(time), angle(time), sound(time), sound(time))
         check.see(Motor(time=step, wanted=points, angle=angles, drive=(0, 0, 0, 0)))
     return check.failed()
@@ -47,7 +47,7 @@ TURN = 8.0
 
 
 def turn(time: float) -> float:
-    """The set point of a fin that flaps and is turned once round, in as long as a check takes."""
+    """Return the set point of a fin that flaps and is turned once round, in as long as a check takes."""
     direction = DIRECTIONS[0]
     for number, following in enumerate(DIRECTIONS[1:], start=1):
         way = following - DIRECTIONS[number - 1]
@@ -61,11 +61,11 @@ def test_a_fin_that_is_turned_once_round_follows(lag: float) -> None:
     assert judge(turn, lambda time: turn(time - lag)) == {}
 
 
-@pytest.mark.parametrize("place", range(-180, 180, 15))
-def test_a_fin_that_rests_anywhere_is_named(place: int) -> None:
-    ((name, words),) = judge(turn, lambda _: place * pi / 180).items()
+@pytest.mark.parametrize("position", range(-180, 180, 15))
+def test_a_fin_that_rests_anywhere_is_named(position: int) -> None:
+    ((name, text),) = judge(turn, lambda _: position * pi / 180).items()
     assert name == FINS[1]
-    assert re.fullmatch(r"was off its set point by \d\.\d\d rad", words)
+    assert re.fullmatch(r"was off its set point by \d\.\d\d rad", text)
 
 
 def test_a_fin_that_turns_round_the_other_way_is_named() -> None:
@@ -74,8 +74,8 @@ def test_a_fin_that_turns_round_the_other_way_is_named() -> None:
 
 @pytest.mark.parametrize("direction", [0.0, pi])
 def test_a_fin_that_turns_the_other_way_is_named(direction: float) -> None:
-    found = judge(flap(direction), flap(direction, size=-0.4))
-    assert found == {FINS[1]: "turned against its set point"}
+    result = judge(flap(direction), flap(direction, size=-0.4))
+    assert result == {FINS[1]: "turned against its set point"}
 
 
 @pytest.mark.parametrize(
@@ -87,9 +87,9 @@ def test_a_fin_that_turns_the_other_way_is_named(direction: float) -> None:
     ],
 )
 def test_a_fin_that_stands_still_or_turns_as_it_likes_is_named(angle: Fin) -> None:
-    ((name, words),) = judge(flap(0.0), angle).items()
+    ((name, text),) = judge(flap(0.0), angle).items()
     assert name == FINS[1]
-    assert re.fullmatch(r"was off its set point by \d\.\d\d rad", words)
+    assert re.fullmatch(r"was off its set point by \d\.\d\d rad", text)
 
 
 def test_a_fin_that_was_not_commanded_is_named() -> None:

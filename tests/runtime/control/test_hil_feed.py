@@ -16,7 +16,7 @@ WORD = Sense(
 )
 
 
-class Rig:
+class HilFeedRig:
     def __init__(self) -> None:
         self.clock = SimulatedClock(100.0)
         self.sent: list[Packet] = []
@@ -25,14 +25,14 @@ class Rig:
 
 
 def test_a_message_is_passed_to_the_board_unchanged() -> None:
-    rig = Rig()
+    rig = HilFeedRig()
     rig.loop.forward(WORD.to_bytes())
     assert [packet.to_bytes() for packet in rig.sent] == [WORD.to_bytes()]
     assert rig.loop.refusals() == []
 
 
 def test_the_simulator_s_arrival_is_reported_once_and_its_loss_detected() -> None:
-    rig = Rig()
+    rig = HilFeedRig()
     rig.loop.tick()
     assert rig.events == []
     assert "There is no simulator" in rig.loop.refusals()[0]
@@ -48,7 +48,7 @@ def test_the_simulator_s_arrival_is_reported_once_and_its_loss_detected() -> Non
 
 
 def test_an_invalid_message_is_dropped_and_does_not_count(caplog: pytest.LogCaptureFixture) -> None:
-    rig = Rig()
+    rig = HilFeedRig()
     rig.loop.forward(WORD.to_bytes()[:-1])
     assert (rig.sent, rig.loop.present) == ([], False)
     assert "invalid Sense" in caplog.text

@@ -7,7 +7,7 @@ import pytest
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Mode, Turning
-from robot_runtime.contract.packets import Depth, Imu, Navigation
+from robot_runtime.contract.packets import Countdown, Depth, Imu, Navigation
 from robot_runtime.contract.topics import DEPTH, IMU, TURNING
 from robot_runtime.control.attitude import GRAVITY
 from robot_runtime.control.controllers.bang_bang import BangBang
@@ -19,21 +19,28 @@ from robot_runtime.transport.bus import Bus
 from tests.runtime.control.attitudes import quaternion
 
 
-class Rig:
+class ControlLoopRig:
     """A control node with a pilot, and its sent commands."""
 
     def __init__(self, mode: Mode) -> None:
         self.clock, self.bus = SimulatedClock(100.0), Bus()
         self.commands: list[Navigation] = []
+        self.countdowns: list[float] = []
         self.turning: list[Turning] = []
         self.pilot = Pilot(self.clock)
-        self.node = ControlNode(self.bus, self.clock, self.commands.append, self.pilot)
+        self.node = ControlNode(self.bus, self.clock, self._take, self.pilot)
         self.bus.on_row(TURNING, lambda _, record: self.turning.append(Turning.from_bytes(record)))
         self.node.change_mode(mode)
         self._sequence = 0
         self._sticks: dict[str, float] = {}
         self.depth(0.6)
         self.attitude(heading=1.0)
+
+    def _take(self, packet: Navigation | Countdown) -> None:
+        if isinstance(packet, Countdown):
+            self.countdowns.append(packet.remaining)
+        else:
+            self.commands.append(packet)
 
     def depth(self, metres: float) -> None:
         record = Depth(time=0, depth=metres, pressure=0, temperature=0.0)
@@ -54,11 +61,11 @@ class Rig:
         """Move the sticks to this position."""
         self._sequence += 1
         sticks = [axes.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]
-        words = {"lease": 0, "sequence": self._sequence, "taken": self.clock.now(), "axes": sticks}
-        assert self.pilot.take(json.dumps(words).encode())
+        text = {"lease": 0, "sequence": self._sequence, "taken": self.clock.now(), "axes": sticks}
+        assert self.pilot.take(json.dumps(text).encode())
 
     def tick(self) -> Navigation | None:
-        """Run one tick; returns its command."""
+        """Run one tick; return its command."""
         self.clock.forward(0.1)
         self.push(**self._sticks)
         before = len(self.commands)
@@ -71,11 +78,11 @@ class Rig:
 
 
 def test_angle_loops_run_only_when_enabled() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     command = rig.tick()
     assert command is not None
     assert (command.yaw, command.pitch, command.roll) == (0.0, 0.0, 0.0)
-    assert all(isnan(one) for one in (*rig.turning[-1].set_point, *rig.turning[-1].output))
+    assert all(isnan(number) for number in (*rig.turning[-1].set_point, *rig.turning[-1].output))
     assert rig.turning[-1].measured == pytest.approx((1.0, 0.0, 0.0), abs=1e-3)
     rig.node.set_loop("heading", on=True, set_point=1.5)
     command = rig.tick()
@@ -87,19 +94,33 @@ def test_angle_loops_run_only_when_enabled() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wanted", "measured", "side"), [(3.0, -3.0, -1), (-3.0, 3.0, 1), (0.1, -0.1, 1), (-pi, 3.0, 1)]
+    ("goal", "measured", "side"), [(3.0, -3.0, -1), (-3.0, 3.0, 1), (0.1, -0.1, 1), (-pi, 3.0, 1)]
 )
-def test_a_heading_is_reached_the_short_way_round(wanted: float, measured: float, side: int) -> None:
-    rig = Rig("automatic")
+def test_a_heading_is_reached_the_short_way_round(goal: float, measured: float, side: int) -> None:
+    rig = ControlLoopRig("automatic")
     rig.attitude(heading=measured)
-    rig.node.set_loop("heading", on=True, set_point=wanted)
+    rig.node.set_loop("heading", on=True, set_point=goal)
     command = rig.tick()
     assert command is not None
     assert command.yaw * side > 0
 
 
+def test_a_countdown_is_sent_until_its_course_expires() -> None:
+    rig = ControlLoopRig("automatic")
+    rig.node.override_course(Course(rig.clock.now() + 0.25, still=True, countdown=4.0))
+    for _ in range(4):
+        command = rig.tick()
+        assert command is not None
+        assert command.z == 0.0
+    assert rig.countdowns == [4.0, 4.0]
+    rig.node.override_course(Course(rig.clock.now() + 0.25, still=True, countdown=4.0))
+    rig.node.change_mode("disarmed")
+    rig.tick()
+    assert rig.countdowns == [4.0, 4.0]
+
+
 def test_a_course_outranks_a_heading_hold_that_is_on() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     rig.node.set_loop("heading", on=True, set_point=1.5)
     rig.node.override_course(Course(rig.clock.now() + 10.0, x=0.3, yaw=-0.5))
     command = rig.tick()
@@ -121,7 +142,7 @@ def test_a_course_outranks_a_heading_hold_that_is_on() -> None:
 
 
 def test_passing_south_is_no_jump_for_the_controllers_speed() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     rig.node.set_loop("heading", on=True, set_point=pi, gains={"kp": 0.0, "ki": 0.0, "kd": 1.0})
     outputs = []
     for heading in (3.0, 3.1, -3.083, -2.983):
@@ -133,7 +154,7 @@ def test_passing_south_is_no_jump_for_the_controllers_speed() -> None:
 
 
 def test_pitch_and_roll_push_against_their_error() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     rig.attitude(pitch=0.2, roll=-0.2)
     for name in ("pitch", "roll"):
         rig.node.set_loop(name, on=True)
@@ -144,7 +165,7 @@ def test_pitch_and_roll_push_against_their_error() -> None:
 
 
 def test_the_depth_loop_gets_the_mean_heave_acceleration() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     rig.node.set_loop("depth", controller="predictive")
     rig.tick()
     # The right of the hull is down.
@@ -157,7 +178,7 @@ def test_the_depth_loop_gets_the_mean_heave_acceleration() -> None:
 
 
 def test_steering_to_a_light_has_yaw_alone() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     rig.node.set_loop("heading", on=True, set_point=-2.0)
     rig.node.steer("beacons")
     command = rig.tick()
@@ -167,7 +188,7 @@ def test_steering_to_a_light_has_yaw_alone() -> None:
 
 
 def test_all_holds_are_off_at_the_start_and_the_end_of_manual() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     rig.node.set_loop("heading", on=True)
     modes: tuple[Mode, ...] = ("manual", "automatic", "manual", "disarmed", "manual")
     for mode in modes:
@@ -180,7 +201,7 @@ def test_all_holds_are_off_at_the_start_and_the_end_of_manual() -> None:
 
 
 def test_in_manual_nothing_is_held_by_default() -> None:
-    rig = Rig("manual")
+    rig = ControlLoopRig("manual")
     rig.hold(z=0.0, x=0.5)
     command = rig.tick()
     assert command == Navigation(x=0.5, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
@@ -189,7 +210,7 @@ def test_in_manual_nothing_is_held_by_default() -> None:
 @pytest.mark.parametrize("name", ["depth", "heading"])
 def test_a_hold_takes_the_value_at_its_start_or_at_the_release_of_the_stick(name: str) -> None:
     axis = {"depth": "z", "heading": "yaw"}[name]
-    rig = Rig("manual")
+    rig = ControlLoopRig("manual")
     loop = rig.node.loops[name]
 
     def be(value: float) -> Navigation:
@@ -215,7 +236,7 @@ def test_a_hold_takes_the_value_at_its_start_or_at_the_release_of_the_stick(name
 
 
 def test_a_hold_gives_no_command_while_the_fins_rest_for_a_silent_pilot() -> None:
-    rig = Rig("manual")
+    rig = ControlLoopRig("manual")
     rig.tick()
     rig.node.set_loop("depth", on=True, set_point=2.0)
     command = rig.tick()
@@ -227,7 +248,7 @@ def test_a_hold_gives_no_command_while_the_fins_rest_for_a_silent_pilot() -> Non
 
 
 def test_pilot_input_is_sent_at_once_with_the_commands_of_the_holds() -> None:
-    rig = Rig("manual")
+    rig = ControlLoopRig("manual")
     rig.tick()
     rig.node.set_loop("depth", on=True, set_point=2.0)
     rig.tick()
@@ -242,7 +263,7 @@ def test_pilot_input_is_sent_at_once_with_the_commands_of_the_holds() -> None:
 
 
 def test_an_override_steers_until_the_mode_changes() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     rig.node.heading.override = LoopOverride(BangBang(), set_point=-1.0)
     command = rig.tick()
     assert command is not None
@@ -256,7 +277,7 @@ def test_an_override_steers_until_the_mode_changes() -> None:
 
 
 def test_the_depth_set_point_is_the_default_except_for_a_hold_in_manual() -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     rig.node.set_loop("depth", set_point=0.8)
     rig.tick()
     assert (rig.node.set_point_default, rig.node.depth.set_point) == (0.8, 0.8)
@@ -284,7 +305,7 @@ def test_the_depth_set_point_is_the_default_except_for_a_hold_in_manual() -> Non
 def test_invalid_settings_are_refused_and_change_nothing(
     name: str, change: dict[str, object], why: str
 ) -> None:
-    rig = Rig("automatic")
+    rig = ControlLoopRig("automatic")
     before = [(loop.on, loop.set_point, loop.controller) for loop in rig.node.loops.values()]
     with pytest.raises(RefusedError, match=why):
         rig.node.set_loop(name, **change)  # type: ignore[arg-type]
@@ -292,6 +313,6 @@ def test_invalid_settings_are_refused_and_change_nothing(
 
 
 def test_a_value_that_is_not_measured_cannot_be_held() -> None:
-    rig = Rig("manual")
+    rig = ControlLoopRig("manual")
     with pytest.raises(RefusedError, match="The heading is not measured yet"):
         rig.node.set_loop("heading", on=True)

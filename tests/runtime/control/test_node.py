@@ -4,7 +4,7 @@ import pytest
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Control, Detection, Event, Mode
-from robot_runtime.contract.packets import Beacon, Depth, Navigation
+from robot_runtime.contract.packets import Beacon, Countdown, Depth, Navigation
 from robot_runtime.contract.topics import BEACON, CONTROL, DEPTH, DETECTION, EVENT
 from robot_runtime.control.node import BEACON_STALE, ControlNode
 from robot_runtime.control.pilot import Pilot
@@ -12,7 +12,7 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.transport.bus import Bus
 
 
-class Rig:
+class ControlNodeRig:
     """A control node with its bus, clock and sent commands."""
 
     def __init__(self) -> None:
@@ -21,11 +21,15 @@ class Rig:
         self.ticks: list[Control] = []
         self.events: list[str] = []
         self.pilot = Pilot(self.clock)
-        self.node = ControlNode(self.bus, self.clock, self.commands.append, self.pilot)
+        self.node = ControlNode(self.bus, self.clock, self._take, self.pilot)
         self.node.change_mode("automatic")
         self.node.colour = "yellow"
         self.bus.on_row(CONTROL, lambda _, record: self.ticks.append(Control.from_bytes(record)))
         self.bus.on_document(EVENT, self._event)
+
+    def _take(self, packet: Navigation | Countdown) -> None:
+        assert isinstance(packet, Navigation)
+        self.commands.append(packet)
 
     def _event(self, event: Event) -> None:
         self.events.append(event.text)
@@ -58,17 +62,17 @@ class Rig:
 
 
 @pytest.fixture
-def rig() -> Rig:
-    return Rig()
+def rig() -> ControlNodeRig:
+    return ControlNodeRig()
 
 
-def test_no_command_before_the_first_depth(rig: Rig) -> None:
+def test_no_command_before_the_first_depth(rig: ControlNodeRig) -> None:
     rig.tick()
     assert rig.commands == []
     assert rig.ticks == []
 
 
-def test_commands_go_out_only_while_armed(rig: Rig) -> None:
+def test_commands_go_out_only_while_armed(rig: ControlNodeRig) -> None:
     rig.depth(0.2)
     rig.node.change_mode("disarmed")
     rig.tick()
@@ -80,7 +84,7 @@ def test_commands_go_out_only_while_armed(rig: Rig) -> None:
     assert rig.ticks[1].latency == pytest.approx(0.2)
 
 
-def test_the_target_colour_changes_the_set_point_and_its_loss_restores_it(rig: Rig) -> None:
+def test_the_target_colour_changes_the_set_point_and_its_loss_restores_it(rig: ControlNodeRig) -> None:
     rig.depth(0.5)
     rig.see("yellow")
     rig.tick()
@@ -90,14 +94,14 @@ def test_the_target_colour_changes_the_set_point_and_its_loss_restores_it(rig: R
     assert rig.events == ["Set point 1.00 m: yellow is seen.", "Set point 0.50 m."]
 
 
-def test_another_colour_changes_nothing(rig: Rig) -> None:
+def test_another_colour_changes_nothing(rig: ControlNodeRig) -> None:
     rig.depth(0.5)
     rig.see("red")
     rig.tick()
     assert rig.ticks[0].set_point == 0.5
 
 
-def test_a_seen_colour_or_marker_with_an_action_sets_its_set_point(rig: Rig) -> None:
+def test_a_seen_colour_or_marker_with_an_action_sets_its_set_point(rig: ControlNodeRig) -> None:
     rig.depth(0.5)
     rig.see("red", "red", 0.8)
     rig.tick()
@@ -112,7 +116,7 @@ def test_a_seen_colour_or_marker_with_an_action_sets_its_set_point(rig: Rig) -> 
     assert rig.events[:2] == ["Set point 0.80 m: red is seen.", "Set point 1.50 m: marker 7 is seen."]
 
 
-def test_the_age_of_a_picture_is_that_at_its_first_tick(rig: Rig) -> None:
+def test_the_age_of_a_picture_is_that_at_its_first_tick(rig: ControlNodeRig) -> None:
     rig.depth(0.5)
     rig.tick()
     assert rig.node.picture_age is None
@@ -126,7 +130,7 @@ def test_the_age_of_a_picture_is_that_at_its_first_tick(rig: Rig) -> None:
     assert rig.node.picture_age == pytest.approx(0.15)
 
 
-def test_a_detection_expires_within_a_second(rig: Rig) -> None:
+def test_a_detection_expires_within_a_second(rig: ControlNodeRig) -> None:
     rig.depth(0.5)
     rig.see("yellow")
     set_points = []
@@ -136,7 +140,7 @@ def test_a_detection_expires_within_a_second(rig: Rig) -> None:
     assert set_points == [1.0] * 9 + [0.5] * 3
 
 
-def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:
+def test_a_controller_starts_afresh_at_each_arming(rig: ControlNodeRig) -> None:
     rig.node.set_loop("depth", controller="pid", gains={"kp": 0.0, "ki": 1.0, "kd": 0.0})
     rig.depth(0.0)
     modes: tuple[Mode, ...] = (*("automatic",) * 4, "disarmed", "automatic")
@@ -157,7 +161,7 @@ def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:
     ],
 )
 def test_an_invalid_controller_is_refused_and_the_old_one_stays(
-    rig: Rig, name: str, gains: dict[str, float], why: str
+    rig: ControlNodeRig, name: str, gains: dict[str, float], why: str
 ) -> None:
     before = rig.node.depth.controller
     with pytest.raises(RefusedError, match=why):
@@ -166,14 +170,14 @@ def test_an_invalid_controller_is_refused_and_the_old_one_stays(
 
 
 @pytest.mark.parametrize("depth", [-0.1, 10.1, float("nan"), float("inf")])
-def test_set_points_out_of_range_are_refused(rig: Rig, depth: float) -> None:
+def test_set_points_out_of_range_are_refused(rig: ControlNodeRig, depth: float) -> None:
     for pair in ((depth, 1.0), (0.5, depth)):
         with pytest.raises(RefusedError, match="not between 0 and 10"):
             rig.node.set_points(*pair)
     assert (rig.node.set_point_default, rig.node.set_point_detected) == (0.5, 1.0)
 
 
-def test_it_steers_to_a_light_only_when_enabled(rig: Rig) -> None:
+def test_it_steers_to_a_light_only_when_enabled(rig: ControlNodeRig) -> None:
     rig.depth(0.5)
     rig.lights(right=True, left=False)
     rig.tick()
@@ -187,7 +191,7 @@ def test_it_steers_to_a_light_only_when_enabled(rig: Rig) -> None:
     assert rig.node.steering == "beacons"
 
 
-def test_a_light_not_seen_for_too_long_is_searched(rig: Rig) -> None:
+def test_a_light_not_seen_for_too_long_is_searched(rig: ControlNodeRig) -> None:
     rig.node.steer("beacons")
     rig.lights(right=True, left=True)
     rig.clock.forward(BEACON_STALE)

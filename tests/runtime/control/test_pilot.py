@@ -27,17 +27,17 @@ def pilot(clock: SimulatedClock) -> Pilot:
     return pilot
 
 
-def words(**more: Any) -> bytes:
+def message_of(**more: Any) -> bytes:
     return json.dumps({"lease": 3, "sequence": 7, "taken": 100.0, "axes": LEFT} | more).encode()
 
 
 def test_the_newest_input_counts_until_it_expires(pilot: Pilot, clock: SimulatedClock) -> None:
     assert pilot.command() == NEUTRAL
-    pilot.take(words())
+    pilot.take(message_of())
     assert (pilot.command().y, pilot.command().yaw) == (-1.0, 0.25)
     clock.forward(PATIENCE - 0.01)
     assert pilot.command().y == -1.0
-    assert pilot.until == pytest.approx(clock.now() + 0.01)
+    assert pilot.next_check == pytest.approx(clock.now() + 0.01)
     clock.forward(0.02)
     assert pilot.command() == NEUTRAL
     assert not pilot.dropped
@@ -68,8 +68,8 @@ def test_the_newest_input_counts_until_it_expires(pilot: Pilot, clock: Simulated
 def test_invalid_stale_or_foreign_input_is_dropped_and_counted(
     pilot: Pilot, reason: str, more: dict[str, Any]
 ) -> None:
-    pilot.take(words(sequence=6, axes=[0.5, 0, 0, 0, 0, 0]))
-    pilot.take(words(**more))
+    pilot.take(message_of(sequence=6, axes=[0.5, 0, 0, 0, 0, 0]))
+    pilot.take(message_of(**more))
     assert pilot.command().x == 0.5
     assert pilot.dropped == {reason: 1}
 
@@ -87,14 +87,14 @@ def test_any_bytes_are_handled(data: bytes) -> None:
 
 
 def test_a_new_holder_begins_with_centred_sticks(pilot: Pilot) -> None:
-    pilot.take(words())
+    pilot.take(message_of())
     pilot.change_lease(3)
     assert pilot.command().y == -1.0
     pilot.change_lease(4)
     assert pilot.command() == NEUTRAL
-    pilot.take(words(sequence=8))
+    pilot.take(message_of(sequence=8))
     assert pilot.dropped == {"lease": 1}
-    pilot.take(words(lease=4, sequence=0))
+    pilot.take(message_of(lease=4, sequence=0))
     assert pilot.command().y == -1.0
     with pytest.raises(RefusedError, match="older than 4"):
         pilot.change_lease(3)
@@ -104,10 +104,10 @@ def test_a_new_holder_begins_with_centred_sticks(pilot: Pilot) -> None:
 def test_a_lease_that_is_not_of_this_time_locks_nobody_out(pilot: Pilot, epoch: int) -> None:
     with pytest.raises(RefusedError, match="not of this time"):
         pilot.change_lease(epoch)
-    assert pilot.take(words())
+    assert pilot.take(message_of())
 
 
 def test_the_start_of_manual_drops_earlier_input(pilot: Pilot) -> None:
-    pilot.take(words())
+    pilot.take(message_of())
     pilot.begin()
     assert pilot.command() == NEUTRAL

@@ -10,17 +10,17 @@ from robot_runtime.contract.packets import (
 )
 from robot_runtime.control.supervisor import Arming
 from robot_runtime.errors import RefusedError
-from tests.runtime.control.supervisor_rig import Board, Rig
+from tests.runtime.control.supervisor_rig import ObedientBoard, SupervisorRig
 
 
 @pytest.fixture
-def rig() -> Rig:
-    rig = Rig()
+def rig() -> SupervisorRig:
+    rig = SupervisorRig()
     rig.ready()
     return rig
 
 
-def test_arms_when_everything_is_well(rig: Rig) -> None:
+def test_arms_when_everything_is_well(rig: SupervisorRig) -> None:
     assert rig.supervisor.refusals() == []
     rig.supervisor.arm()
     assert rig.supervisor.armed
@@ -29,20 +29,20 @@ def test_arms_when_everything_is_well(rig: Rig) -> None:
     assert [event.kind for event in rig.events] == ["armed"]
 
 
-def test_every_reason_against_arming_is_reported(rig: Rig) -> None:
+def test_every_reason_against_arming_is_reported(rig: SupervisorRig) -> None:
     rig.board.faults = DeviceFault.IMU | DeviceFault.ENCODER_BACK_LEFT
-    rig.board.flags = StatusFlag.BATTERY_LOW
+    rig.board.flags, rig.board.stack_free = StatusFlag.BATTERY_LOW, 40
     rig.report()
     rig.clock.forward(0.41)
     rig.report()
     with pytest.raises(RefusedError) as refusal:
         rig.supervisor.arm()
-    for word in ("IMU", "back left fin", "fresh depth", "battery is low"):
+    for word in ("IMU", "back left fin", "fresh depth", "battery is low", "40 B are free"):
         assert word in str(refusal.value)
     assert rig.board.sent == []
 
 
-def test_no_arming_without_a_connection_or_a_status_of_the_board(rig: Rig) -> None:
+def test_no_arming_without_a_connection_or_a_status_of_the_board(rig: SupervisorRig) -> None:
     rig.board.connected, rig.board.text = False, "the port does not exist"
     assert "the port does not exist" in rig.supervisor.refusals()[0]
     rig.board.connected = True
@@ -50,7 +50,7 @@ def test_no_arming_without_a_connection_or_a_status_of_the_board(rig: Rig) -> No
     assert "sends no status" in rig.supervisor.refusals()[0]
 
 
-def test_a_board_that_does_not_arm_is_stopped_and_the_reason_reported(rig: Rig) -> None:
+def test_a_board_that_does_not_arm_is_stopped_and_the_reason_reported(rig: SupervisorRig) -> None:
     rig.board.obeys = False
     with pytest.raises(RefusedError, match="did not arm"):
         rig.supervisor.arm()
@@ -58,14 +58,14 @@ def test_a_board_that_does_not_arm_is_stopped_and_the_reason_reported(rig: Rig) 
     assert not rig.supervisor.armed
 
 
-def test_a_check_while_the_board_arms_does_not_stop_it(rig: Rig) -> None:
+def test_a_check_while_the_board_arms_does_not_stop_it(rig: SupervisorRig) -> None:
     rig.on_start = rig.supervisor.tick
     rig.supervisor.arm()
     assert rig.supervisor.armed
     assert rig.board.sent == [Start(epoch=7)]
 
 
-def test_a_stop_while_the_board_arms_prevails(rig: Rig) -> None:
+def test_a_stop_while_the_board_arms_prevails(rig: SupervisorRig) -> None:
     rig.on_start = lambda: rig.supervisor.stop("Stopped.")
     with pytest.raises(RefusedError, match="Stopped before"):
         rig.supervisor.arm()
@@ -73,9 +73,9 @@ def test_a_stop_while_the_board_arms_prevails(rig: Rig) -> None:
     assert rig.board.sent == [Start(epoch=7), Stop()]
 
 
-@pytest.mark.parametrize(("baud", "limit"), [(250_000, 0.4), (1200, 1.53)])
+@pytest.mark.parametrize(("baud", "limit"), [(250_000, 0.4), (1200, 1.56)])
 def test_the_age_limit_of_the_depth_follows_the_baud(baud: int, limit: float) -> None:
-    rig = Rig(baud)
+    rig = SupervisorRig(baud)
     rig.ready()
     rig.supervisor.arm()
     rig.clock.forward(limit / 2)
@@ -88,7 +88,7 @@ def test_the_age_limit_of_the_depth_follows_the_baud(baud: int, limit: float) ->
     assert not rig.supervisor.armed
 
 
-def test_after_a_stall_earlier_data_of_the_board_is_ignored(rig: Rig) -> None:
+def test_after_a_stall_earlier_data_of_the_board_is_ignored(rig: SupervisorRig) -> None:
     rig.supervisor.arm()
     rig.supervisor.tick()
     rig.clock.forward(3.0)
@@ -99,7 +99,7 @@ def test_after_a_stall_earlier_data_of_the_board_is_ignored(rig: Rig) -> None:
     assert rig.board.sent[-1] == Stop()
 
 
-def test_a_short_stall_is_ignored(rig: Rig) -> None:
+def test_a_short_stall_is_ignored(rig: SupervisorRig) -> None:
     rig.supervisor.arm()
     rig.supervisor.tick()
     rig.clock.forward(0.89)
@@ -108,7 +108,7 @@ def test_a_short_stall_is_ignored(rig: Rig) -> None:
     assert rig.supervisor.armed
 
 
-def test_stop_disarms_at_once_every_time(rig: Rig) -> None:
+def test_stop_disarms_at_once_every_time(rig: SupervisorRig) -> None:
     rig.supervisor.arm()
     rig.supervisor.stop("Stopped.")
     rig.supervisor.stop("Stopped.")
@@ -117,11 +117,11 @@ def test_stop_disarms_at_once_every_time(rig: Rig) -> None:
     assert [event.kind for event in rig.events] == ["armed", "disarmed"]
 
 
-def test_status_from_before_a_stop_does_not_confirm_the_next_arming(rig: Rig) -> None:
+def test_status_from_before_a_stop_does_not_confirm_the_next_arming(rig: SupervisorRig) -> None:
     rig.ready()
     rig.supervisor.arm()
     rig.board.obeys = False
-    obedient, rig.board.send = rig.board.send, Board.send.__get__(rig.board)  # type: ignore[method-assign]
+    obedient, rig.board.send = rig.board.send, ObedientBoard.send.__get__(rig.board)  # type: ignore[method-assign]
     rig.supervisor.stop("Enough.")
     arming = rig.supervisor.begin_arming()
     rig.supervisor.continue_arming()
@@ -137,7 +137,7 @@ def test_status_from_before_a_stop_does_not_confirm_the_next_arming(rig: Rig) ->
     assert rig.supervisor.alarms == []
 
 
-def test_stop_is_repeated_while_the_board_stays_armed(rig: Rig) -> None:
+def test_stop_is_repeated_while_the_board_stays_armed(rig: SupervisorRig) -> None:
     rig.board.flags = StatusFlag.ARMED
     rig.report()
     rig.supervisor.tick()
@@ -146,7 +146,7 @@ def test_stop_is_repeated_while_the_board_stays_armed(rig: Rig) -> None:
     assert rig.board.sent == [Stop()]
 
 
-def test_a_lost_connection_disarms_with_an_alarm(rig: Rig) -> None:
+def test_a_lost_connection_disarms_with_an_alarm(rig: SupervisorRig) -> None:
     rig.supervisor.arm()
     rig.board.connected, rig.board.text = False, "the port went away"
     rig.supervisor.tick()
@@ -158,7 +158,7 @@ def test_a_lost_connection_disarms_with_an_alarm(rig: Rig) -> None:
     assert "the port went away" in rig.events[-2].text
 
 
-def test_a_board_that_restarts_or_disarms_itself_is_a_fault(rig: Rig) -> None:
+def test_a_board_that_restarts_or_disarms_itself_is_a_fault(rig: SupervisorRig) -> None:
     rig.supervisor.arm()
     rig.board.epoch = 8
     rig.board.flags = 0
@@ -172,7 +172,22 @@ def test_a_board_that_restarts_or_disarms_itself_is_a_fault(rig: Rig) -> None:
     assert rig.supervisor.mode == "failsafe"
 
 
-def test_a_failsafe_must_be_acknowledged_before_arming(rig: Rig) -> None:
+@pytest.mark.parametrize(
+    ("flags", "faults", "fault"),
+    [(0, DeviceFault.LEAK, "leak"), (StatusFlag.BATTERY_LOW, 0, "battery_low")],
+)
+def test_a_board_that_says_why_it_disarmed_is_one_alarm(
+    rig: SupervisorRig, flags: int, faults: int, fault: str
+) -> None:
+    rig.supervisor.arm()
+    rig.board.flags, rig.board.faults = flags, faults
+    rig.report()
+    rig.supervisor.tick()
+    assert [alarm.fault for alarm in rig.supervisor.alarms] == [fault]
+    assert rig.supervisor.mode == "failsafe"
+
+
+def test_a_failsafe_must_be_acknowledged_before_arming(rig: SupervisorRig) -> None:
     rig.supervisor.arm()
     rig.board.flags = 0
     rig.report()
@@ -185,7 +200,7 @@ def test_a_failsafe_must_be_acknowledged_before_arming(rig: Rig) -> None:
     assert rig.supervisor.armed
 
 
-def test_a_fault_that_returns_after_acknowledgement_is_an_alarm_again(rig: Rig) -> None:
+def test_a_fault_that_returns_after_acknowledgement_is_an_alarm_again(rig: SupervisorRig) -> None:
     def live(seconds: float, *, depth: bool) -> None:
         for _ in range(round(seconds / 0.05)):
             rig.clock.forward(0.05)
@@ -203,12 +218,12 @@ def test_a_fault_that_returns_after_acknowledgement_is_an_alarm_again(rig: Rig) 
     live(1.0, depth=False)
     live(2.0, depth=True)
     assert rig.supervisor.mode == "failsafe"
-    assert [(one.fault, one.active, one.acknowledged) for one in rig.supervisor.alarms] == [
+    assert [(alarm.fault, alarm.active, alarm.acknowledged) for alarm in rig.supervisor.alarms] == [
         ("depth_stale", False, False)
     ]
 
 
-def test_arming_proceeds_step_by_step_without_blocking(rig: Rig) -> None:
+def test_arming_proceeds_step_by_step_without_blocking(rig: SupervisorRig) -> None:
     rig.board.obeys = False
     arming = rig.supervisor.begin_arming()
     rig.supervisor.continue_arming()
@@ -225,7 +240,7 @@ def test_arming_proceeds_step_by_step_without_blocking(rig: Rig) -> None:
     assert len(rig.board.sent) == 3
 
 
-def test_what_begins_with_an_arming_begins_with_its_own_alone(rig: Rig) -> None:
+def test_what_begins_with_an_arming_begins_with_its_own_alone(rig: SupervisorRig) -> None:
     begun: list[str] = []
 
     def begin() -> Arming:
@@ -247,7 +262,7 @@ def test_what_begins_with_an_arming_begins_with_its_own_alone(rig: Rig) -> None:
     assert rig.supervisor.mode == "automatic"
 
 
-def test_a_board_that_never_arms_ends_the_attempt(rig: Rig) -> None:
+def test_a_board_that_never_arms_ends_the_attempt(rig: SupervisorRig) -> None:
     rig.board.obeys = False
     arming = rig.supervisor.begin_arming()
     while not arming.over:

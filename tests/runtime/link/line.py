@@ -21,12 +21,12 @@ class Layout:
 
 
 def packet_of(type_: int, size: int) -> type[Packet]:
-    """A reliable packet for tests, of that many bytes."""
+    """Return a reliable packet for tests, of that many bytes."""
     attributes = {"type": type_, "reliable": True, "layout": Layout(size), "tail": None, "wires": {}}
     return type(f"Payload{size}", (Packet,), attributes)
 
 
-PAYLOADS = {size: packet_of(0x70 + place, size) for place, size in enumerate((2, 6, 18))}
+PAYLOADS = {size: packet_of(0x70 + index, size) for index, size in enumerate((2, 6, 18))}
 PACKETS: dict[int, type[Packet]] = {cls.type: cls for cls in PAYLOADS.values()}
 PACKETS |= {cls.type: cls for cls in (Acknowledge, Heartbeat)}
 
@@ -45,7 +45,7 @@ class Noise:
     seed: int = 1
 
 
-class Wire:
+class NoisyWire:
     """One direction: frames are sent, and their bytes arrive after their time on the line."""
 
     def __init__(self, baud: int, noise: Noise, chance: random.Random) -> None:
@@ -79,7 +79,7 @@ class Wire:
         self._arrivals.append((arrival, self._flip(frame)))
 
     def receive(self, now: float) -> bytes:
-        """The bytes that have arrived by now."""
+        """Return the bytes that have arrived by now."""
         data = b""
         while self._arrivals and self._arrivals[0][0] <= now:
             data += self._arrivals.pop(0)[1]
@@ -106,7 +106,7 @@ class End:
     """One end: a channel that always has a message to send, or the given ones."""
 
     def __init__(self, baud: int, credit: int) -> None:
-        self.channel = Channel(baud, credit, KEY, packets=PACKETS)
+        self.channel = Channel(baud, credit, KEY)
         self.heard: list[tuple[int, bytes]] = []
         self.decoder = Decoder(PACKETS)
         self.decoder.key = KEY
@@ -118,7 +118,7 @@ class End:
                 self.heard += self.channel.receive(frame, now)
 
 
-class Line:
+class NoisyLine:
     """Two ends and a wire each way; time advances from event to event."""
 
     def __init__(self, baud: int, noise: Noise | None = None, credit: int = 4096) -> None:
@@ -126,7 +126,7 @@ class Line:
         chance = random.Random(noise.seed)
         self.now = 0.0
         self.ends = (End(baud, credit), End(baud, credit))
-        self.wires = (Wire(baud, noise, chance), Wire(baud, noise, chance))
+        self.wires = (NoisyWire(baud, noise, chance), NoisyWire(baud, noise, chance))
 
     def run(self, until: float) -> None:
         """Run both ends up to this time."""
@@ -147,7 +147,7 @@ def numbered(size: int, count: int) -> list[bytes]:
 
 def goodput(baud: int, size: int, bit_errors: float = 0.0) -> float:
     """Share of baud/10 that the slower direction carries while both always have messages."""
-    line = Line(baud, Noise(bits=bit_errors))
+    line = NoisyLine(baud, Noise(bits=bit_errors))
     messages = numbered(size, MESSAGES)
     for end in line.ends:
         for message in messages:
@@ -155,6 +155,6 @@ def goodput(baud: int, size: int, bit_errors: float = 0.0) -> float:
     seconds = 600 * 64 * 10 / baud
     line.run(seconds)
     for end in line.ends:
-        assert end.heard == [(one[0], one[1:]) for one in messages[: len(end.heard)]]
+        assert end.heard == [(message[0], message[1:]) for message in messages[: len(end.heard)]]
         assert len(end.heard) < MESSAGES
     return min(len(end.heard) for end in line.ends) * size / (seconds * baud / 10)

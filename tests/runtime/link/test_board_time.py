@@ -55,7 +55,7 @@ def test_a_slow_board_clock_is_followed() -> None:
 
 @pytest.mark.parametrize("drift", [-200e-6, 0.0, 50e-6, 200e-6])
 def test_among_delays_offset_and_drift_are_found(drift: float) -> None:
-    """Delays as of a port that is read every 30 ms, with some seconds in which every packet is late."""
+    """Return delays of a port that is read every 30 ms, with some seconds in which every packet is late."""
     times, chance = BoardTime(), random.Random(5)
     errors = []
     for step in range(6000):

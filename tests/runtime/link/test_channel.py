@@ -8,7 +8,7 @@ from robot_runtime.contract.packets import Heartbeat, encode
 from robot_runtime.link.channel import WINDOW, Channel
 from robot_runtime.link.framing import Decoder
 from robot_runtime.link.round_trip import RoundTrip
-from tests.runtime.link.line import KEY, PACKETS, Line, Noise, goodput, numbered
+from tests.runtime.link.line import KEY, PACKETS, Noise, NoisyLine, goodput, numbered
 
 
 @pytest.mark.parametrize("baud", [1200, 9600, 115_200, 250_000])
@@ -37,19 +37,19 @@ def test_noise_costs_only_what_it_destroys(bit_errors: float, goal: float) -> No
     ids=["bits", "drops", "doubles", "inserts", "bursts", "delay", "all"],
 )
 def test_under_any_faults_every_message_arrives_once_and_in_order(noise: Noise, credit: int) -> None:
-    line = Line(115_200, noise, credit)
+    line = NoisyLine(115_200, noise, credit)
     given = [numbered(18, 300), numbered(6, 500)]
     for end, messages in zip(line.ends, given, strict=True):
         for message in messages:
             end.channel.queue(message)
     line.run(60.0)
     for end, messages in zip(line.ends, reversed(given), strict=True):
-        assert end.heard == [(one[0], one[1:]) for one in messages]
+        assert end.heard == [(message[0], message[1:]) for message in messages]
         assert not end.channel.urgent
 
 
 def test_reliable_frames_get_their_turn_on_a_full_line() -> None:
-    line = Line(1200)
+    line = NoisyLine(1200)
     sender, receiver = line.ends
     given = numbered(6, 40)
     for message in given:
@@ -58,12 +58,14 @@ def test_reliable_frames_get_their_turn_on_a_full_line() -> None:
         # More of the newest than the line carries.
         sender.channel.offer(encode(Heartbeat(time=step)), step * 0.05)
         line.run(0.05 * (step + 1))
-    assert [one for one in receiver.heard if one[0] != Heartbeat.type] == [(one[0], one[1:]) for one in given]
+    assert [message for message in receiver.heard if message[0] != Heartbeat.type] == [
+        (message[0], message[1:]) for message in given
+    ]
     assert sum(type_ == Heartbeat.type for type_, _ in receiver.heard) > 100
 
 
 def test_a_quiet_good_line_repeats_nothing() -> None:
-    line = Line(115_200)
+    line = NoisyLine(115_200)
     for number in range(100):
         for end in line.ends:
             end.channel.queue(numbered(6, 100)[number])
@@ -74,7 +76,7 @@ def test_a_quiet_good_line_repeats_nothing() -> None:
 
 
 def test_on_a_dead_line_frames_are_retransmitted_and_never_given_up() -> None:
-    channel = Channel(115_200, 4096, KEY, packets=PACKETS)
+    channel = Channel(115_200, 4096, KEY)
     channel.queue(numbered(6, 1)[0])
     sent = [step * 0.003 for step in range(20_000) if channel.poll(step * 0.003)]
     waits = [later - earlier for earlier, later in pairwise(sent)]
@@ -84,7 +86,7 @@ def test_on_a_dead_line_frames_are_retransmitted_and_never_given_up() -> None:
 
 def test_no_more_than_the_window_and_the_credit_are_in_flight() -> None:
     for credit, most in ((4096, WINDOW), (255, 3), (64, 1), (1, 1)):
-        channel = Channel(10**9, credit, KEY, packets=PACKETS)
+        channel = Channel(10**9, credit, KEY)
         for message in numbered(18, 100):
             channel.queue(message)
         frames = 0
@@ -94,7 +96,7 @@ def test_no_more_than_the_window_and_the_credit_are_in_flight() -> None:
 
 
 def test_the_timeout_follows_the_round_trip_and_is_capped() -> None:
-    line = Line(115_200, Noise(delay=0.01))
+    line = NoisyLine(115_200, Noise(delay=0.01))
     for step in range(200):
         line.ends[0].channel.queue(numbered(6, 200)[step])
         line.run(0.1 * (step + 1))
@@ -104,7 +106,7 @@ def test_the_timeout_follows_the_round_trip_and_is_capped() -> None:
 
 
 def test_a_message_that_is_replaced_never_arrives() -> None:
-    line = Line(115_200)
+    line = NoisyLine(115_200)
     channel = line.ends[0].channel
     old, new, other = numbered(6, 3)
     for message in (old, other, old):
@@ -126,7 +128,7 @@ def test_the_maximum_timeout_leaves_time_for_the_other_end_s_frames() -> None:
 
 
 def test_frames_get_shorter_where_they_are_lost_and_longer_where_they_are_not() -> None:
-    line = Line(115_200, Noise(bits=1e-3))
+    line = NoisyLine(115_200, Noise(bits=1e-3))
     for message in numbered(18, 20_000):
         line.ends[0].channel.queue(message)
     counters = line.ends[0].channel.counters

@@ -20,31 +20,31 @@ KEY = 0x0001_0004
 BEACON = Beacon(time=5, right=0, left=1)
 
 
-def kept(frame: bytes, key: int = KEY, sent: bool = False) -> RecordedFrame:
+def recorded(frame: bytes, key: int = KEY, sent: bool = False) -> RecordedFrame:
     return RecordedFrame(1.5, sent, key, frame.removesuffix(b"\0"))
 
 
 def test_a_frame_is_described_by_its_numbers_and_bytes() -> None:
     line = Debug(time=1, level=1, text="hello")
     frame = build([line, line, Acknowledge(held=3)], 5, 12, KEY)
-    said = dissect(kept(frame))
-    assert said.kinds == ["Debug", "Debug", "Acknowledge"]
-    assert (said.reliable, said.open, said.number, said.acknowledged) == (True, False, 5, 12)
-    assert (said.time, said.sent, said.problem) == (1.5, False, "")
-    assert bytes.fromhex(said.bytes) == frame
+    answer = dissect(recorded(frame))
+    assert answer.kinds == ["Debug", "Debug", "Acknowledge"]
+    assert (answer.reliable, answer.open, answer.number, answer.acknowledged) == (True, False, 5, 12)
+    assert (answer.time, answer.sent, answer.problem) == (1.5, False, "")
+    assert bytes.fromhex(answer.bytes) == frame
 
 
 def test_unreliable_and_open_frames_are_distinguished() -> None:
-    said = dissect(kept(build([BEACON], 3000, 2, KEY), sent=True))
-    assert (said.kinds, said.reliable, said.open, said.number, said.sent) == (
+    answer = dissect(recorded(build([BEACON], 3000, 2, KEY), sent=True))
+    assert (answer.kinds, answer.reliable, answer.open, answer.number, answer.sent) == (
         ["Beacon"],
         False,
         False,
         3000,
         True,
     )
-    said = dissect(kept(build([Stop()], 0, 0, OPEN)))
-    assert (said.kinds, said.open, said.problem) == (["Stop"], True, "")
+    answer = dissect(recorded(build([Stop()], 0, 0, OPEN)))
+    assert (answer.kinds, answer.open, answer.problem) == (["Stop"], True, "")
 
 
 GOOD = build([BEACON], 1, 0, KEY)
@@ -67,10 +67,10 @@ CUT = assemble(encode(Hello(definitions=1, epoch=2, credit=3))[:-1], False, 1, 0
     ids=["bit", "session", "cobs", "short", "long", "nothing", "unknown", "length"],
 )
 def test_errors_are_named(frame: bytes, why: str) -> None:
-    assert why in dissect(kept(frame)).problem
+    assert why in dissect(recorded(frame)).problem
 
 
 @pytest.mark.parametrize("key", [OPEN, KEY])
 def test_a_valid_frame_is_never_called_wrong(key: int) -> None:
     for packets in ([Start(epoch=4)], [BEACON], [Debug(time=0, level=0, text="")]):
-        assert dissect(kept(build(packets, 7, 7, key))).problem == ""
+        assert dissect(recorded(build(packets, 7, 7, key))).problem == ""

@@ -33,7 +33,7 @@ def frames(data: bytes) -> list[Frame]:
 
 
 def raw(content: bytes) -> bytes:
-    """A frame of any content with a valid checksum; 0 as number, where it has one."""
+    """Return a frame of any content with a valid checksum; 0 as number, where it has one."""
     if content[1:2] != bytes([Debug.type]):
         content += b"\0"
     return cobs.encode(content + zlib.crc32(content).to_bytes(4, "little")) + b"\0"  # type: ignore[no-any-return]
@@ -44,8 +44,8 @@ def test_a_frame_carries_its_packets_and_numbers(some: list[Packet], number: int
     (frame,) = frames(build(some, number, 12))
     assert (frame.number, frame.acknowledged) == (number, 12)
     assert frame.reliable == (some is LINES)
-    assert [type_ for type_, _ in frame.messages] == [one.type for one in some]
-    assert [payload for _, payload in frame.messages] == [one.to_bytes() for one in some]
+    assert [type_ for type_, _ in frame.messages] == [packet.type for packet in some]
+    assert [payload for _, payload in frame.messages] == [packet.to_bytes() for packet in some]
 
 
 def test_a_frame_of_another_session_is_dropped() -> None:
@@ -59,14 +59,14 @@ def test_a_frame_of_another_session_is_dropped() -> None:
 
 @given(st.lists(st.integers(1, 20), max_size=40))
 def test_pieces_of_any_size_give_the_same_frames(cuts: list[int]) -> None:
-    data = b"".join(build([one], number, 0) for number, one in enumerate(SOME)) * 3
-    decoder, found, rest = Decoder(), [], data
+    data = b"".join(build([packet], number, 0) for number, packet in enumerate(SOME)) * 3
+    decoder, result, rest = Decoder(), [], data
     for cut in cuts:
-        found += list(decoder.feed(rest[:cut]))
+        result += list(decoder.feed(rest[:cut]))
         rest = rest[cut:]
-    found += list(decoder.feed(rest))
-    assert found == frames(data)
-    assert len(found) == 9
+    result += list(decoder.feed(rest))
+    assert result == frames(data)
+    assert len(result) == 9
     assert decoder.invalid == 0
 
 

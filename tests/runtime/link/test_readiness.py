@@ -8,15 +8,15 @@ from tests.runtime.link.line import KEY, PACKETS, numbered
 GIVEN = 24
 
 
-def told(acknowledged: int, held: int) -> Frame:
+def acknowledging(acknowledged: int, held: int) -> Frame:
     return Frame(0, acknowledged, False, False, ((Acknowledge.type, bytes([held])),))
 
 
-class Sender:
+class ReadySender:
     """A channel with eight full frames to send, and its sent frames."""
 
     def __init__(self) -> None:
-        self.channel = Channel(115_200, 4096, KEY, packets=PACKETS)
+        self.channel = Channel(115_200, 4096, KEY)
         self.now = 0.0
         self._decoder = Decoder(PACKETS)
         self._decoder.key = KEY
@@ -38,22 +38,22 @@ class Sender:
 
 
 def test_while_the_receiver_is_not_ready_only_the_oldest_frame_is_sent_once_a_second() -> None:
-    sender = Sender()
+    sender = ReadySender()
     first = sender.run(0.04)
     assert [number for _, number, _ in first[:3]] == [0, 1, 2]
-    sender.channel.receive(told(1, NOT_READY), sender.now)
+    sender.channel.receive(acknowledging(1, NOT_READY), sender.now)
     waited = sender.run(5.0)
     assert {number for _, number, _ in waited} == {1}
     assert len(waited) in (4, 5)
-    sender.channel.receive(told(1, 0), sender.now)
+    sender.channel.receive(acknowledging(1, 0), sender.now)
     after = sender.run(5.04)
     assert [number for _, number, _ in after[:6]] == [1, 2, 3, 4, 5, 6]
 
 
 def test_a_receiver_stays_not_ready_until_it_reports_readiness() -> None:
-    sender = Sender()
+    sender = ReadySender()
     sender.run(0.04)
-    sender.channel.receive(told(0, NOT_READY), sender.now)
+    sender.channel.receive(acknowledging(0, NOT_READY), sender.now)
     # A frame without this flag: telemetry, or a number in the other direction.
     sender.channel.receive(Frame(1, 0, False, False, numbered_message()), sender.now)
     assert len(sender.run(0.9)) <= 1
@@ -65,28 +65,28 @@ def numbered_message() -> Messages:
 
 
 def test_held_frames_are_not_sent_again() -> None:
-    sender = Sender()
+    sender = ReadySender()
     sender.run(0.04)
-    sender.channel.receive(told(0, NOT_READY | 0b1), sender.now)
-    sender.channel.receive(told(0, 0b1), sender.now)
+    sender.channel.receive(acknowledging(0, NOT_READY | 0b1), sender.now)
+    sender.channel.receive(acknowledging(0, 0b1), sender.now)
     assert 1 not in [number for _, number, _ in sender.run(0.06)]
 
 
 def test_dropped_frames_are_sent_again_as_soon_as_there_is_room() -> None:
-    sender = Sender()
+    sender = ReadySender()
     first = sender.run(0.04)
-    sender.channel.receive(told(0, NOT_READY), sender.now)
+    sender.channel.receive(acknowledging(0, NOT_READY), sender.now)
     sender.run(0.045)
-    sender.channel.receive(told(0, 0), sender.now)
+    sender.channel.receive(acknowledging(0, 0), sender.now)
     # Long before any of them would be taken for lost.
     again = sender.run(0.06)
     assert [number for _, number, _ in again[:2]] == [number for _, number, _ in first[:2]] == [0, 1]
 
 
 def test_frames_held_while_not_ready_are_sent_again_when_still_missing() -> None:
-    sender = Sender()
+    sender = ReadySender()
     sender.run(0.04)
-    sender.channel.receive(told(0, NOT_READY | 0b1), sender.now)
+    sender.channel.receive(acknowledging(0, NOT_READY | 0b1), sender.now)
     # The receiver holds the second frame, but had no room to deliver it, and waits for it again.
-    sender.channel.receive(told(1, 0), sender.now)
+    sender.channel.receive(acknowledging(1, 0), sender.now)
     assert 1 in [number for _, number, _ in sender.run(0.06)]

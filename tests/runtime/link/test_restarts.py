@@ -11,7 +11,7 @@ from robot_runtime.contract.packets import DEFINITIONS_HASH, Beacon, Debug, Hell
 from robot_runtime.link.framing import Decoder
 from robot_runtime.link.session import LinkSession, SessionStage, session_key
 from tests.line_end import LineEnd
-from tests.runtime.link.line import Noise, Wire
+from tests.runtime.link.line import Noise, NoisyWire
 
 BAUD = 115_200
 STEP = 0.004
@@ -20,7 +20,7 @@ NOISE = Noise(bits=1e-3, drops=0.05, doubles=0.1, inserts=0.05, bursts=0.05, del
 RESTARTS = 1000
 
 
-class World:
+class RestartTrial:
     """A host and a board; each sends the other numbers, and stores the received ones."""
 
     def __init__(self, seed: int) -> None:
@@ -84,9 +84,9 @@ class World:
             self._step_board()
             data = self._to_host.receive(self.now)
             self.at_host += [
-                int(Debug.from_bytes(one.payload).text)
-                for one in self.session.receive(data, self.now)
-                if one.type == Debug.type
+                int(Debug.from_bytes(message.payload).text)
+                for message in self.session.receive(data, self.now)
+                if message.type == Debug.type
             ]
             self._to_board.send(self.session.poll(self.now), self.now)
 
@@ -128,12 +128,12 @@ class World:
         self.owed_to_host.clear()
 
     def _set_line(self, noise: Noise) -> None:
-        self._to_board = Wire(BAUD, noise, self.chance)
-        self._to_host = Wire(BAUD, noise, self.chance)
+        self._to_board = NoisyWire(BAUD, noise, self.chance)
+        self._to_host = NoisyWire(BAUD, noise, self.chance)
 
 
 def test_a_thousand_restarts_lose_nothing_and_repeat_nothing() -> None:
-    world = World(7)
+    world = RestartTrial(7)
     for restart in range(RESTARTS):
         for _ in range(world.chance.randrange(4)):
             world.run(world.chance.uniform(0.0, 0.8))
@@ -147,7 +147,7 @@ def test_a_thousand_restarts_lose_nothing_and_repeat_nothing() -> None:
 
 
 def test_a_host_that_takes_a_greeting_for_the_host_before_it_joins_after_the_silence() -> None:
-    world = World(1)
+    world = RestartTrial(1)
     world.run(STEP)
     world.restart_board()
     world.restart_host()
@@ -165,7 +165,7 @@ class Restarts(RuleBasedStateMachine):
 
     def __init__(self) -> None:
         super().__init__()
-        self.world = World(1)
+        self.world = RestartTrial(1)
 
     @rule(seconds=st.floats(0.0, 1.5))
     def time_passes(self, seconds: float) -> None:

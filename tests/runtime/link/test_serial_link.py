@@ -38,7 +38,7 @@ class PatientClock:
             return self._seen - self._held
 
 
-class Host:
+class LinkedHost:
     """A serial link and its reports."""
 
     def __init__(self, path: Path) -> None:
@@ -74,14 +74,14 @@ def path(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def host(path: Path) -> Iterator[Host]:
-    host = Host(path)
+def host(path: Path) -> Iterator[LinkedHost]:
+    host = LinkedHost(path)
     host.connection.start()
     yield host
     host.connection.close()
 
 
-def connect(board: BoardEnd, host: Host) -> None:
+def connect(board: BoardEnd, host: LinkedHost) -> None:
     for _ in range(2):
         board.hear(Hello.type)
         board.say(hello())
@@ -89,14 +89,14 @@ def connect(board: BoardEnd, host: Host) -> None:
     host.wait(lambda: host.connection.connected and host.texts[-1] == "connected")
 
 
-def test_a_missing_port_is_awaited_and_reported(host: Host, path: Path) -> None:
+def test_a_missing_port_is_awaited_and_reported(host: LinkedHost, path: Path) -> None:
     host.wait(lambda: "does not exist" in host.connection.text)
     assert not host.connection.send(Stop())
     connect(BoardEnd(path), host)
     assert host.connection.text == "connected"
 
 
-def test_packets_pass_both_ways(host: Host, path: Path) -> None:
+def test_packets_pass_both_ways(host: LinkedHost, path: Path) -> None:
     board = BoardEnd(path)
     connect(board, host)
     assert host.connection.send(Stop())
@@ -106,17 +106,17 @@ def test_packets_pass_both_ways(host: Host, path: Path) -> None:
     assert host.connection.statistics().frames_received == 3
 
 
-def test_the_port_stays_open_while_the_board_pauses(host: Host, path: Path) -> None:
+def test_the_port_stays_open_while_the_board_pauses(host: LinkedHost, path: Path) -> None:
     board = BoardEnd(path)
     connect(board, host)
-    told = len(host.texts)
+    report = len(host.texts)
     for _ in range(4):
         board.hear(Heartbeat.type)
     assert host.connection.connected
-    assert len(host.texts) == told
+    assert len(host.texts) == report
 
 
-def test_a_port_that_vanishes_and_returns_is_reopened(host: Host, path: Path) -> None:
+def test_a_port_that_vanishes_and_returns_is_reopened(host: LinkedHost, path: Path) -> None:
     first = BoardEnd(path)
     connect(first, host)
     first.vanish()
@@ -128,7 +128,7 @@ def test_a_port_that_vanishes_and_returns_is_reopened(host: Host, path: Path) ->
 
 
 def test_after_an_error_in_what_handles_its_messages_the_link_comes_back(
-    host: Host, path: Path, caplog: pytest.LogCaptureFixture
+    host: LinkedHost, path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     board = BoardEnd(path)
     connect(board, host)
@@ -140,7 +140,7 @@ def test_after_an_error_in_what_handles_its_messages_the_link_comes_back(
 
 
 def test_the_last_frames_are_logged_when_the_port_vanishes(
-    host: Host, path: Path, caplog: pytest.LogCaptureFixture
+    host: LinkedHost, path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     board = BoardEnd(path)
     connect(board, host)
@@ -159,7 +159,7 @@ def test_the_last_frames_are_logged_when_the_port_vanishes(
     assert {frame.sent for frame in fault.frames} == {True, False}
 
 
-def test_a_line_of_text_is_acknowledged_soon(host: Host, path: Path) -> None:
+def test_a_line_of_text_is_acknowledged_soon(host: LinkedHost, path: Path) -> None:
     board = BoardEnd(path)
     connect(board, host)
     board.say(Debug(time=5, level=1, text="heard?"))
@@ -167,7 +167,7 @@ def test_a_line_of_text_is_acknowledged_soon(host: Host, path: Path) -> None:
     assert [message.payload[6:] for message in host.messages if message.type == Debug.type] == [b"heard?"]
 
 
-def test_garbage_on_the_line_is_counted_and_survived(host: Host, path: Path) -> None:
+def test_garbage_on_the_line_is_counted_and_survived(host: LinkedHost, path: Path) -> None:
     board = BoardEnd(path)
     connect(board, host)
     os.write(
@@ -179,7 +179,7 @@ def test_garbage_on_the_line_is_counted_and_survived(host: Host, path: Path) -> 
     assert host.connection.statistics().frames_invalid == 3
 
 
-def test_bytes_without_a_frame_lead_to_a_hint_at_the_speed(host: Host, path: Path) -> None:
+def test_bytes_without_a_frame_lead_to_a_hint_at_the_speed(host: LinkedHost, path: Path) -> None:
     board = BoardEnd(path)
     board.hear(Hello.type)
     os.write(board.master, bytes([0x80, 0xF8, 0xE0, 0x00]) * 100)
@@ -189,7 +189,7 @@ def test_bytes_without_a_frame_lead_to_a_hint_at_the_speed(host: Host, path: Pat
     assert host.connection.text == "connected"
 
 
-def test_other_definitions_are_refused_with_the_reason(host: Host, path: Path) -> None:
+def test_other_definitions_are_refused_with_the_reason(host: LinkedHost, path: Path) -> None:
     board = BoardEnd(path)
     board.hear(Hello.type)
     board.say(hello(definitions=0x1234ABCD))
@@ -215,7 +215,7 @@ def test_the_ports_that_are_there_are_listed_once_by_the_name_that_stays(tmp_pat
     (tmp_path / "serial/by-id/usb-1a86").symlink_to("../../ttyUSB1")
     (tmp_path / "serial0").symlink_to("ttyAMA0")
     assert list_ports(tmp_path) == [
-        str(tmp_path / one) for one in ("serial/by-id/usb-1a86", "serial0", "ttyS0")
+        str(tmp_path / path) for path in ("serial/by-id/usb-1a86", "serial0", "ttyS0")
     ]
 
 

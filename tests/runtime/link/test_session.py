@@ -7,6 +7,7 @@ import pytest
 from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     Beacon,
+    Countdown,
     Debug,
     Heartbeat,
     Hello,
@@ -33,7 +34,7 @@ def heard(data: bytes, key: int = KEY) -> list[Frame]:
     return list(decoder.feed(data))
 
 
-def said(data: bytes) -> list[int]:
+def kinds_of(data: bytes) -> list[int]:
     return [type_ for frame in heard(data) for type_, _ in frame.messages]
 
 
@@ -51,7 +52,7 @@ def established(now: float = 0.0) -> LinkSession:
 def greet(session: LinkSession, now: float) -> None:
     """Greeting of a board that sends HELLO by itself."""
     session.receive(build([hello()], 15, 0), now)
-    assert said(session.poll(now)) == [Hello.type]
+    assert kinds_of(session.poll(now)) == [Hello.type]
 
 
 def beacon(time: int = 0) -> Beacon:
@@ -61,13 +62,13 @@ def beacon(time: int = 0) -> Beacon:
 def test_hello_is_sent_until_answered_and_heartbeats_after_it() -> None:
     session = LinkSession(1, BAUD)
     greetings = b"".join(session.poll(step * 0.05) for step in range(21))
-    assert said(greetings) == [Hello.type] * 5
+    assert kinds_of(greetings) == [Hello.type] * 5
     greet(session, 1.0)
     session.receive(build([hello()], 0, 0), 1.01)
     assert session.stage is SessionStage.ESTABLISHED
     assert session.statistics().round_trip == pytest.approx(0.01)
     beats = b"".join(session.poll(1.01 + step * 0.025) for step in range(21))
-    assert said(beats) == [Heartbeat.type] * 4
+    assert kinds_of(beats) == [Heartbeat.type] * 4
 
 
 def test_on_a_slow_line_heartbeats_and_timeouts_follow_the_baud() -> None:
@@ -78,7 +79,7 @@ def test_on_a_slow_line_heartbeats_and_timeouts_follow_the_baud() -> None:
     now = 0.0
     while now < 1.0:
         if data := session.poll(now):
-            assert said(data) == [Heartbeat.type]
+            assert kinds_of(data) == [Heartbeat.type]
             beats.append(now)
         assert session.due() > now
         now = session.due()
@@ -113,7 +114,8 @@ def test_other_definitions_are_refused_until_the_board_has_the_right_ones() -> N
     session.receive(build([hello(definitions=0xDEAD)], 0, 0), 0.0)
     assert session.stage is SessionStage.REFUSED
     assert session.receive(build([beacon()], 1, 0), 0.1) == []
-    assert said(session.poll(5.0)) == [Hello.type]
+    assert session.send([Countdown(remaining=3.0)], 0.2) == b"", "its number may mean another packet there"
+    assert kinds_of(session.poll(5.0)) == [Hello.type]
     session.receive(build([hello(epoch=5)], 0, 0), 5.1)
     session.poll(5.1)
     session.receive(build([hello(epoch=5)], 1, 0), 5.1)
@@ -124,7 +126,7 @@ def test_a_silent_board_counts_as_lost_and_is_greeted_anew() -> None:
     session = established()
     session.poll(SILENCE)
     assert session.stage is SessionStage.ESTABLISHED
-    assert said(session.poll(SILENCE + 0.01)) == [Hello.type]
+    assert kinds_of(session.poll(SILENCE + 0.01)) == [Hello.type]
     assert session.stage is SessionStage.GREETING
     session.receive(build([hello()], 1, 0), SILENCE + 0.02)
     assert session.stage is SessionStage.ESTABLISHED
@@ -133,14 +135,14 @@ def test_a_silent_board_counts_as_lost_and_is_greeted_anew() -> None:
 def test_any_frame_of_the_session_counts_as_the_board_s_answer() -> None:
     session = LinkSession(1, BAUD)
     greet(session, 0.0)
-    assert [one.type for one in session.receive(keyed(beacon()), 0.1)] == [Beacon.type]
+    assert [message.type for message in session.receive(keyed(beacon()), 0.1)] == [Beacon.type]
     assert session.stage is SessionStage.ESTABLISHED
 
 
 def test_a_board_that_lost_the_session_is_greeted_anew() -> None:
     session = established()
     assert session.receive(build([beacon()], 0, 0), 0.1) == []
-    assert said(session.poll(0.1)) == [Hello.type]
+    assert kinds_of(session.poll(0.1)) == [Hello.type]
 
 
 def test_frames_of_another_session_are_dropped() -> None:
@@ -169,7 +171,7 @@ def test_after_a_silence_of_any_length_telemetry_counts_again() -> None:
     session = established()
     session.receive(keyed(beacon(), number=1), 0.1)
     for at in (20.0, 50.0, 90.0, 150.0):
-        assert said(session.poll(at)) == [Hello.type]
+        assert kinds_of(session.poll(at)) == [Hello.type]
         session.receive(build([hello()], 0, 0), at)
         number = int(1 + 110 * at) % UNRELIABLE_NUMBERS
         assert len(session.receive(keyed(beacon(), number=number), at)) == 1
@@ -181,10 +183,10 @@ def test_a_restarted_board_is_greeted_anew_and_counts_from_its_own_start() -> No
     session.send([Start(epoch=4)], 0.1)
     session.receive(build([hello(epoch=5)], 0, 0), 0.2)
     assert session.stage is SessionStage.GREETING
-    assert said(session.poll(0.2)) == [Hello.type]
+    assert kinds_of(session.poll(0.2)) == [Hello.type]
     session.receive(build([hello(epoch=5)], 0, 0), 0.21)
     assert session.stage is SessionStage.ESTABLISHED
-    assert Start.type not in said(session.poll(1.0))
+    assert Start.type not in kinds_of(session.poll(1.0))
     session.receive(build([beacon()], 0, 0, session_key(1, 5)), 0.3)
     assert session.statistics().frames_missed == 0
     assert session.statistics().messages_discarded == 1
@@ -194,13 +196,13 @@ def test_a_restarted_board_is_greeted_anew_and_counts_from_its_own_start() -> No
 
 def test_a_start_is_repeated_until_it_is_acknowledged() -> None:
     session = established(0.9)
-    assert said(session.send([Start(epoch=4)], 1.0)) == [Start.type]
+    assert kinds_of(session.send([Start(epoch=4)], 1.0)) == [Start.type]
     assert session.urgent
-    assert said(session.send([Start(epoch=4)], 1.05)) == []
-    assert Start.type in said(session.poll(1.2) + session.poll(1.21))
+    assert kinds_of(session.send([Start(epoch=4)], 1.05)) == []
+    assert Start.type in kinds_of(session.poll(1.2) + session.poll(1.21))
     session.receive(keyed(beacon(), acknowledged=1), 1.25)
     assert not session.urgent
-    assert Start.type not in said(session.poll(1.5) + session.poll(1.6))
+    assert Start.type not in kinds_of(session.poll(1.5) + session.poll(1.6))
 
 
 def test_stop_is_sent_at_once_and_voids_a_pending_start() -> None:
@@ -214,7 +216,7 @@ def test_stop_is_sent_at_once_and_voids_a_pending_start() -> None:
 
 
 def test_stop_is_sent_before_any_answer_of_the_board() -> None:
-    assert said(LinkSession(1, BAUD).send([Stop(), Start(epoch=1)], 0.0)) == [Stop.type]
+    assert kinds_of(LinkSession(1, BAUD).send([Stop(), Start(epoch=1)], 0.0)) == [Stop.type]
 
 
 def test_on_a_slow_line_only_the_newest_command_is_sent_unless_expired() -> None:
@@ -223,24 +225,24 @@ def test_on_a_slow_line_only_the_newest_command_is_sent_unless_expired() -> None
     commands = [Navigation(x=0.0, y=0.0, z=z, roll=0.0, pitch=0.0, yaw=0.0) for z in (0.1, 0.2, 0.3)]
     session.send([Stop()], 0.0)
     assert session.send(commands[:2], 0.01) == b""
-    taken = [one for frame in heard(session.poll(0.2)) for one in frame.messages]
+    taken = [message for frame in heard(session.poll(0.2)) for message in frame.messages]
     assert (Navigation.type, commands[1].to_bytes()) in taken
     assert (Navigation.type, commands[0].to_bytes()) not in taken
     session.send([Stop()] * 4, 0.3)
     session.send(commands[2:], 0.31)
-    assert Navigation.type not in said(session.poll(0.9))
+    assert Navigation.type not in kinds_of(session.poll(0.9))
 
 
 def test_lines_pass_in_order_and_are_acknowledged() -> None:
     session = established()
     lines = [Debug(time=0, level=1, text=text) for text in ("one", "two", "three")]
     first, second, third = (keyed(line, number=number) for number, line in enumerate(lines))
-    assert [one.type for one in session.receive(first + third + third, 1.0)] == [Debug.type]
+    assert [message.type for message in session.receive(first + third + third, 1.0)] == [Debug.type]
     (answer,) = heard(session.poll(1.02))
     assert answer.acknowledged == 1
     assert answer.messages[-1] == (0x0D, b"\x01")
     passed = session.receive(second + first, 1.03)
-    assert [one.payload for one in passed] == [encode(line)[1:] for line in lines[1:]]
+    assert [message.payload for message in passed] == [encode(line)[1:] for line in lines[1:]]
     assert {frame.acknowledged for frame in heard(session.poll(1.05))} == {3}
 
 

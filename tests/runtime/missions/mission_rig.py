@@ -1,6 +1,7 @@
 """A mission runner in simulated time without a board; the test sets what the robot measures and its mode."""
 
 from collections.abc import Callable
+from functools import partial
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config
@@ -12,6 +13,7 @@ from robot_runtime.missions.document import read_mission
 from robot_runtime.missions.node import LoadedMission, MissionRunner
 from robot_runtime.missions.senses import MissionSenses
 from robot_runtime.transport.outbox import Outbox
+from robot_runtime.vision.node import VisionNode
 
 TICK = 0.1
 """s between two ticks of the control loop."""
@@ -34,7 +36,7 @@ class SetSenses(MissionSenses):
         return 0.0
 
     def sees(self, what: str) -> bool:
-        """True if the test shows it."""
+        """Return True if the test shows it."""
         return self.look(what)
 
 
@@ -45,7 +47,16 @@ class MissionRig:
         config, self.clock = Config(), SimulatedClock()
         line = LinkDriver("", config.link.baud, self.clock, 1, lambda _: None, lambda: None)
         outbox = Outbox(lambda *_: None, lambda _: False)
-        self.core = core = Core(config, self.clock, "", line, outbox, watched=lambda _: False)
+        open_vision = partial(VisionNode, config.vision, self.clock)
+        self.core = core = Core(
+            config,
+            self.clock,
+            "",
+            line,
+            outbox,
+            watched=lambda _: False,
+            open_vision=open_vision,
+        )
         self.senses = SetSenses(core.bus, self.clock, core.control, core.supervisor.detector, core.vision)
         self.documents: list[Mission] = []
         self.events: list[Event] = []
@@ -66,22 +77,22 @@ class MissionRig:
         return self.documents[-1]
 
     def prepare(self, text: str) -> None:
-        """Has a mission begin with the next tick."""
+        """Have a mission begin with the next tick."""
         self.runner.prepare(LoadedMission(read_mission(text), text))
 
     def tick(self, seconds: float = TICK, mode: Mode = "automatic") -> None:
-        """Ticks the mission for this time."""
+        """Tick the mission for this time."""
         for _ in range(round(seconds / TICK)):
             self.runner.tick(mode)
             self.clock.forward(TICK)
 
     def swim(self, text: str) -> Mission:
-        """Ticks a mission until it ends; returns its last document."""
+        """Tick a mission until it ends; return its last document."""
         self.prepare(text)
         while self.runner.active:
             self.tick()
         return self.last
 
     def status(self, path: str) -> str:
-        """The status of a step in the newest document."""
-        return next(one.status for one in self.last.steps if one.path == path)
+        """Return the status of a step in the newest document."""
+        return next(step.status for step in self.last.steps if step.path == path)

@@ -1,5 +1,6 @@
 """Random missions with a robot that measures anything."""
 
+from functools import partial
 from math import inf
 from random import Random
 from typing import Any
@@ -16,6 +17,7 @@ from robot_runtime.missions.document import read_mission
 from robot_runtime.missions.node import LoadedMission, MissionRunner
 from robot_runtime.missions.senses import MissionSenses
 from robot_runtime.transport.outbox import Outbox
+from robot_runtime.vision.node import VisionNode
 from tests.runtime.missions.water import mission
 
 TICK = 0.1
@@ -37,6 +39,7 @@ LEAVES = (
     | _leaf("hold", seconds=SECONDS, within=st.sampled_from([0.2, 2.0]))
     | _leaf("turn", by=st.sampled_from([-1.0, 1.0]), timeout=SECONDS)
     | _leaf("swim", x=st.just(0.5), seconds=SECONDS)
+    | _leaf("go", distance=st.just(0.5), heading=st.sampled_from([-1.0, 1.0]), timeout=SECONDS)
     | _leaf("to_light", timeout=SECONDS, lost=SECONDS)
     | _leaf("wait_for", sees=st.just("light"), timeout=SECONDS)
     | _leaf("set", parameter=st.just(GAIN), value=st.sampled_from([2.0, 4.0]))
@@ -63,7 +66,7 @@ def _branches(steps: st.SearchStrategy[dict[str, Any]]) -> st.SearchStrategy[dic
 
 
 def count_levels(step: dict[str, Any]) -> int:
-    """The levels of a step and those below it."""
+    """Return the levels of a step and those below it."""
     return 1 + max(map(count_levels, step.get("steps", [])), default=0)
 
 
@@ -71,14 +74,14 @@ STEPS = st.recursive(LEAVES, _branches, max_leaves=12).filter(lambda step: count
 
 
 def write(step: dict[str, Any]) -> str:
-    """The step as an inline table."""
+    """Return the step as an inline table."""
 
-    def value(one: Any) -> str:
-        if isinstance(one, list):
-            return f"[{', '.join(map(write, one))}]"
-        return f"'{one}'" if isinstance(one, str) else f"{one}"
+    def value(entry: Any) -> str:
+        if isinstance(entry, list):
+            return f"[{', '.join(map(write, entry))}]"
+        return f"'{entry}'" if isinstance(entry, str) else f"{entry}"
 
-    return "{ " + ", ".join(f"{name} = {value(one)}" for name, one in step.items()) + " }"
+    return "{ " + ", ".join(f"{name} = {value(entry)}" for name, entry in step.items()) + " }"
 
 
 class AnySenses(MissionSenses):
@@ -97,6 +100,11 @@ class AnySenses(MissionSenses):
         return self.random.uniform(-3.0, 3.0)
 
     @property
+    def way(self) -> tuple[float, float]:
+        """m."""
+        return self.random.uniform(-1.0, 1.0), self.random.uniform(-1.0, 1.0)
+
+    @property
     def light(self) -> bool:
         """True in one of three draws."""
         return self.random.random() < 0.3
@@ -109,7 +117,16 @@ class Swim:
         config, self.clock = Config(), SimulatedClock()
         line = LinkDriver("", config.link.baud, self.clock, 1, lambda _: None, lambda: None)
         outbox = Outbox(lambda *_: None, lambda _: False)
-        core = Core(config, self.clock, "", line, outbox, watched=lambda _: False)
+        open_vision = partial(VisionNode, config.vision, self.clock)
+        core = Core(
+            config,
+            self.clock,
+            "",
+            line,
+            outbox,
+            watched=lambda _: False,
+            open_vision=open_vision,
+        )
         senses = AnySenses(core.bus, self.clock, core.control, core.supervisor.detector, core.vision)
         senses.random = Random(seed)
         self.core = core
@@ -138,18 +155,18 @@ class Swim:
 
 
 def check_failure(last: Mission) -> None:
-    """Fails unless the mission's end names a failed step below failed ones alone, with its words."""
-    states = {one.path: one for one in last.steps}
-    where, _, said = last.text.partition(": ")
+    """Fail unless the mission's end names a failed step below failed ones alone, with its words."""
+    states = {step.path: step for step in last.steps}
+    where, _, answer = last.text.partition(": ")
     path = "" if where == "The mission" else where.removeprefix("Step ").split(",")[0]
-    assert (states[path].status, states[path].text) == ("failed", said)
+    assert (states[path].status, states[path].text) == ("failed", answer)
     while path:
         path = path.rpartition(".")[0]
         assert states[path].status == "failed"
 
 
 def check_random_mission(steps: list[dict[str, Any]], seed: int) -> None:
-    """Swims a mission of these steps. Fails where it does not end in its time, or leaves something behind."""
+    """Swim a mission of these steps. Fails where it does not end in its time, or leaves something behind."""
     text = mission(*map(write, steps), limits="time = 3600")
     swum = Swim(text, seed)
     last = swum.documents[-1]
@@ -158,7 +175,7 @@ def check_random_mission(steps: list[dict[str, Any]], seed: int) -> None:
     assert "An error in the software" not in last.text
     assert last.elapsed <= swum.document.longest + ROUNDING
     assert not any(step.status == "running" for step in last.steps)
-    progress = [one.progress for one in swum.documents]
+    progress = [document.progress for document in swum.documents]
     assert progress == sorted(progress)
     if last.phase == "failed":
         check_failure(last)

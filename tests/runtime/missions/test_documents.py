@@ -12,7 +12,7 @@ from tests.runtime.missions.water import DIVE, HEAD, HOLD, mission
 
 
 def problems(text: str, library: dict[str, str] | None = None, **limits: float) -> list[str]:
-    """The problems of a text; it must have some."""
+    """Return the problems of a text; it must have some."""
     with pytest.raises(ConfigError) as refused:
         read_mission(text, library, MissionLimits(**limits))
     return refused.value.texts
@@ -42,26 +42,26 @@ def test_every_problem_is_told_with_its_place() -> None:
         "7",
     )
     text = text.replace('name = "test"', 'name = "T est"').replace("time = 200", "time = 9000")
-    told = problems(text)
-    assert told[0].startswith("name is 'T est'")
-    assert told[1] == "limits: time is 9000; it must lie between 1 and 3600"
-    assert told[2] == "step 1: depth is 11; it must lie between 0 and 10"
-    assert told[3].startswith("step 2: do is 'fly'; it must be one of ")
-    assert told[4] == "step 3.1: needs heading or by, one of the two"
-    assert told[5].startswith("step 3.2: 'x' is not known here")
-    assert told[6] == "step 3.2: seconds is 1000000000.0; it must lie between 0.1 and 3600"
-    assert told[7] == "step 4: steps 4.1 and 4.2 would both steer the depth, side by side"
-    assert told[8] == "step 5: its first step must be a condition (is)"
-    assert told[9] == "step 6: steps has 1; while_true needs 2 at least"
-    assert told[10] == "step 7 must be a table"
-    assert len(told) == 11
+    report = problems(text)
+    assert report[0].startswith("name is 'T est'")
+    assert report[1] == "limits: time is 9000; it must lie between 1 and 3600"
+    assert report[2] == "step 1: depth is 11; it must lie between 0 and 10"
+    assert report[3].startswith("step 2: do is 'fly'; it must be one of ")
+    assert report[4] == "step 3.1: needs heading or by, one of the two"
+    assert report[5].startswith("step 3.2: 'x' is not known here")
+    assert report[6] == "step 3.2: seconds is 1000000000.0; it must lie between 0.1 and 3600"
+    assert report[7] == "step 4: steps 4.1 and 4.2 would both steer the depth, side by side"
+    assert report[8] == "step 5: its first step must be a condition (is)"
+    assert report[9] == "step 6: steps has 1; while_true needs 2 at least"
+    assert report[10] == "step 7 must be a table"
+    assert len(report) == 11
 
 
 def test_a_document_only_tightens_the_robots_limits() -> None:
     text = mission(DIVE, limits="depth = 2.0\ntime = 100", head=HEAD.replace("alone = 0", "alone = 99"))
     assert problems(text, depth=1.5, time=50.0, alone=60.0) == [
         "alone is 99 s; robot.toml allows 60 s ([missions] alone)",
-        "limits.depth is 2 m; robot.toml allows 1.5 m ([missions] depth)",
+        "limits.depth is 2 m; robot.toml allows 1.5 m ([missions] depth, [control] deepest)",
         "limits.time is 100 s; robot.toml allows 50 s ([missions] time)",
     ]
     assert read_mission(text).limits.depth == 2.0
@@ -75,8 +75,8 @@ def test_a_document_only_tightens_the_robots_limits() -> None:
 
 def test_the_depth_and_the_longest_time_must_fit_the_limits() -> None:
     steps = "{ do = 'repeat', times = 5, steps = [" + HOLD + "] }"
-    told = problems(mission(DIVE, steps, limits="depth = 0.5\ntime = 60"))
-    assert told == [
+    report = problems(mission(DIVE, steps, limits="depth = 0.5\ntime = 60"))
+    assert report == [
         "step 1 goes to 0.6 m, and the depth is limited to 0.5 m",
         "mission may take 71 s, and limits.time is 60 s; shorten its timeouts and repetitions",
     ]
@@ -88,7 +88,7 @@ def test_calls_are_read_from_the_library_and_circles_are_refused() -> None:
 
     library = {"a": call("b", "a"), "b": mission(HOLD, limits="depth = 1.0"), "c": call("c", "c")}
     read = read_mission(call("a", "test"), library)
-    assert [one.place for one in read.root.walk()] == [
+    assert [step.number for step in read.root.walk()] == [
         "",
         "1",
         "2",
@@ -122,7 +122,7 @@ def test_a_called_mission_that_goes_too_deep_is_a_problem_of_the_call() -> None:
         f"step 2: mission is 'deep': step 2 {goes}",
         f"step 3: mission is 'way': step 1: mission is 'deep': step 2 {goes}",
     ]
-    assert [getattr(one, "path", None) for one in refused.value.problems] == [
+    assert [getattr(problem, "path", None) for problem in refused.value.problems] == [
         ("mission", "steps", 1, "mission"),
         ("mission", "steps", 2, "mission"),
     ]
@@ -147,16 +147,16 @@ def test_a_document_of_any_size_is_refused_in_bounded_time() -> None:
     ]
     assert "is larger than" in problems(mission(*["{ do = 'surface' }"] * 10_000))[0]
     fork = {f"m{i}": mission(*[f"{{ do = 'call', mission = 'm{i + 1}' }}"] * 9) for i in range(8)}
-    assert any("has more than 200 steps" in one for one in problems(fork["m0"], fork))
+    assert any("has more than 200 steps" in problem for problem in problems(fork["m0"], fork))
     # As deep as the bytes allow.
     steep = "{ do = 'try', steps = [" * 2_200 + DIVE + "] }" * 2_200
     assert problems(mission(steep)) == ["the mission is not TOML: it is nested too deeply"]
     ring = {f"m{i}": fork["m0"].replace("'m1'", f"'m{(i + 1) % 3}'") for i in range(3)}
-    assert any("which would call itself" in one for one in problems(ring["m0"], ring))
+    assert any("which would call itself" in problem for problem in problems(ring["m0"], ring))
 
 
 @pytest.mark.parametrize(
-    ("step", "said"),
+    ("step", "answer"),
     [
         ("{ do = 'hold', seconds = 3601 }", "seconds is 3601; it must lie between 0.1 and 3600"),
         ("{ do = 'hold', seconds = -1 }", "seconds is -1; it must lie between 0.1 and 3600"),
@@ -176,12 +176,14 @@ def test_a_document_of_any_size_is_refused_in_bounded_time() -> None:
         ('{ do = "mark", text = "a\\u0000b" }', "text has 1 to"),
     ],
 )
-def test_values_beyond_their_limits_are_refused_at_their_step(step: str, said: str) -> None:
-    assert any(one.startswith("step 2: ") and said in one for one in problems(mission(DIVE, step)))
+def test_values_beyond_their_limits_are_refused_at_their_step(step: str, answer: str) -> None:
+    assert any(
+        problem.startswith("step 2: ") and answer in problem for problem in problems(mission(DIVE, step))
+    )
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "output"),
     [
         ("", "format is missing"),
         ("mission = 3", "mission must be a table"),
@@ -192,9 +194,9 @@ def test_values_beyond_their_limits_are_refused_at_their_step(step: str, said: s
         ("speed = 1\n" + mission(DIVE), "is not known here; known are format, name"),
     ],
 )
-def test_the_head_is_read_strictly(text: str, said: str) -> None:
-    if said:
-        assert any(said in one for one in problems(text))
+def test_the_head_is_read_strictly(text: str, output: str) -> None:
+    if output:
+        assert any(output in problem for problem in problems(text))
     else:
         read_mission(text)
 
@@ -204,4 +206,4 @@ def test_every_leaf_tells_its_meaning_and_fits_one_line() -> None:
         assert cls.__doc__
         assert cls.do == name
         if issubclass(cls, Leaf):
-            assert "words" in dir(cls)
+            assert "label" in dir(cls)

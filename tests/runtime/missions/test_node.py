@@ -42,7 +42,7 @@ def test_the_steps_of_a_repetition_have_not_begun_again() -> None:
     rig = MissionRig()
     _second_round(rig)
     rig.tick()
-    done = {one.path: one.status for one in rig.last.steps if one.status != "waiting"}
+    done = {step.path: step.status for step in rig.last.steps if step.status != "waiting"}
     assert done == {"": "running", "1": "running", "1.1": "running"}
 
 
@@ -59,7 +59,7 @@ UNSEEN = "{ do = 'wait_for', sees = 'red', timeout = 1 }"
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "answer"),
     [
         (
             mission(
@@ -84,14 +84,14 @@ UNSEEN = "{ do = 'wait_for', sees = 'red', timeout = 1 }"
     ],
     ids=["a try", "a first_of", "the mission itself"],
 )
-def test_the_step_by_which_it_failed_is_named(text: str, said: str) -> None:
-    assert MissionRig().swim(text).text == said
+def test_the_step_by_which_it_failed_is_named(text: str, answer: str) -> None:
+    assert MissionRig().swim(text).text == answer
 
 
 def test_progress_is_steady_over_the_rounds_of_a_repetition() -> None:
     rig = MissionRig()
     rig.swim(mission("{ do = 'repeat', times = 4, steps = [{ do = 'hold', seconds = 2 }] }"))
-    progress = [one.progress for one in rig.documents]
+    progress = [document.progress for document in rig.documents]
     assert progress == sorted(progress)
     assert progress[-2] < 1.0
 
@@ -108,14 +108,14 @@ def test_what_failed_in_a_first_of_stays_failed_while_the_next_one_runs() -> Non
         if (now := {path: rig.status(path) for path in states}) != states:
             states = now
             seen.append(tuple(now.values()))
-    one = [
+    lines = [
         ("running", "waiting", "waiting"),
         ("failed", "running", "waiting"),
         ("failed", "failed", "running"),
         ("failed", "failed", "done"),
     ]
-    assert seen == [*one, *one]
-    progress = [one.progress for one in rig.documents]
+    assert seen == [*lines, *lines]
+    progress = [document.progress for document in rig.documents]
     assert progress == sorted(progress)
 
 
@@ -123,5 +123,5 @@ def test_a_marker_beyond_its_dictionary_is_refused() -> None:
     rig = MissionRig()
     rig.core.set_vision(VisionSettings(markers="4x4_50"))
     assert rig.senses.check_sight("marker 49") == ""
-    said = "There is no marker 50 in the dictionary 4x4_50; its last is marker 49."
-    assert rig.senses.check_sight("marker 50") == said
+    answer = "There is no marker 50 in the dictionary 4x4_50; its last is marker 49."
+    assert rig.senses.check_sight("marker 50") == answer

@@ -10,12 +10,12 @@ HOLD = "{ do = 'hold', seconds = 8 }"
 
 
 def mission(*steps: str, limits: str = "time = 200", do: str = "sequence", head: str = HEAD) -> str:
-    """The text of a mission of these steps, each an inline table."""
+    """Return the text of a mission of these steps, each an inline table."""
     return f"{head}[limits]\n{limits}\n[mission]\ndo = '{do}'\nsteps = [\n  " + ",\n  ".join(steps) + "\n]\n"
 
 
 def begin(text: str, at: float = 1.0) -> str:
-    """The event that begins a mission."""
+    """Return the event that begins a mission."""
     return (
         f'at = {at}; do = "mission"; text = '
         + '"""'
@@ -25,24 +25,27 @@ def begin(text: str, at: float = 1.0) -> str:
 
 
 def swim(seconds: float, text: str, *events: str, seed: int = 7, more: str = "", board: str = "host") -> Told:
-    """Performs a scenario with a mission that begins after a second."""
+    """Perform a scenario with a mission that begins after a second."""
     return perform(document(seconds, begin(text), *events, seed=seed, more=more), board)
 
 
-def end_of(told: Told) -> dict[str, Any]:
-    """The last document of the mission."""
-    last = told.documents["mission"][-1]
-    assert last["phase"] not in ("running", "paused")
-    return last
+def end_of(report: Told) -> dict[str, Any]:
+    """Return the document of the mission's end; one more may follow when the robot has surfaced."""
+    documents = report.documents["mission"]
+    return next(
+        state
+        for state in documents
+        if state["number"] == documents[-1]["number"] and state["phase"] not in ("running", "paused")
+    )
 
 
 def statuses(document: dict[str, Any]) -> dict[str, str]:
-    """The statuses of the steps by path."""
-    return {one["path"]: one["status"] for one in document["steps"]}
+    """Return the statuses of the steps by path."""
+    return {step["path"]: step["status"] for step in document["steps"]}
 
 
-def is_at_rest(told: Told, since: float) -> bool:
-    """True if the board was told nothing but rest, and its fins stopped."""
-    late = told.between("navigation", since, 1e9)
-    last = told.rows["motor"][-1][1]
+def is_at_rest(report: Told, since: float) -> bool:
+    """Return True if the board was told nothing but rest, and its fins stopped."""
+    late = report.between("navigation", since, 1e9)
+    last = report.rows["motor"][-1][1]
     return not late and not any(last.drive)

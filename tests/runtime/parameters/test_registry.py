@@ -13,7 +13,7 @@ from robot_runtime.parameters.entry import Entry
 from robot_runtime.parameters.registry import Registry
 
 
-class Box:
+class ParameterBox:
     """An object with parameters."""
 
     def __init__(self) -> None:
@@ -60,7 +60,7 @@ class Box:
     ],
 )
 def test_invalid_values_are_refused_and_nothing_is_set(values: dict[str, Any], why: str) -> None:
-    box = Box()
+    box = ParameterBox()
     before = dict(box.held)
     with pytest.raises(RefusedError) as refused:
         box.registry.apply({"b": -1, **values})
@@ -70,7 +70,7 @@ def test_invalid_values_are_refused_and_nothing_is_set(values: dict[str, Any], w
 
 
 def test_each_type_is_set_unchanged() -> None:
-    box = Box()
+    box = ParameterBox()
     box.registry.apply({"a": 4, "count": 5, "kind": "y", "on": True})
     assert box.registry.values() == box.held
     assert box.held == {"a": 4.0, "b": 2.0, "count": 5, "kind": "y", "on": True, "rest": 0.0}
@@ -83,7 +83,7 @@ ANYTHING = st.one_of(st.floats(), st.integers(), st.text(), st.booleans(), st.no
 
 @given(values=st.dictionaries(st.sampled_from(["a", "b", "count", "kind", "on", "nothing"]), ANYTHING))
 def test_any_request_is_applied_completely_or_not_at_all(values: dict[str, Any]) -> None:
-    box = Box()
+    box = ParameterBox()
     before = dict(box.held)
     try:
         box.registry.apply(values)
@@ -95,7 +95,7 @@ def test_any_request_is_applied_completely_or_not_at_all(values: dict[str, Any])
 
 
 def test_a_partial_change_sets_valid_values_and_gives_reasons_for_the_rest() -> None:
-    box = Box()
+    box = ParameterBox()
     left_out = box.registry.apply({"a": 4, "b": 9, "gone": 1}, partly=True)
     assert (box.held["a"], box.held["b"]) == (4.0, 2.0)
     assert left_out == {
@@ -105,7 +105,7 @@ def test_a_partial_change_sets_valid_values_and_gives_reasons_for_the_rest() -> 
 
 
 def test_parameters_for_a_disarmed_robot_are_refused_while_armed() -> None:
-    box = Box()
+    box = ParameterBox()
     box.armed = True
     with pytest.raises(RefusedError, match="rest can only be changed while the robot is disarmed"):
         box.registry.apply({"rest": 1, "a": 4})
@@ -115,7 +115,7 @@ def test_parameters_for_a_disarmed_robot_are_refused_while_armed() -> None:
 
 
 def test_nothing_is_set_where_present_values_differ_from_the_expected() -> None:
-    box = Box()
+    box = ParameterBox()
     with pytest.raises(RefusedError, match="and not 3 any more"):
         box.registry.apply({"a": 2}, expected={"a": 3})
     box.registry.apply({"a": 2}, expected={"a": 1})
@@ -123,28 +123,28 @@ def test_nothing_is_set_where_present_values_differ_from_the_expected() -> None:
 
 
 def test_what_differs_from_the_expected_is_left_out_of_a_partial_change() -> None:
-    box = Box()
+    box = ParameterBox()
     left_out = box.registry.apply({"a": 2, "b": 4.0}, expected={"a": 3}, partly=True)
     assert (box.held["a"], box.held["b"]) == (1.0, 4.0)
     assert left_out.keys() == {"a"}
 
 
 def test_changes_are_reported_with_the_previous_values() -> None:
-    box = Box()
+    box = ParameterBox()
     with box.registry.changing() as changed:
         box.registry.apply({"a": 4, "b": 2.0})
     assert changed == {"a": (1.0, 4.0)}
 
 
 def test_defaults_are_the_values_at_the_start() -> None:
-    box = Box()
+    box = ParameterBox()
     box.registry.apply({"a": 4})
-    listed = {one.name: one for one in box.registry.listed()}
+    listed = {parameter.name: parameter for parameter in box.registry.listed()}
     assert (listed["a"].value, listed["a"].default) == (4.0, 1.0)
 
 
 def test_a_change_waits_for_the_running_tick() -> None:
-    box = Box()
+    box = ParameterBox()
     changed = threading.Event()
 
     def change() -> None:

@@ -1,6 +1,7 @@
 """The whole robot without its threads: a control tick sees all of a change or none of it."""
 
 import threading
+from functools import partial
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ from robot_runtime.control.controllers.pid import Pid
 from robot_runtime.core import Core
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox
+from robot_runtime.vision.node import VisionNode
 
 TICK_SECONDS = 0.1
 """Real s for which a change has the chance to come into the middle of a tick."""
@@ -31,7 +33,11 @@ class Swimmer(Core):
         clock = SimulatedClock()
         line = LinkDriver("none", 250_000, clock, 1, lambda _: None, lambda: None)
         outbox = Outbox(lambda *_: None, lambda _: False)
-        super().__init__(Config(), clock, "0" * 16, line, outbox, watched=lambda _: False)
+        config = Config()
+        open_vision = partial(VisionNode, config.vision, clock)
+        super().__init__(
+            config, clock, "0" * 16, line, outbox, watched=lambda _: False, open_vision=open_vision
+        )
         self.control.set_loop("depth", controller="pid", gains={"kp": 1, "ki": 1, "kd": 1})
         self.supervisor.mode = "automatic"
         self.control.change_mode("automatic")
@@ -92,11 +98,11 @@ def test_other_commands_change_parameters_and_report_the_changes() -> None:
 def test_every_parameter_accepts_its_default_and_has_a_meaning() -> None:
     robot = Swimmer()
     robot.supervisor.mode = "disarmed"
-    for one in robot.parameters.listed():
-        assert one.meaning
-        robot.parameters.apply({one.name: one.default})
-        if one.type == "number":
-            assert one.minimum is not None
-            assert one.maximum is not None
-            robot.parameters.apply({one.name: one.minimum})
-            robot.parameters.apply({one.name: one.maximum})
+    for parameter in robot.parameters.listed():
+        assert parameter.meaning
+        robot.parameters.apply({parameter.name: parameter.default})
+        if parameter.type == "number":
+            assert parameter.minimum is not None
+            assert parameter.maximum is not None
+            robot.parameters.apply({parameter.name: parameter.minimum})
+            robot.parameters.apply({parameter.name: parameter.maximum})

@@ -10,8 +10,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -26,6 +25,7 @@ from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.zenoh_transport import Answer, ZenohTransport
 from tests.runtime.simulation.water.harness import QUIET
+from tests.waiting import wait_for
 
 DEADLINE = 30.0
 """s until what must come is given up, on a busy computer."""
@@ -33,18 +33,11 @@ RESTING = b"fins 0 0 0 0 0 0 0 0 0 0 0 0 0 1 1\n"
 DIVING = b"fins 0 -1.57 -1.57 -1.57 -1.57 12 12 12 12 40 40 40 40 1 1\n"
 
 
-def wait_for(condition: Callable[[], bool], what: str) -> None:
-    end = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < end, f"no {what} within {DEADLINE} s"
-        time.sleep(0.005)
-
-
 def ask(messages: ZenohTransport, name: str, question: dict[str, object]) -> Answer:
     return messages.query(f"simulator/{name}", question, DEADLINE)
 
 
-class Board:
+class SocketBoard:
     """The board's end of the socket, played by the test."""
 
     def __init__(self, path: Path) -> None:
@@ -54,7 +47,7 @@ class Board:
         self._listener.settimeout(DEADLINE)
 
     def accept(self) -> str:
-        """Wait for a connection of the water; returns its first line."""
+        """Wait for a connection of the water; return its first line."""
         self.hang_up()
         self.line, _ = self._listener.accept()
         self.line.settimeout(DEADLINE)
@@ -65,7 +58,7 @@ class Board:
         return self._reader.readline().strip()
 
     def exchange(self, fins: bytes = RESTING) -> list[float]:
-        """The numbers in the water's answer to a line; what it says of devices before is passed over."""
+        """Return the numbers in the water's answer to a line, without its lines about devices."""
         self.line.sendall(fins)
         while (answer := self.hear()).startswith("fault "):
             pass
@@ -92,8 +85,8 @@ def folder() -> Iterator[Path]:
 
 
 @pytest.fixture
-def board(folder: Path) -> Iterator[Board]:
-    made = Board(folder / "board")
+def board(folder: Path) -> Iterator[SocketBoard]:
+    made = SocketBoard(folder / "board")
     yield made
     made.close()
 
@@ -111,7 +104,7 @@ def clock() -> SimulatedClock:
 
 @pytest.fixture
 def process(
-    folder: Path, board: Board, messages: ZenohTransport, clock: SimulatedClock
+    folder: Path, board: SocketBoard, messages: ZenohTransport, clock: SimulatedClock
 ) -> Iterator[WaterProcess]:
     del board
     made = WaterProcess(Simulator(QUIET, seed=1), folder / "board", messages, clock)
@@ -125,19 +118,19 @@ def process(
 
 @pytest.mark.usefixtures("process")
 class TestAttached:
-    def test_attaches_and_answers_every_line(self, board: Board) -> None:
+    def test_attaches_and_answers_every_line(self, board: SocketBoard) -> None:
         assert board.accept() == f"attach {PERIOD}"
         pressures = [board.exchange()[0] for _ in range(20)]
         assert all(pressure == 101325 for pressure in pressures)
 
-    def test_the_robot_moves_as_the_fins_push(self, board: Board) -> None:
+    def test_the_robot_moves_as_the_fins_push(self, board: SocketBoard) -> None:
         board.accept()
         first = board.exchange()[0]
         for _ in range(200):
             last = board.exchange(DIVING)[0]
         assert last > first + 500
 
-    def test_lines_that_come_in_pieces_or_together(self, board: Board) -> None:
+    def test_lines_that_come_in_pieces_or_together(self, board: SocketBoard) -> None:
         board.accept()
         board.exchange()
         for piece in (RESTING[:9], RESTING[9:20], RESTING[20:] + RESTING):
@@ -146,7 +139,7 @@ class TestAttached:
         assert board.hear().startswith("sense ")
 
     def test_error_lines_are_logged_and_not_answered(
-        self, board: Board, caplog: pytest.LogCaptureFixture
+        self, board: SocketBoard, caplog: pytest.LogCaptureFixture
     ) -> None:
         board.accept()
         with caplog.at_level(logging.WARNING):
@@ -155,7 +148,7 @@ class TestAttached:
         assert "no such thing" in caplog.text
 
     @pytest.mark.parametrize("garbage", [b"fins 1 2 3\n", b"hello\n", b"x" * 2000])
-    def test_after_garbage_it_reconnects(self, board: Board, garbage: bytes) -> None:
+    def test_after_garbage_it_reconnects(self, board: SocketBoard, garbage: bytes) -> None:
         board.accept()
         board.line.sendall(garbage)
         assert board.hear() == ""
@@ -163,7 +156,7 @@ class TestAttached:
         board.exchange()
 
     def test_it_reconnects_with_the_board_and_continues_the_motion(
-        self, board: Board, caplog: pytest.LogCaptureFixture
+        self, board: SocketBoard, caplog: pytest.LogCaptureFixture
     ) -> None:
         board.accept()
         for _ in range(200):
@@ -176,14 +169,16 @@ class TestAttached:
             wait_for(lambda: len(caplog.records) >= 2, "word of both")
         assert [record.levelname for record in caplog.records] == ["WARNING", "INFO"]
 
-    def test_a_missing_board_is_reported_once(self, board: Board, caplog: pytest.LogCaptureFixture) -> None:
+    def test_a_missing_board_is_reported_once(
+        self, board: SocketBoard, caplog: pytest.LogCaptureFixture
+    ) -> None:
         for _ in range(3):
             board.accept()
         board.exchange()
         assert caplog.text.count("no board at") == 1
 
     def test_truth_comes_twenty_times_a_second(
-        self, board: Board, messages: ZenohTransport, clock: SimulatedClock
+        self, board: SocketBoard, messages: ZenohTransport, clock: SimulatedClock
     ) -> None:
         received: list[bytes] = []
         subscription = messages.subscribe("truth", lambda _, payload: received.append(payload))
@@ -205,7 +200,7 @@ class TestAttached:
         assert last.fins == pytest.approx((-1.57,) * 4)
 
     def test_no_truth_is_repeated_after_the_board_was_away(
-        self, board: Board, messages: ZenohTransport, clock: SimulatedClock
+        self, board: SocketBoard, messages: ZenohTransport, clock: SimulatedClock
     ) -> None:
         received: list[bytes] = []
         subscription = messages.subscribe("truth", lambda _, payload: received.append(payload))
@@ -222,7 +217,7 @@ class TestAttached:
         assert len(received) == 3
 
     def test_the_craft_is_sent_with_the_first_truth_and_every_ten_seconds(
-        self, board: Board, messages: ZenohTransport, clock: SimulatedClock
+        self, board: SocketBoard, messages: ZenohTransport, clock: SimulatedClock
     ) -> None:
         received: list[bytes] = []
         subscription = messages.subscribe("craft", lambda _, payload: received.append(payload))
@@ -235,13 +230,13 @@ class TestAttached:
         wait_for(lambda: len(received) >= 2, "the craft")
         subscription.close()
         sent = [json.loads(block.payload)[0] for payload in received for block in read_blocks(payload)]
-        assert [(one["time"], one["title"]) for one in sent] == [
+        assert [(document["time"], document["title"]) for document in sent] == [
             (100.0, "Default craft, changed"),
             (110.0, "Default craft, changed"),
         ]
         assert sent[0]["craft"]["pressure"]["noise"] == 0
 
-    def test_reset_brings_it_back_to_the_surface(self, board: Board, messages: ZenohTransport) -> None:
+    def test_reset_brings_it_back_to_the_surface(self, board: SocketBoard, messages: ZenohTransport) -> None:
         board.accept()
         surface = board.exchange()[0]
         for _ in range(200):
@@ -249,7 +244,7 @@ class TestAttached:
         assert ask(messages, "reset", {}) == {"accepted": True}
         assert board.exchange()[0] == pytest.approx(surface, abs=5)
 
-    def test_current_carries_it_away(self, board: Board, messages: ZenohTransport) -> None:
+    def test_current_carries_it_away(self, board: SocketBoard, messages: ZenohTransport) -> None:
         answer = ask(messages, "current", {"north": 1, "east": -0.5, "down": 0.0})
         assert answer == {"accepted": True}
         board.accept()
@@ -275,7 +270,9 @@ class TestAttached:
         with pytest.raises(RefusedError, match=r"is missing|is not known here|number|at most 2 m/s"):
             ask(messages, "current", question)
 
-    def test_bus_errors_are_sent_once_to_each_board(self, board: Board, messages: ZenohTransport) -> None:
+    def test_bus_errors_are_sent_once_to_each_board(
+        self, board: SocketBoard, messages: ZenohTransport
+    ) -> None:
         board.accept()
         board.exchange()
         ask(messages, "fault", {"sensor": "gyroscope", "kind": "bus"})
@@ -294,9 +291,10 @@ class TestAttached:
         board.accept()
         board.line.sendall(RESTING)
         assert board.hear() == "fault encoder1 absent"
-        repaired = [board.hear() for _ in range(5)]
+        repaired = [board.hear() for _ in range(6)]
         assert repaired == [
-            f"fault {one} none" for one in ("encoder0", "encoder2", "encoder3", "imu", "pressure")
+            f"fault {device} none"
+            for device in ("encoder0", "encoder2", "encoder3", "imu", "leak", "pressure")
         ]
         assert board.hear().startswith("sense ")
 
@@ -345,7 +343,9 @@ def accepted(messages: ZenohTransport) -> bool:
         return False
 
 
-def test_the_program_runs_and_ends_on_sigterm(folder: Path, board: Board, messages: ZenohTransport) -> None:
+def test_the_program_runs_and_ends_on_sigterm(
+    folder: Path, board: SocketBoard, messages: ZenohTransport
+) -> None:
     with started(folder, "--seed", "2") as program:
         assert board.accept() == f"attach {PERIOD}"
         board.exchange()
@@ -358,7 +358,7 @@ def test_program_waits_for_board_and_peers_that_are_not_there(folder: Path) -> N
     with started(folder) as program:
         assert program.stderr is not None
         assert "no board at" in program.stderr.readline()
-        late = Board(folder / "board")
+        late = SocketBoard(folder / "board")
         late.accept()
         late.exchange()
         late.close()
@@ -368,7 +368,7 @@ def test_program_waits_for_board_and_peers_that_are_not_there(folder: Path) -> N
         assert program.wait(DEADLINE) == 0
 
 
-def test_program_ends_some_time_after_its_server(folder: Path, board: Board) -> None:
+def test_program_ends_some_time_after_its_server(folder: Path, board: SocketBoard) -> None:
     lock = folder / "server.lock"
     with lock.open("w") as server:
         fcntl.flock(server, fcntl.LOCK_EX)
@@ -381,10 +381,10 @@ def test_program_ends_some_time_after_its_server(folder: Path, board: Board) -> 
             assert program.wait(DEADLINE) == 0
 
 
-def test_program_ends_with_its_parent(folder: Path, board: Board) -> None:
+def test_program_ends_with_its_parent(folder: Path, board: SocketBoard) -> None:
     parent = "import subprocess, sys; subprocess.Popen(sys.argv[1:]); sys.stdin.read()"
     arguments = [sys.executable, "-c", parent, *command(folder, "--with-parent")]
-    with subprocess.Popen(arguments, stdin=subprocess.PIPE) as one:
+    with subprocess.Popen(arguments, stdin=subprocess.PIPE) as item:
         board.accept()
-        os.kill(one.pid, signal.SIGKILL)
+        os.kill(item.pid, signal.SIGKILL)
     assert board.hear() == ""

@@ -16,7 +16,7 @@ DEADLINE = 30.0
 """s until what must come is given up, on a busy computer."""
 
 
-class Clock:
+class CountedClock:
     """A clock that the test sets, with a count of its readings."""
 
     def __init__(self) -> None:
@@ -32,8 +32,8 @@ class Clock:
 
     def wait_for_looks(self, count: int) -> None:
         with self._looked:
-            wanted = self._looks + count
-            assert self._looked.wait_for(lambda: self._looks >= wanted, DEADLINE)
+            expected = self._looks + count
+            assert self._looked.wait_for(lambda: self._looks >= expected, DEADLINE)
 
 
 @contextmanager
@@ -59,7 +59,7 @@ def test_a_lock_is_tested_without_being_taken(tmp_path: Path) -> None:
 
 
 def test_a_process_outlives_its_server_for_a_limited_time(tmp_path: Path) -> None:
-    lock, clock, ended = tmp_path / "server.lock", Clock(), threading.Event()
+    lock, clock, ended = tmp_path / "server.lock", CountedClock(), threading.Event()
     with serving(lock):
         watch_server(lock, 30.0, clock, ended.set)
         clock.time += 1000
@@ -78,7 +78,7 @@ def test_a_process_outlives_its_server_for_a_limited_time(tmp_path: Path) -> Non
 def test_without_the_folder_a_process_ends_at_once(tmp_path: Path) -> None:
     lock, ended = tmp_path / "server.lock", threading.Event()
     lock.touch()
-    watch_server(lock, 30.0, Clock(), ended.set)
+    watch_server(lock, 30.0, CountedClock(), ended.set)
     lock.unlink()
     assert ended.wait(DEADLINE)
 
@@ -116,6 +116,6 @@ def test_who_gives_way_does_so_to_other_sessions_where_its_session_is_its_own(le
     if not Path("/proc/self/autogroup").exists():
         pytest.skip("this kernel does not share the processors by session")
     before = Path("/proc/self/autogroup").read_text().split()[-1]
-    said = subprocess.check_output([sys.executable, "-c", GIVE_WAY], start_new_session=leads, text=True)
+    answer = subprocess.check_output([sys.executable, "-c", GIVE_WAY], start_new_session=leads, text=True)
     niceness = max(12, os.getpriority(os.PRIO_PROCESS, 0))
-    assert said.split() == [str(niceness), "12" if leads else before]
+    assert answer.split() == [str(niceness), "12" if leads else before]

@@ -33,8 +33,8 @@ class Writer:
         self.outbox.add_document(DEBUG, DebugLine(time=self.clock.now(), level=1, text=text))
         self.outbox.flush()
 
-    def ask(self, **wanted: int) -> BacklogReply:
-        return BacklogReply.from_bytes(self.cache.answer(write_question(wanted)))
+    def ask(self, **expected: int) -> BacklogReply:
+        return BacklogReply.from_bytes(self.cache.answer(write_question(expected)))
 
 
 def test_a_request_returns_the_sent_blocks_oldest_first() -> None:
@@ -43,11 +43,15 @@ def test_a_request_returns_the_sent_blocks_oldest_first() -> None:
     writer.debug("a")
     writer.depths(2)
     writer.debug("b")
-    kept = writer.ask(depth=0, debug=0)
-    assert b"".join(block.data for block in kept.blocks) == b"".join(writer.sent)
-    assert kept.run == "0123456789abcdef"
-    assert {name: kept.next[name] for name in ("depth", "debug", "imu")} == {"depth": 3, "debug": 2, "imu": 0}
-    assert [(one.topic.name, one.first) for one in writer.ask(depth=2).blocks] == [("depth", 2)]
+    stored = writer.ask(depth=0, debug=0)
+    assert b"".join(block.data for block in stored.blocks) == b"".join(writer.sent)
+    assert stored.run == "0123456789abcdef"
+    assert {name: stored.next[name] for name in ("depth", "debug", "imu")} == {
+        "depth": 3,
+        "debug": 2,
+        "imu": 0,
+    }
+    assert [(block.topic.name, block.first) for block in writer.ask(depth=2).blocks] == [("depth", 2)]
     assert writer.ask(depth=3).blocks == []
     assert writer.ask().blocks == []
 
@@ -68,10 +72,10 @@ def test_the_cache_is_limited_in_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
     writer = Writer()
     for number in range(100):
         writer.depths(number)
-    kept = writer.ask(depth=0)
-    size = len(kept.blocks[0].data)
-    assert [block.first for block in kept.blocks] == list(range(100 - 1000 // size, 100))
-    assert kept.next["depth"] == 100
+    stored = writer.ask(depth=0)
+    size = len(stored.blocks[0].data)
+    assert [block.first for block in stored.blocks] == list(range(100 - 1000 // size, 100))
+    assert stored.next["depth"] == 100
 
 
 @given(st.integers(0, NUMBERS - 1), st.integers(1, 5), st.integers(-7, 7))

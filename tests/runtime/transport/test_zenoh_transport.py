@@ -171,6 +171,6 @@ def test_what_is_received_while_the_queue_is_full_does_not_stop_the_sending() ->
 
 
 def test_an_unreachable_robot_is_said_without_paths_of_zenoh_s_source(tmp_path: Path) -> None:
-    with pytest.raises(OSError, match="cannot reach unixsock-stream/") as found:
+    with pytest.raises(OSError, match="cannot reach unixsock-stream/") as result:
         ZenohTransport("turtle", connect=[f"unixsock-stream/{tmp_path}/nobody"], client=True)
-    assert not re.search(r"\.rs\b|cargo|Single", str(found.value))
+    assert not re.search(r"\.rs\b|cargo|Single", str(result.value))

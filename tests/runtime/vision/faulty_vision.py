@@ -27,7 +27,7 @@ class FaultyCamera(Camera):
         self._drawn = CardCamera(64, 48, SteadyClock(), lambda: None)
 
     def read(self) -> CameraFrame:
-        """Draws a picture, crashes, hangs, or eats memory."""
+        """Draw a picture, crashes, hang, or eats memory."""
         if (self._folder / "crash").exists():
             os.kill(os.getpid(), signal.SIGSEGV)
         while (self._folder / "hang").exists():
@@ -39,7 +39,7 @@ class FaultyCamera(Camera):
         return self._drawn.read()
 
     def close(self) -> None:
-        """Does nothing."""
+        """Do nothing."""
 
     def __str__(self) -> str:
         return "faulty camera"

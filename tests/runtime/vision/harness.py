@@ -23,10 +23,10 @@ class Found(NamedTuple):
 
 
 def find(
-    picture: Picture, wanted: str, area_min: float = 0.01, colours: Mapping[str, ColourRange] = COLOURS
+    picture: Picture, expected: str, area_min: float = 0.01, colours: Mapping[str, ColourRange] = COLOURS
 ) -> Found | None:
     """Run the detector with this colour first; None where it finds nothing."""
-    settings = VisionSettings(colour=wanted, colours=dict(colours), area_min=area_min)
+    settings = VisionSettings(colour=expected, colours=dict(colours), area_min=area_min)
     sight = Detector(settings).search(picture)
     if sight.patch is None:
         return None
@@ -35,7 +35,7 @@ def find(
 
 
 def drawn(time: float, card: str | None, width: int = 320, height: int = 240) -> Picture:
-    """The card camera's picture at this time."""
+    """Return the card camera's picture at this time."""
     held = make_card(card, COLOURS) if card else None
     return CardCamera(width, height, SimulatedClock(), lambda: None).draw(time, held)
 
@@ -69,7 +69,7 @@ class ShakyCamera(Camera):
 
 
 def uncompressed_video() -> bytes:
-    """An AVI file of six uncompressed pictures, 48 × 36 pixels, ten a second.
+    """Return an AVI file of six uncompressed pictures, 48 × 36 pixels, ten a second.
 
     The FFmpeg of OpenCV 5.0.0 damages its heap on such files.
     """

@@ -114,10 +114,10 @@ def turn_film(file: Path, turn: int) -> None:
     """Note in an MP4 by how much it is to be turned clockwise (ISO 14496-12, the matrix of tkhd)."""
     data = bytearray(file.read_bytes())
     cosine, sine = {90: (0, 1), 180: (-1, 0), 270: (0, -1)}[turn]
-    place = data.index(b"tkhd") + 4 + 40
-    one = 1 << 16
-    data[place : place + 36] = struct.pack(
-        ">9i", *(cosine * one, sine * one, 0, -sine * one, cosine * one, 0, 0, 0, 1 << 30)
+    position = data.index(b"tkhd") + 4 + 40
+    full = 1 << 16
+    data[position : position + 36] = struct.pack(
+        ">9i", *(cosine * full, sine * full, 0, -sine * full, cosine * full, 0, 0, 0, 1 << 30)
     )
     file.write_bytes(data)
 
@@ -205,8 +205,8 @@ class TestFileCamera:
         for index, time in reversed(list(enumerate(times))):
             # A SimpleBlock of Matroska: the track, 16 bits of ms, flags.
             old, new = (b"\x81" + value.to_bytes(2, "big") for value in (100 * index, time))
-            place = data.rindex(old)
-            data = data[:place] + new + data[place + len(old) :]
+            position = data.rindex(old)
+            data = data[:position] + new + data[position + len(old) :]
         file.write_bytes(data)
         clock = SimulatedClock()
         camera = FileCamera(file, 160, 120, clock)
@@ -241,7 +241,7 @@ class TestFileCamera:
         turn_film(file, turn)
         camera = FileCamera(file, 160, 120, SimulatedClock())
         red = camera.read().picture[..., 2] > 150
-        down, across = (float(one.mean()) for one in np.nonzero(red))
+        down, across = (float(indices.mean()) for indices in np.nonzero(red))
         right, below = {90: (True, False), 180: (True, True), 270: (False, True)}[turn]
         assert (across > 80, down > 60) == (right, below)
         camera.close()
@@ -389,8 +389,8 @@ class TestPiCamera:
     def test_a_library_for_another_numpy_is_reported(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        words = "numpy.dtype size changed, may indicate binary incompatibility"
-        (tmp_path / "picamera2.py").write_text(f"raise ValueError({words!r})")
+        text = "numpy.dtype size changed, may indicate binary incompatibility"
+        (tmp_path / "picamera2.py").write_text(f"raise ValueError({text!r})")
         monkeypatch.syspath_prepend(tmp_path)
         monkeypatch.delitem(sys.modules, "picamera2", raising=False)
         with pytest.raises(CameraError, match=r"another NumPy .*dtype size changed.*Raspberry Pi OS 13"):
@@ -455,11 +455,11 @@ class TestUsbCamera:
 
     def test_a_device_that_is_no_camera_is_reported(self, tmp_path: Path) -> None:
         (tmp_path / "video9").touch()
-        with pytest.raises(CameraError, match="gives no video: it is no camera, or another program uses it"):
+        with pytest.raises(CameraError, match="gives no video: it is no camera, or has no pictures"):
             UsbCamera(str(tmp_path / "video9"), 320, 240, 4.0, SimulatedClock())
 
     @pytest.mark.parametrize(
-        ("problem", "words"),
+        ("problem", "message"),
         [
             (PermissionError(errno.EACCES, "Permission denied"), "put the user into the group video"),
             (OSError(errno.EBUSY, "Device or resource busy"), "another program uses it"),
@@ -467,13 +467,13 @@ class TestUsbCamera:
         ],
     )
     def test_a_device_that_cannot_be_opened_is_reported(
-        self, monkeypatch: pytest.MonkeyPatch, problem: OSError, words: str
+        self, monkeypatch: pytest.MonkeyPatch, problem: OSError, message: str
     ) -> None:
         def refuse(*_: object) -> int:
             raise problem
 
         monkeypatch.setattr(os, "open", refuse)
-        with pytest.raises(CameraError, match=words):
+        with pytest.raises(CameraError, match=message):
             UsbCamera("", 320, 240, 4.0, SimulatedClock())
 
 

@@ -33,24 +33,24 @@ def test_a_picked_range_contains_its_pixels_at_any_hue(
     low: int, span: int, saturation: int, value: int
 ) -> None:
     pixels = np.array([(hue, saturation, value) for hue in circle(low, span)], np.uint8)
-    found = range_of(pixels)
-    assert find_colour(pixels[np.newaxis], found).all()
+    result = range_of(pixels)
+    assert find_colour(pixels[np.newaxis], result).all()
     # The range exceeds the picked hues by no more than its margins, rounding included.
-    held = (found.hue[1] - found.hue[0]) % 180
+    held = (result.hue[1] - result.hue[0]) % 180
     assert held <= span + 2 * 5 + 2
 
 
 @given(st.integers(0, 179), st.lists(st.integers(-8, 8), min_size=20, max_size=60), st.integers(0, 179))
 def test_picking_is_invariant_to_a_shift_of_hue(middle: int, beside: list[int], turn: int) -> None:
     def picked(start: int) -> ColourRange:
-        hues = [(start + one) % 180 for one in beside]
+        hues = [(start + offset) % 180 for offset in beside]
         return range_of(np.array([(hue, 200, 200) for hue in hues], np.uint8))
 
-    one, turned = picked(middle), picked(middle + turn)
+    straight, turned = picked(middle), picked(middle + turn)
     # A hue may fall to either side where rounding decides.
-    for before, after in zip(one.hue, turned.hue, strict=True):
+    for before, after in zip(straight.hue, turned.hue, strict=True):
         assert (after - before - turn + 1) % 180 <= 2
-    assert one.saturation == turned.saturation
+    assert straight.saturation == turned.saturation
 
 
 @pytest.mark.parametrize("card", sorted(COLOURS))
@@ -66,13 +66,13 @@ def test_a_picked_range_finds_its_card_and_no_water(card: str) -> None:
 @pytest.mark.parametrize("card", sorted(COLOURS))
 def test_a_range_picked_in_the_brightest_light_is_valid_in_any_light(card: str) -> None:
     brightest = max(
-        (drawn(0.5 * step, card) for step in range(200)), key=lambda one: one[116:125, 156:165].sum()
+        (drawn(0.5 * step, card) for step in range(200)), key=lambda picture: picture[116:125, 156:165].sum()
     )
     picked = propose(brightest, MIDDLE).colour
     for time in range(0, 100, 4):
-        found = find(drawn(time, card), "picked", colours={"picked": picked})
-        assert found is not None
-        assert found.area == pytest.approx(0.26 * 0.36 * 3 / 4, rel=0.1)
+        result = find(drawn(time, card), "picked", colours={"picked": picked})
+        assert result is not None
+        assert result.area == pytest.approx(0.26 * 0.36 * 3 / 4, rel=0.1)
         assert find(drawn(time, None), "picked", colours={"picked": picked}) is None
 
 

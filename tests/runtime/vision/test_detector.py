@@ -19,7 +19,7 @@ YELLOW, RED, GREEN, GREY = (0, 220, 240), (20, 20, 220), (40, 180, 40), (90, 90,
 
 
 def patched(*patches: tuple[int, int, int, int, tuple[int, int, int]]) -> Picture:
-    """A grey picture of 200 × 100 pixels with rectangles: x, y, width, height, colour."""
+    """Return a grey picture of 200 × 100 pixels with rectangles: x, y, width, height, colour."""
     picture = np.full((100, 200, 3), GREY, np.uint8)
     for x, y, width, height, colour in patches:
         cv2.rectangle(picture, (x, y), (x + width - 1, y + height - 1), colour, cv2.FILLED)
@@ -39,19 +39,19 @@ def test_each_card_is_found_as_its_own_colour(card: str, size: tuple[int, int]) 
         assert abs(patch.box.y + patch.box.height / 2 - 0.5) < 0.05
 
 
-@pytest.mark.parametrize("wanted", NAMES)
+@pytest.mark.parametrize("expected", NAMES)
 @pytest.mark.parametrize("card", NAMES)
-def test_no_card_is_taken_for_another_colour(card: str, wanted: str) -> None:
+def test_no_card_is_taken_for_another_colour(card: str, expected: str) -> None:
     for time in TIMES:
-        patch = find(drawn(time, card), wanted, 0.0005)
+        patch = find(drawn(time, card), expected, 0.0005)
         assert patch is not None
         assert patch.colour == card
 
 
-@pytest.mark.parametrize("wanted", NAMES)
-def test_plain_water_has_no_colour(wanted: str) -> None:
+@pytest.mark.parametrize("expected", NAMES)
+def test_plain_water_has_no_colour(expected: str) -> None:
     for index in range(100):
-        assert find(drawn(index * 0.77, None), wanted, 0.0005) is None
+        assert find(drawn(index * 0.77, None), expected, 0.0005) is None
 
 
 def test_box_and_area_are_shares_of_the_picture() -> None:
@@ -72,8 +72,8 @@ def test_the_largest_patch_of_the_target_colour_counts() -> None:
 
 def test_the_target_colour_has_priority_over_a_larger_patch() -> None:
     picture = patched((10, 10, 80, 80, RED), (120, 10, 20, 20, YELLOW))
-    found = {wanted: find(picture, wanted) for wanted in NAMES}
-    assert {wanted: patch.colour if patch else None for wanted, patch in found.items()} == {
+    results = {expected: find(picture, expected) for expected in NAMES}
+    assert {expected: patch.colour if patch else None for expected, patch in results.items()} == {
         "yellow": "yellow",
         "red": "red",
         "green": "red",
@@ -136,7 +136,7 @@ def test_filters_pass_patches_of_the_given_shape(
     sight = look(patched(BAR, SQUARE), **filters)
     assert sight.patch is not None
     assert sight.patch.box.x == x
-    refused = [one.refused for one in sight.target_patches.candidates if one.refused]
+    refused = [candidate.refused for candidate in sight.target_patches.candidates if candidate.refused]
     assert refused == ([reason] if reason else [])
 
 
@@ -173,7 +173,7 @@ def test_the_number_of_reported_candidates_is_limited() -> None:
 
 
 def find_target(picture: Picture, **settings: Any) -> str | None:
-    """Returns the name that sets the set point where every picture shows this."""
+    """Return the name that sets the set point where every picture shows this."""
     return choose_target(VisionSettings(**settings), look(picture, **settings).names)
 
 
@@ -216,7 +216,7 @@ def test_a_marker_is_decoded_with_its_place() -> None:
 def test_markers_are_selected_by_dictionary_and_number() -> None:
     assert look(marked(7)).markers == []
     assert look(marked(7), markers="4x4_50", marker_numbers=(1, 8)).markers == []
-    assert [one.number for one in look(marked(7), markers="4x4_50", marker_numbers=(7,)).markers] == [7]
+    assert [marker.number for marker in look(marked(7), markers="4x4_50", marker_numbers=(7,)).markers] == [7]
     assert look(marked(7), markers="6x6_250").markers == []
     assert find_target(marked(7), markers="4x4_50", actions={"marker 8": 1.0}) is None
 

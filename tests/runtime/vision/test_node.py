@@ -24,13 +24,14 @@ from tests.runtime.vision.harness import ShakyCamera, drawn
 
 
 @dataclass
-class Listener:
+class VisionListener:
     """Stores the node's publications."""
 
     watching: set[str] = field(default_factory=set)
     detections: list[Detection] = field(default_factory=list)
     pictures: list[tuple[str, float, bytes]] = field(default_factory=list)
     thumbnails: list[tuple[float, bytes]] = field(default_factory=list)
+    snapshots: list[tuple[float, bytes]] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
 
     def node(
@@ -45,13 +46,14 @@ class Listener:
             event=self.events.append,
             picture=lambda topic, time, jpeg: self.pictures.append((topic.name, time, jpeg)),
             thumbnail=lambda time, jpeg: self.thumbnails.append((time, jpeg)),
+            snapshot=lambda time, jpeg: self.snapshots.append((time, jpeg)),
             watched=lambda topic: topic.name in self.watching,
         )
 
 
 @pytest.fixture
-def listener() -> Listener:
-    return Listener()
+def listener() -> VisionListener:
+    return VisionListener()
 
 
 @pytest.fixture
@@ -59,7 +61,7 @@ def clock() -> SimulatedClock:
     return SimulatedClock(20.0)
 
 
-def test_each_picture_gives_a_detection(listener: Listener, clock: SimulatedClock) -> None:
+def test_each_picture_gives_a_detection(listener: VisionListener, clock: SimulatedClock) -> None:
     node = listener.node(clock)
     for card in (None, "yellow", "red", None):
         node.show_card(card)
@@ -73,7 +75,7 @@ def test_each_picture_gives_a_detection(listener: Listener, clock: SimulatedCloc
     assert yellow.area > 0.05
 
 
-def test_measures_its_own_time(listener: Listener, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_measures_its_own_time(listener: VisionListener, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = SimulatedClock(20.0)
     node = listener.node(clock)
     convert = cv2.cvtColor
@@ -88,7 +90,7 @@ def test_measures_its_own_time(listener: Listener, monkeypatch: pytest.MonkeyPat
     assert listener.detections[0].time == pytest.approx(20.03)
 
 
-def test_the_target_colour_comes_first(listener: Listener, clock: SimulatedClock) -> None:
+def test_the_target_colour_comes_first(listener: VisionListener, clock: SimulatedClock) -> None:
     picture = drawn(1.0, "red")
     picture[:60, :60] = (0, 220, 240)
     node = listener.node(clock, ShakyCamera(picture, clock).open)
@@ -98,7 +100,7 @@ def test_the_target_colour_comes_first(listener: Listener, clock: SimulatedClock
     assert [detection.colour for detection in listener.detections] == ["yellow", "red", "red"]
 
 
-def test_pictures_are_encoded_only_for_subscribers(listener: Listener, clock: SimulatedClock) -> None:
+def test_pictures_are_encoded_only_for_subscribers(listener: VisionListener, clock: SimulatedClock) -> None:
     node = listener.node(clock)
     node.process_picture()
     assert listener.pictures == []
@@ -116,8 +118,30 @@ def test_pictures_are_encoded_only_for_subscribers(listener: Listener, clock: Si
     assert difference.mean() < 5
 
 
+def test_a_snapshot_is_the_newest_picture_at_full_size(
+    listener: VisionListener, clock: SimulatedClock
+) -> None:
+    node = listener.node(clock)
+    with pytest.raises(RefusedError, match=r"no picture to take\. Camera: starting"):
+        node.take_snapshot()
+    node.show_card("yellow")
+    node.process_picture()
+    assert node.take_snapshot() == {"time": 20.0}
+    ((taken, jpeg),) = listener.snapshots
+    decoded = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+    assert decoded is not None
+    assert (taken, decoded.shape) == (20.0, drawn(20.0, "yellow").shape)
+    assert np.abs(decoded.astype(float) - drawn(20.0, "yellow")).mean() < 4
+    with pytest.raises(RefusedError, match="is a snapshot already"):
+        node.take_snapshot()
+    clock.forward(5.0)
+    with pytest.raises(RefusedError, match="newest picture is 5 s old"):
+        node.take_snapshot()
+    assert len(listener.snapshots) == 1
+
+
 def test_mask_and_balanced_picture_are_encoded_for_subscribers(
-    listener: Listener, clock: SimulatedClock
+    listener: VisionListener, clock: SimulatedClock
 ) -> None:
     node = listener.node(clock)
     node.show_card("yellow")
@@ -138,7 +162,7 @@ def test_mask_and_balanced_picture_are_encoded_for_subscribers(
 
 
 def test_settings_change_as_a_whole_between_two_pictures(
-    listener: Listener, clock: SimulatedClock, monkeypatch: pytest.MonkeyPatch
+    listener: VisionListener, clock: SimulatedClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     picture = drawn(1.0, "red")
     picture[:60, :60] = (0, 220, 240)
@@ -161,7 +185,7 @@ def test_settings_change_as_a_whole_between_two_pictures(
 
 
 def test_a_camera_that_fails_is_reported_once_and_tried_again(
-    listener: Listener, clock: SimulatedClock
+    listener: VisionListener, clock: SimulatedClock
 ) -> None:
     camera = ShakyCamera(drawn(1.0, "yellow"), clock)
     node = listener.node(clock, camera.open)
@@ -185,7 +209,7 @@ def test_a_camera_that_fails_is_reported_once_and_tried_again(
     assert [detection.colour for detection in listener.detections] == ["yellow", "yellow"]
 
 
-def test_another_failure_is_reported_anew(listener: Listener, clock: SimulatedClock) -> None:
+def test_another_failure_is_reported_anew(listener: VisionListener, clock: SimulatedClock) -> None:
     camera = ShakyCamera(drawn(1.0, None), clock)
     node = listener.node(clock, camera.open)
     for text in ("no light", "no light", "no power"):
@@ -196,7 +220,7 @@ def test_another_failure_is_reported_anew(listener: Listener, clock: SimulatedCl
 
 
 def test_any_exception_of_a_camera_is_reported(
-    listener: Listener, clock: SimulatedClock, caplog: pytest.LogCaptureFixture
+    listener: VisionListener, clock: SimulatedClock, caplog: pytest.LogCaptureFixture
 ) -> None:
     camera = ShakyCamera(drawn(1.0, None), clock)
     camera.failure = ZeroDivisionError("oops")
@@ -210,7 +234,7 @@ def test_any_exception_of_a_camera_is_reported(
     assert len(listener.detections) == 1
 
 
-def test_missing_file_and_its_return(tmp_path: Path, listener: Listener, clock: SimulatedClock) -> None:
+def test_missing_file_and_its_return(tmp_path: Path, listener: VisionListener, clock: SimulatedClock) -> None:
     file = tmp_path / "pool.png"
     node = listener.node(clock, config=VisionConfig(camera="file", file=str(file)))
     node.process_picture()
@@ -222,14 +246,16 @@ def test_missing_file_and_its_return(tmp_path: Path, listener: Listener, clock: 
     assert listener.detections[0].colour == "yellow"
 
 
-def test_pi_camera_where_there_is_none(listener: Listener, clock: SimulatedClock) -> None:
+def test_pi_camera_where_there_is_none(listener: VisionListener, clock: SimulatedClock) -> None:
     node = listener.node(clock, config=VisionConfig(camera="pi"))
     node.process_picture()
     assert "picamera2" in node.text
     assert listener.detections == []
 
 
-def test_cards_are_refused_where_they_cannot_be_shown(listener: Listener, clock: SimulatedClock) -> None:
+def test_cards_are_refused_where_they_cannot_be_shown(
+    listener: VisionListener, clock: SimulatedClock
+) -> None:
     node = listener.node(clock)
     with pytest.raises(
         RefusedError, match="no card of colour 'pink'; there are red, yellow, green, blue, marker 7"
@@ -241,7 +267,7 @@ def test_cards_are_refused_where_they_cannot_be_shown(listener: Listener, clock:
         other.show_card("red")
 
 
-def test_pictures_are_taken_at_the_rate(listener: Listener, clock: SimulatedClock) -> None:
+def test_pictures_are_taken_at_the_rate(listener: VisionListener, clock: SimulatedClock) -> None:
     node = listener.node(clock, config=VisionConfig(rate=20.0))
     while len(listener.detections) < 11:
         clock.forward(node.tick())
@@ -249,7 +275,7 @@ def test_pictures_are_taken_at_the_rate(listener: Listener, clock: SimulatedCloc
     assert gaps == {0.05}
 
 
-def test_a_higher_rate_applies_at_once(listener: Listener, clock: SimulatedClock) -> None:
+def test_a_higher_rate_applies_at_once(listener: VisionListener, clock: SimulatedClock) -> None:
     node = listener.node(clock, config=VisionConfig(rate=2.0))
     assert node.tick() == 0.0
     assert node.tick() == pytest.approx(0.5)
@@ -257,7 +283,7 @@ def test_a_higher_rate_applies_at_once(listener: Listener, clock: SimulatedClock
     assert node.tick() == pytest.approx(0.05)
 
 
-def test_close_gives_the_camera_back(listener: Listener, clock: SimulatedClock) -> None:
+def test_close_gives_the_camera_back(listener: VisionListener, clock: SimulatedClock) -> None:
     camera = ShakyCamera(drawn(1.0, None), clock)
     node = listener.node(clock, camera.open)
     node.tick()
@@ -265,7 +291,7 @@ def test_close_gives_the_camera_back(listener: Listener, clock: SimulatedClock) 
     assert camera.closed == 1
 
 
-def test_close_before_start(listener: Listener, clock: SimulatedClock) -> None:
+def test_close_before_start(listener: VisionListener, clock: SimulatedClock) -> None:
     listener.node(clock).close()
     assert listener.detections == []
 
@@ -281,7 +307,7 @@ def test_survives_a_receiver_that_fails(clock: SimulatedClock, caplog: pytest.Lo
 
 @pytest.mark.parametrize("problem", [MemoryError("no room"), cv2.error("(-4:Insufficient memory)")])
 def test_exhausted_memory_is_no_failure_of_the_camera(
-    listener: Listener, clock: SimulatedClock, problem: Exception
+    listener: VisionListener, clock: SimulatedClock, problem: Exception
 ) -> None:
     if isinstance(problem, cv2.error):
         problem.code = -4
@@ -293,7 +319,7 @@ def test_exhausted_memory_is_no_failure_of_the_camera(
 
 
 def test_a_thumbnail_is_sent_every_two_seconds_without_subscribers(
-    listener: Listener, clock: SimulatedClock
+    listener: VisionListener, clock: SimulatedClock
 ) -> None:
     node = listener.node(clock)
     for _ in range(20):
@@ -307,7 +333,7 @@ def test_a_thumbnail_is_sent_every_two_seconds_without_subscribers(
 
 
 def test_without_opencv_the_camera_says_so_and_all_else_goes_on(
-    listener: Listener, clock: SimulatedClock, monkeypatch: pytest.MonkeyPatch
+    listener: VisionListener, clock: SimulatedClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "robot_runtime.vision.pipeline", None)
     node = listener.node(clock)
@@ -323,7 +349,7 @@ def test_without_opencv_the_camera_says_so_and_all_else_goes_on(
 
 
 def test_a_camera_with_a_rate_of_its_own_is_opened_again_for_another(
-    listener: Listener, clock: SimulatedClock
+    listener: VisionListener, clock: SimulatedClock
 ) -> None:
     camera = ShakyCamera(drawn(1.0, None), clock)
     camera.rate = 4.0
@@ -331,7 +357,7 @@ def test_a_camera_with_a_rate_of_its_own_is_opened_again_for_another(
     node.process_picture()
     node.process_picture()
     assert (camera.opened, camera.closed) == (1, 0)
-    node.settings = replace(node.settings, rate=8.0)
+    node.settings = replace(node.settings, rate=node.settings.rate + 20.0)
     node.process_picture()
     assert (camera.opened, camera.closed) == (2, 1)
 
@@ -345,7 +371,7 @@ def camera(clock: SimulatedClock) -> ShakyCamera:
 
 
 def see(node: VisionNode, camera: ShakyCamera, clock: SimulatedClock, *pictures: Picture) -> None:
-    """Shows these pictures, four a second."""
+    """Show these pictures, four a second."""
     for picture in pictures:
         camera.picture = picture
         node.process_picture()
@@ -353,59 +379,61 @@ def see(node: VisionNode, camera: ShakyCamera, clock: SimulatedClock, *pictures:
 
 
 def test_one_false_picture_shows_nothing(
-    listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+    listener: VisionListener, clock: SimulatedClock, camera: ShakyCamera
 ) -> None:
     node = listener.node(clock, camera.open, VisionConfig(actions={"yellow": 2.0, "red": 3.0}))
     see(node, camera, clock, NOTHING, YELLOW, NOTHING, RED, NOTHING, YELLOW, NOTHING)
-    assert "yellow" in [one.colour for one in listener.detections]
-    assert {(one.target, one.set_point) for one in listener.detections} == {(None, None)}
-    assert all(one.confirmed == [] for one in listener.detections)
+    assert "yellow" in [detection.colour for detection in listener.detections]
+    assert {(detection.target, detection.set_point) for detection in listener.detections} == {(None, None)}
+    assert all(detection.confirmed == [] for detection in listener.detections)
 
 
 class TestConfirmation:
     def test_one_false_picture_hides_nothing(
-        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+        self, listener: VisionListener, clock: SimulatedClock, camera: ShakyCamera
     ) -> None:
         node = listener.node(clock, camera.open, VisionConfig(actions={"yellow": 2.0}))
         see(node, camera, clock, YELLOW, YELLOW, NOTHING, YELLOW, YELLOW, RED, YELLOW)
-        assert [one.set_point for one in listener.detections] == [None, *[2.0] * 6]
+        assert [detection.set_point for detection in listener.detections] == [None, *[2.0] * 6]
 
     def test_it_comes_and_goes_with_the_second_picture(
-        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+        self, listener: VisionListener, clock: SimulatedClock, camera: ShakyCamera
     ) -> None:
         node = listener.node(clock, camera.open)
         see(node, camera, clock, NOTHING, YELLOW, YELLOW, YELLOW, NOTHING, NOTHING, NOTHING)
-        targets = [one.target for one in listener.detections]
+        targets = [detection.target for detection in listener.detections]
         assert targets == [None, None, "yellow", "yellow", "yellow", None, None]
 
     def test_old_pictures_do_not_count(
-        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+        self, listener: VisionListener, clock: SimulatedClock, camera: ShakyCamera
     ) -> None:
         node = listener.node(clock, camera.open)
         see(node, camera, clock, YELLOW)
         clock.forward(5.0)
         see(node, camera, clock, YELLOW, YELLOW)
-        assert [one.target for one in listener.detections] == [None, None, "yellow"]
+        assert [detection.target for detection in listener.detections] == [None, None, "yellow"]
 
-    def test_other_numbers(self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera) -> None:
+    def test_other_numbers(
+        self, listener: VisionListener, clock: SimulatedClock, camera: ShakyCamera
+    ) -> None:
         node = listener.node(clock, camera.open, VisionConfig(confirmation=(3, 4)))
         see(node, camera, clock, *[YELLOW] * 4, NOTHING, YELLOW, NOTHING, NOTHING)
-        targets = [one.target for one in listener.detections]
+        targets = [detection.target for detection in listener.detections]
         assert targets == [None, None, *["yellow"] * 4, None, None]
 
     def test_a_change_of_settings_forgets_nothing(
-        self, listener: Listener, clock: SimulatedClock, camera: ShakyCamera
+        self, listener: VisionListener, clock: SimulatedClock, camera: ShakyCamera
     ) -> None:
         node = listener.node(clock, camera.open)
         see(node, camera, clock, YELLOW, YELLOW)
         node.settings = replace(node.settings, rate=8.0)
         see(node, camera, clock, YELLOW)
-        assert [one.target for one in listener.detections] == [None, "yellow", "yellow"]
+        assert [detection.target for detection in listener.detections] == [None, "yellow", "yellow"]
 
 
 @pytest.mark.parametrize("kind", ["usb", "pi"])
 def test_a_camera_that_repeats_one_picture_fails_until_another_one_comes(
-    listener: Listener, clock: SimulatedClock, kind: Literal["usb", "pi"]
+    listener: VisionListener, clock: SimulatedClock, kind: Literal["usb", "pi"]
 ) -> None:
     camera = ShakyCamera(YELLOW, clock)
     node = listener.node(clock, camera.open, VisionConfig(camera=kind))
@@ -434,7 +462,9 @@ def test_a_camera_that_repeats_one_picture_fails_until_another_one_comes(
 class TestRepeatedPicture:
     """A real camera's pictures differ by its noise."""
 
-    def test_a_change_of_one_byte_is_another_picture(self, listener: Listener, clock: SimulatedClock) -> None:
+    def test_a_change_of_one_byte_is_another_picture(
+        self, listener: VisionListener, clock: SimulatedClock
+    ) -> None:
         camera = ShakyCamera(YELLOW, clock)
         node = listener.node(clock, camera.open, VisionConfig(camera="usb"))
         for number in range(40):
@@ -445,7 +475,7 @@ class TestRepeatedPicture:
 
     @pytest.mark.parametrize("kind", ["file", "card", "scene"])
     def test_files_and_simulated_cameras_may_repeat_theirs(
-        self, listener: Listener, clock: SimulatedClock, kind: Literal["file", "card", "scene"]
+        self, listener: VisionListener, clock: SimulatedClock, kind: Literal["file", "card", "scene"]
     ) -> None:
         camera = ShakyCamera(YELLOW, clock)
         node = listener.node(clock, camera.open, VisionConfig(camera=kind))

@@ -34,7 +34,7 @@ DEADLINE = 60.0
 CARD = VisionConfig(camera="card", width=64, height=48, rate=20.0)
 
 
-class Seen:
+class VisionRecord:
     """All that came of a vision process."""
 
     def __init__(self) -> None:
@@ -42,12 +42,14 @@ class Seen:
         self.events: list[Event] = []
         self.pictures: list[tuple[str, bytes]] = []
         self.thumbnails: list[bytes] = []
+        self.snapshots: list[tuple[float, bytes]] = []
         self.watching: set[str] = set()
         self.outputs = VisionOutputs(
             detection=self.detections.append,
             event=self.events.append,
             picture=lambda topic, _, jpeg: self.pictures.append((topic.name, jpeg)),
             thumbnail=lambda _, jpeg: self.thumbnails.append(jpeg),
+            snapshot=lambda time, jpeg: self.snapshots.append((time, jpeg)),
             watched=lambda topic: topic.name in self.watching,
         )
 
@@ -57,25 +59,25 @@ class Seen:
         return [event.text for event in self.events]
 
     def wait(self, condition: Callable[[], object], what: str) -> None:
-        """Waits until the condition holds."""
+        """Wait until the condition holds."""
         end = time.monotonic() + DEADLINE
         while not condition():
             assert time.monotonic() < end, f"no {what}; events: {self.texts}"
             time.sleep(0.005)
 
     def wait_for_pictures(self, count: int = 2) -> None:
-        """Waits for so many pictures from now on."""
+        """Wait for so many pictures from now on."""
         enough = len(self.detections) + count
         self.wait(lambda: len(self.detections) >= enough, "pictures")
 
 
 @pytest.fixture
-def seen() -> Seen:
-    return Seen()
+def seen() -> VisionRecord:
+    return VisionRecord()
 
 
 @contextmanager
-def running(seen: Seen, config: VisionConfig = CARD, *program: str) -> Iterator[VisionProcess]:
+def running(seen: VisionRecord, config: VisionConfig = CARD, *program: str) -> Iterator[VisionProcess]:
     vision = VisionProcess(
         config,
         SteadyClock(),
@@ -93,7 +95,9 @@ def running(seen: Seen, config: VisionConfig = CARD, *program: str) -> Iterator[
 
 
 @contextmanager
-def faulty(seen: Seen, folder: Path, camera: Literal["file", "usb"] = "file") -> Iterator[VisionProcess]:
+def faulty(
+    seen: VisionRecord, folder: Path, camera: Literal["file", "usb"] = "file"
+) -> Iterator[VisionProcess]:
     config = replace(CARD, camera=camera, file="pool.avi")
     program = (sys.executable, "-m", "tests.runtime.vision.faulty_vision", str(folder))
     with running(seen, config, *program) as vision:
@@ -102,13 +106,13 @@ def faulty(seen: Seen, folder: Path, camera: Literal["file", "usb"] = "file") ->
         yield vision
 
 
-def crash(vision: VisionProcess, seen: Seen, fault: Path) -> None:
+def crash(vision: VisionProcess, seen: VisionRecord, fault: Path) -> None:
     fault.touch()
     seen.wait(lambda: vision.text.startswith("no picture: "), "failure")
 
 
 class TestPictures:
-    def test_pictures_detections_and_thumbnails_come(self, seen: Seen) -> None:
+    def test_pictures_detections_and_thumbnails_come(self, seen: VisionRecord) -> None:
         with running(seen) as vision:
             assert vision.refusals() == ["The camera's software is being loaded. Wait a moment."]
             seen.wait_for_pictures()
@@ -122,20 +126,22 @@ class TestPictures:
             seen.watching = set()
             # A picture that was being made meanwhile still comes.
             seen.wait_for_pictures(3)
-            told = len(seen.pictures)
+            report = len(seen.pictures)
             seen.wait_for_pictures(3)
-            assert len(seen.pictures) == told
+            assert len(seen.pictures) == report
             assert seen.thumbnails
             assert vision.text == "drawn water without a card"
             assert seen.events == []
 
-    def test_cards_settings_and_picked_colours_pass_to_and_fro(self, seen: Seen) -> None:
+    def test_cards_settings_and_picked_colours_pass_to_and_fro(self, seen: VisionRecord) -> None:
         with running(seen) as vision:
             vision.show_card("yellow")
             seen.wait(lambda: seen.detections and seen.detections[-1].target == "yellow", "card")
             assert vision.card == "yellow"
             seen.wait(lambda: vision.text == "drawn water with a yellow card", "text")
             assert vision.pick({"x": 0.5, "y": 0.5})["colour"]["hue"][0] > 15
+            taken = vision.take_snapshot()["time"]
+            assert [(time, jpeg[:2]) for time, jpeg in seen.snapshots] == [(taken, b"\xff\xd8")]
             with pytest.raises(RefusedError, match="between 0 and 1"):
                 vision.pick({"x": 2.0, "y": 0.5})
             with pytest.raises(RefusedError, match="no card of colour 'pink'"):
@@ -143,7 +149,9 @@ class TestPictures:
             vision.settings = VisionSettings(colour="red", actions={"yellow": 2.0}, rate=20.0)
             seen.wait(lambda: seen.detections[-1].set_point == 2.0, "action")
 
-    def test_a_receiver_that_fails_is_no_end(self, seen: Seen, caplog: pytest.LogCaptureFixture) -> None:
+    def test_a_receiver_that_fails_is_no_end(
+        self, seen: VisionRecord, caplog: pytest.LogCaptureFixture
+    ) -> None:
         def fail(detection: Detection) -> None:
             seen.detections.append(detection)
             raise RuntimeError("nobody wants to know")
@@ -155,7 +163,7 @@ class TestPictures:
         assert seen.events == []
 
     def test_without_opencv_the_camera_says_so_and_is_not_tried_again(
-        self, seen: Seen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, seen: VisionRecord, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         (tmp_path / "cv2.py").write_text("raise ImportError('no OpenCV here')\n")
         monkeypatch.setenv("PYTHONPATH", str(tmp_path))
@@ -172,7 +180,7 @@ class TestPictures:
 
 
 def test_a_command_never_waits_for_a_process_that_hangs(
-    seen: Seen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    seen: VisionRecord, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(process_module, "HUNG_SECONDS", 10 * DEADLINE)
     with faulty(seen, tmp_path) as vision:
@@ -187,7 +195,9 @@ def test_a_command_never_waits_for_a_process_that_hangs(
 
 
 class TestFaults:
-    def test_a_crash_is_named_and_what_was_set_applies_again(self, seen: Seen, tmp_path: Path) -> None:
+    def test_a_crash_is_named_and_what_was_set_applies_again(
+        self, seen: VisionRecord, tmp_path: Path
+    ) -> None:
         with faulty(seen, tmp_path) as vision:
             changed = replace(vision.settings, colour="red")
             vision.settings = changed
@@ -207,7 +217,7 @@ class TestFaults:
         ]
 
     def test_a_series_of_crashes_is_reported_once_and_its_pauses_grow(
-        self, seen: Seen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, seen: VisionRecord, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(process_module, "STEADY_SECONDS", 0.0)
         pauses = []
@@ -229,7 +239,7 @@ class TestFaults:
         assert seen.texts[1] == "Camera: faulty camera."
 
     def test_a_hang_is_named_and_its_process_replaced(
-        self, seen: Seen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, seen: VisionRecord, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         with faulty(seen, tmp_path, "usb") as vision:
             before = vision.pid
@@ -247,7 +257,7 @@ class TestFaults:
             seen.wait(lambda: vision.text == "faulty camera", "recovery")
         assert len(seen.events) == 1
 
-    def test_a_process_that_eats_memory_ends_at_its_limit(self, seen: Seen, tmp_path: Path) -> None:
+    def test_a_process_that_eats_memory_ends_at_its_limit(self, seen: VisionRecord, tmp_path: Path) -> None:
         with faulty(seen, tmp_path) as vision:
             crash(vision, seen, tmp_path / "eat")
             assert vision.text == "no picture: reading pool.avi needed more memory than its 300 MB"
@@ -255,7 +265,7 @@ class TestFaults:
             seen.wait(lambda: vision.text == "faulty camera", "recovery")
 
     def test_an_uncompressed_video_which_crashes_some_decoders_does_not_reach_this_process(
-        self, seen: Seen, tmp_path: Path
+        self, seen: VisionRecord, tmp_path: Path
     ) -> None:
         video = tmp_path / "v.avi"
         video.write_bytes(uncompressed_video())
@@ -278,7 +288,7 @@ def test_it_ends_with_its_parent_however_that_ends(tmp_path: Path) -> None:
         child.wait(DEADLINE)
 
 
-def test_a_camera_that_fails_slowly_again_and_again_is_reported_once(seen: Seen) -> None:
+def test_a_camera_that_fails_slowly_again_and_again_is_reported_once(seen: VisionRecord) -> None:
     clock = SimulatedClock(20.0)
     vision = VisionProcess(CARD, clock, seen.outputs, "turtle", "nowhere")
     vision._started = 0.0
@@ -294,7 +304,7 @@ def test_a_camera_that_fails_slowly_again_and_again_is_reported_once(seen: Seen)
 
 
 class TestEnd:
-    def test_the_signals_of_the_group_do_not_end_it_before_its_parent(self, seen: Seen) -> None:
+    def test_the_signals_of_the_group_do_not_end_it_before_its_parent(self, seen: VisionRecord) -> None:
         with running(seen) as vision:
             seen.wait_for_pictures()
             child = vision.pid
@@ -305,23 +315,23 @@ class TestEnd:
             assert vision.pid == child
         assert seen.events == []
 
-    def test_it_holds_nothing_of_its_parent_open(self, seen: Seen, tmp_path: Path) -> None:
+    def test_it_holds_nothing_of_its_parent_open(self, seen: VisionRecord, tmp_path: Path) -> None:
         with (tmp_path / "port").open("wb") as port, running(seen) as vision:
             os.set_inheritable(port.fileno(), True)
             seen.wait_for_pictures()
             files = {file.path for file in psutil.Process(vision.pid).open_files()}
             assert str(tmp_path / "port") not in files
 
-    def test_it_gives_way_to_control_and_goes_first_where_memory_is_short(self, seen: Seen) -> None:
+    def test_it_gives_way_to_control_and_goes_first_where_memory_is_short(self, seen: VisionRecord) -> None:
         with running(seen) as vision:
             seen.wait_for_pictures()
             assert psutil.Process(vision.pid).nice() > psutil.Process().nice()
             assert Path(f"/proc/{vision.pid}/oom_score_adj").read_text() == "500\n"
 
     def test_neither_close_nor_a_picked_colour_waits_long_for_a_process_that_hangs(
-        self, seen: Seen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, seen: VisionRecord, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr(process_module, "PICK_SECONDS", 0.1)
+        monkeypatch.setattr(process_module, "ANSWER_SECONDS", 0.1)
         with faulty(seen, tmp_path) as vision:
             (tmp_path / "hang").touch()
             seen.wait((tmp_path / "hangs").exists, "hang")
@@ -348,7 +358,7 @@ class TestMessages:
             got = messages.receive(1.0)
             while len(got) < 2:
                 got += messages.receive(1.0)
-            assert [(one.table, one.attachment) for one in got] == [({"a": 1}, b"xyz")] * 2
+            assert [(message.table, message.attachment) for message in got] == [({"a": 1}, b"xyz")] * 2
         assert messages.receive(0.0) == []
 
     @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ GOOD = {"hue": [20, 35], "saturation": [100, 255], "value": [70, 255]}
 
 
 def every_hue() -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
-    """A picture one pixel high with each hue once."""
+    """Return a picture one pixel high with each hue once."""
     return np.array([[(hue, 200, 200) for hue in range(180)]], np.uint8)
 
 
@@ -121,8 +121,8 @@ def test_the_range_that_the_thesis_prints_holds_nothing() -> None:
 
 
 def test_saved_settings_are_read_again(tmp_path: Path) -> None:
-    kept = VisionSettingsFile(tmp_path / "vision.json")
-    assert kept.read() is None
+    stored = VisionSettingsFile(tmp_path / "vision.json")
+    assert stored.read() is None
     settings = VisionSettings(
         colour="Boje grün",
         colours={"Boje grün": COLOURS["green"]},
@@ -131,10 +131,10 @@ def test_saved_settings_are_read_again(tmp_path: Path) -> None:
         marker_numbers=(3, 7),
         actions={"marker 7": 1.5},
     )
-    kept.write(settings)
-    assert kept.read() == settings
-    kept.forget()
-    assert kept.read() is None
+    stored.write(settings)
+    assert stored.read() == settings
+    stored.forget()
+    assert stored.read() is None
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"rate": 99}', '{"unknown": 1}', "\xff"])

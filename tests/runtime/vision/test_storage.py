@@ -11,7 +11,7 @@ from robot_runtime.config import Config
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.missions.document import read_mission
 from robot_runtime.missions.node import LoadedMission
-from robot_runtime.robot import Robot
+from robot_runtime.robot import RobotRuntime
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.settings_file import VisionSettingsFile
 from tests.runtime.missions.water import mission
@@ -25,17 +25,17 @@ class WatchedFile(VisionSettingsFile):
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
-        self.robot: Robot | None = None
+        self.robot: RobotRuntime | None = None
         self.stored: list[VisionSettings | None] = []
         self.ticks: list[bool] = []
 
     def write(self, settings: VisionSettings) -> None:
-        """Stores the settings, and notes if the tick came through."""
+        """Store the settings, and note if the tick came through."""
         self._look(settings)
         super().write(settings)
 
     def forget(self) -> None:
-        """Removes them, and notes the same."""
+        """Remove them, and note the same."""
         self._look(None)
         super().forget()
 
@@ -54,21 +54,21 @@ def file(tmp_path: Path) -> WatchedFile:
 
 
 @pytest.fixture
-def robot(tmp_path: Path, file: WatchedFile) -> Iterator[Robot]:
+def robot(tmp_path: Path, file: WatchedFile) -> Iterator[RobotRuntime]:
     with ZenohTransport("turtle", listen=[f"unixsock-stream/{tmp_path}/zenoh"]) as messages:
-        file.robot = Robot(Config(), str(tmp_path / "port"), messages, vision_file=file)
+        file.robot = RobotRuntime(Config(), str(tmp_path / "port"), messages, vision_file=file)
         yield file.robot
 
 
-def test_storing_holds_up_no_control_tick(robot: Robot, file: WatchedFile) -> None:
+def test_storing_holds_up_no_control_tick(robot: RobotRuntime, file: WatchedFile) -> None:
     Commands(robot).do["parameters"]({"values": {"vision.rate": 4, "vision.colour": "red"}})
-    assert [(one.rate, one.colour) for one in file.stored if one] == [(4, "red")]
+    assert [(settings.rate, settings.colour) for settings in file.stored if settings] == [(4, "red")]
     Commands(robot).do["vision_settings"](robot.config.vision.settings.table())
     assert file.stored[1:] == [None]
     assert file.ticks == [True, True]
 
 
-def test_what_a_mission_sets_and_puts_back_is_not_stored(robot: Robot, file: WatchedFile) -> None:
+def test_what_a_mission_sets_and_puts_back_is_not_stored(robot: RobotRuntime, file: WatchedFile) -> None:
     colour = robot.vision.settings.colour
     sets = "{ do = 'set', parameter = 'vision.colour', value = 'red' }"
     text = mission(sets, "{ do = 'set', parameter = 'vision.rate', value = 4 }")

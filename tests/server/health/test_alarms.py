@@ -1,4 +1,3 @@
-import asyncio
 import errno
 import shutil
 from dataclasses import replace
@@ -10,8 +9,7 @@ import pytest
 from robot_runtime.contract.documents import Alarm, Event
 from robot_runtime.control.alarms import Alarms
 from server.app import create_app
-from server.features.sessions.recorder import Recorder
-from server.health.faults import FAULTS
+from server.health.faults import SERVER_FAULTS
 from server.health.watchdog import (
     DOWN,
     HUNG_SECONDS,
@@ -24,6 +22,7 @@ from server.health.watchdog import (
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.managed_process import ManagedProcess
+from server.recording.recorder import Recorder
 from tests.server.blocks import state_block
 from tests.server.health.monitor_rig import MonitorRig
 from tests.server.new_database import place_with_samples
@@ -36,7 +35,7 @@ class AlarmRig(MonitorRig):
     def __init__(self, settings: Settings, store: Store) -> None:
         super().__init__(settings, store, *DOWN)
         self.told: list[Event] = []
-        self.alarms = Alarms(self.clock, FAULTS, self.told.append)
+        self.alarms = Alarms(self.clock, SERVER_FAULTS, self.told.append)
         self.watchdog = Watchdog(
             settings,
             self.clock,
@@ -48,12 +47,12 @@ class AlarmRig(MonitorRig):
         )
         self.throttled: int | None = 0
 
-    def spend(self, seconds: float, **said: Any) -> None:
+    def spend(self, seconds: float, **answer: Any) -> None:
         """Advance the clock; each callable of `said` gets every step's number."""
         end = self.clock.now() + seconds
         while self.clock.now() < end:
             self.clock.forward(PERIOD)
-            for hear in said.values():
+            for hear in answer.values():
                 hear(round(self.clock.now() / PERIOD))
             self.watchdog.check_once()
 
@@ -109,11 +108,11 @@ def test_a_silent_simulator_that_the_runtime_has_noticed_is_no_second_alarm(
 
 def test_an_alarm_says_what_follows_from_it_and_when_it_was_over(rig: AlarmRig) -> None:
     rig.spend(3.0)
-    (silent,) = [one for one in rig.alarms.listed() if one.fault == "runtime_silent"]
+    (silent,) = [alarm for alarm in rig.alarms.listed() if alarm.fault == "runtime_silent"]
     assert (silent.until, "runtime_stalled" in silent.consequences) == (None, True)
     last_seen = rig.clock.now()
     rig.spend(2.0, all=rig.receive)
-    (silent,) = [one for one in rig.alarms.listed() if one.fault == "runtime_silent"]
+    (silent,) = [alarm for alarm in rig.alarms.listed() if alarm.fault == "runtime_silent"]
     assert silent.until == pytest.approx(last_seen)
 
 
@@ -242,12 +241,12 @@ def test_a_disk_that_is_gone_is_an_alarm_and_the_watch_goes_on(
 
 
 def test_a_supply_that_is_too_low_is_an_alarm_also_for_a_moment(rig: AlarmRig) -> None:
-    told = []
+    notices = []
     for bits in (0x0, 0x10001, 0x10000, 0x10000, None):
         rig.throttled = bits
         rig.spend(SUPPLY_SECONDS, all=rig.receive)
-        told.append("undervoltage" in rig.active())
-    assert told == [False, True, False, False, False]
+        notices.append("undervoltage" in rig.active())
+    assert notices == [False, True, False, False, False]
     rig.throttled = 0x0
     rig.spend(SUPPLY_SECONDS, all=rig.receive)
     rig.throttled = 0x10000
@@ -265,43 +264,42 @@ def test_a_damaged_configuration_is_an_alarm(settings: Settings, store: Store) -
 
 
 def test_every_fault_has_a_cause_and_a_remedy() -> None:
-    for fault in FAULTS.values():
+    for fault in SERVER_FAULTS.values():
         assert fault.cause.endswith(".")
         assert fault.remedy.endswith(".")
 
 
-def test_a_background_task_that_fails_is_an_alarm_and_in_the_log(
+async def test_a_background_task_that_fails_is_an_alarm_and_in_the_log(
     settings: Settings, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     async def fail(_: Recorder) -> None:
         raise TypeError("not a document")
 
-    async def scenario() -> Alarm:
-        await place_with_samples(settings.data)
-        app = create_app(settings)
-        async with app.router.lifespan_context(app):
-            alarms: Alarms = app.state.container.services.get(Alarms)
-            await until(lambda: any(one.fault == "server_task_failed" for one in alarms.listed()), "an alarm")
-            return next(one for one in alarms.listed() if one.fault == "server_task_failed")
-
     monkeypatch.setattr(Recorder, "run", fail)
-    alarm = asyncio.run(scenario())
+    await place_with_samples(settings.data)
+    app = create_app(settings)
+    async with app.router.lifespan_context(app):
+        alarms: Alarms = app.state.container.services.get(Alarms)
+        await until(lambda: any(alarm.fault == "server_task_failed" for alarm in alarms.listed()), "an alarm")
+        alarm = next(alarm for alarm in alarms.listed() if alarm.fault == "server_task_failed")
     assert "not a document" in alarm.what
     assert (alarm.severity, alarm.active) == ("alarm", True)
-    (record,) = [one for one in caplog.records if one.name == "server.container"]
+    (record,) = [entry for entry in caplog.records if entry.name == "server.container"]
     assert record.exc_info is not None
 
 
-def test_a_restarted_server_raises_an_alarm(settings: Settings) -> None:
+async def test_a_restarted_server_raises_an_alarm(settings: Settings) -> None:
     async def started(ended: str) -> list[tuple[str, str, str]]:
         await place_with_samples(settings.data)
         app = create_app(settings)
         app.state.ended = ended
         async with app.router.lifespan_context(app):
             alarms = app.state.container.services.get(Alarms).listed()
-        return [(one.fault, one.what, one.severity) for one in alarms if one.fault == "server_restarted"]
+        return [
+            (alarm.fault, alarm.what, alarm.severity) for alarm in alarms if alarm.fault == "server_restarted"
+        ]
 
-    assert asyncio.run(started("")) == []
-    said = asyncio.run(started("The server was ended by signal SIGKILL."))
-    words = "The server was ended by signal SIGKILL. It was started again."
-    assert said == [("server_restarted", words, "caution")]
+    assert await started("") == []
+    answer = await started("The server was ended by signal SIGKILL.")
+    text = "The server was ended by signal SIGKILL. It was started again."
+    assert answer == [("server_restarted", text, "caution")]

@@ -180,7 +180,7 @@ def test_a_board_without_its_firmware_is_reported_until_it_answers(rig: MonitorR
 
 
 def test_a_real_robot_has_no_simulator(settings: Settings, store: Store) -> None:
-    rig = MonitorRig(replace(settings, mode="robot"), store, "runtime")
+    rig = MonitorRig(replace(settings, robot=replace(settings.robot, mode="robot")), store, "runtime")
     rig.run_all()
     rig.receive(0)
     rig.receive(1)

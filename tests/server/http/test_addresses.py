@@ -1,11 +1,10 @@
 import pytest
 
-from server.platform.settings import Settings
-from tests.server.serving import Served, play
+from tests.server.serving import Served
 
 
 @pytest.mark.parametrize(
-    ("method", "path", "status", "words"),
+    ("method", "path", "status", "message"),
     [
         ("POST", "/robot/commands/fly", 404, "There is no command 'fly'."),
         ("POST", "/robot/commands/parameter", 404, "Did you mean 'parameters'?"),
@@ -21,35 +20,26 @@ from tests.server.serving import Served, play
         ("POST", "/control/take?Over=true", 422, "Did you mean 'over'?"),
     ],
 )
-def test_what_there_is_not_is_refused_in_words(
-    settings: Settings, method: str, path: str, status: int, words: str
+async def test_what_there_is_not_is_refused_in_words(
+    method: str, path: str, status: int, message: str, served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        answer = await served.api.request(method, path, json={} if method == "POST" else None)
-        assert (answer.status_code, words in answer.json()["detail"]) == (status, True), answer.text
-
-    play(settings, scenario)
+    answer = await served.api.request(method, path, json={} if method == "POST" else None)
+    assert (answer.status_code, message in answer.json()["detail"]) == (status, True), answer.text
 
 
-def test_options_and_allow_name_every_method(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        for path, methods in (
-            ("/missions", "GET, POST, OPTIONS"),
-            ("/sessions/7", "DELETE, GET, PATCH, OPTIONS"),
-            ("/robot/stop", "POST, OPTIONS"),
-        ):
-            answer = await served.api.options(path)
-            assert (answer.status_code, answer.headers["allow"]) == (204, methods)
-            answer = await served.api.put(path)
-            assert (answer.status_code, answer.headers["allow"]) == (405, methods)
-
-    play(settings, scenario)
+async def test_options_and_allow_name_every_method(served: Served) -> None:
+    for path, methods in (
+        ("/missions", "GET, POST, OPTIONS"),
+        ("/sessions/7", "DELETE, GET, PATCH, OPTIONS"),
+        ("/robot/stop", "POST, OPTIONS"),
+    ):
+        answer = await served.api.options(path)
+        assert (answer.status_code, answer.headers["allow"]) == (204, methods)
+        answer = await served.api.put(path)
+        assert (answer.status_code, answer.headers["allow"]) == (405, methods)
 
 
-def test_stop_stops_whatever_else_it_says(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        answer = await served.api.post("/robot/stop?now=1")
-        assert answer.status_code == 204
-        assert served.runtime.asked == [("stop", {})]
-
-    play(settings, scenario)
+async def test_stop_stops_whatever_else_it_says(served: Served) -> None:
+    answer = await served.api.post("/robot/stop?now=1")
+    assert answer.status_code == 204
+    assert served.runtime.asked == [("stop", {})]

@@ -1,6 +1,5 @@
 """The audit log: what the server and its shell write into it, and what nobody can do to it."""
 
-import asyncio
 import json
 import resource
 from dataclasses import replace
@@ -54,38 +53,35 @@ def test_tables_name_operations_that_exist(settings: Settings) -> None:
 
 def test_what_only_looks_is_in_no_log(settings: Settings) -> None:
     asked = {
-        one.operation_id
-        for one in iter_route_contexts([*create_app(replace(settings, every_feature=True)).routes])
-        if need_of(one) is Need.VIEWER and not (one.methods or set()) <= SAFE_METHODS
+        context.operation_id
+        for context in iter_route_contexts([*create_app(replace(settings, every_feature=True)).routes])
+        if need_of(context) is Need.VIEWER and not (context.methods or set()) <= SAFE_METHODS
     }
     assert asked - UNCHANGING == {"signOut", "startExport", "stopRobot"}
 
 
-def test_sign_in_refusals_roles_arm_and_stop_are_written_with_who_and_where(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with open_house(settings) as house:
-            await act(house)
-        acts = [(one.who, one.role, one.address, one.outcome) for one in reversed(written(settings))]
-        what = [one.about for one in reversed(written(settings))]
-        assert acts == [
-            ("the shell of this computer", "operator", FAR, "done"),
-            ("Eve", "viewer", FAR, "done"),
-            ("Eve", "viewer", FAR, "refused"),
-            ("operator", "operator", FAR, "done"),
-            ("operator", "operator", FAR, "refused"),
-            ("control", "operator", FAR, "done"),
-            ("control", "operator", FAR, "done"),
-            ("", "", FAR, "refused"),
-            ("control", "operator", "", "done"),
-        ]
-        assert what[1] == 'POST /api/access/pair {"name": "Eve"}'
-        assert '{"role": "operator"}' in what[3]
-        assert what[-2] == "GET /api/robot"
-        assert "page was closed" in what[-1]
-        files = {path.stem.rstrip("0123456789") for path in (settings.data.audit / "own").iterdir()}
-        assert files == {"", "access", "arming"}
-
-    asyncio.run(scenario())
+async def test_sign_in_refusals_roles_arm_and_stop_are_written_with_who_and_where(settings: Settings) -> None:
+    async with open_house(settings) as house:
+        await act(house)
+    acts = [(entry.who, entry.role, entry.address, entry.outcome) for entry in reversed(written(settings))]
+    what = [entry.about for entry in reversed(written(settings))]
+    assert acts == [
+        ("the shell of this computer", "operator", FAR, "done"),
+        ("Eve", "viewer", FAR, "done"),
+        ("Eve", "viewer", FAR, "refused"),
+        ("operator", "operator", FAR, "done"),
+        ("operator", "operator", FAR, "refused"),
+        ("control", "operator", FAR, "done"),
+        ("control", "operator", FAR, "done"),
+        ("", "", FAR, "refused"),
+        ("control", "operator", "", "done"),
+    ]
+    assert what[1] == 'POST /api/access/pair {"name": "Eve"}'
+    assert '{"role": "operator"}' in what[3]
+    assert what[-2] == "GET /api/robot"
+    assert "page was closed" in what[-1]
+    files = {path.stem.rstrip("0123456789") for path in (settings.data.audit / "own").iterdir()}
+    assert files == {"", "access", "arming"}
 
 
 async def act(house: House) -> None:
@@ -102,14 +98,14 @@ async def act(house: House) -> None:
     log._windows.clear()
 
     async def ask(who: Somebody, method: str, path: str, body: object = None) -> tuple[int, bytes]:
-        status, headers, told = await house.ask(who, method, path, right, body, address=FAR)
+        status, headers, report = await house.ask(who, method, path, right, body, address=FAR)
         if path.endswith("/pair"):
-            who.headers |= signed_in(headers, told)
-        return status, told
+            who.headers |= signed_in(headers, report)
+        return status, report
 
-    _, told = await ask(house.shell, "POST", "/api/access/codes", {"role": "viewer"})
+    _, report = await ask(house.shell, "POST", "/api/access/codes", {"role": "viewer"})
     eve = Somebody()
-    await ask(eve, "POST", "/api/access/pair", {"code": json.loads(told)["code"], "name": "Eve"})
+    await ask(eve, "POST", "/api/access/pair", {"code": json.loads(report)["code"], "name": "Eve"})
     await ask(eve, "POST", "/api/sessions", {"name": "mine"})
     await ask(eve, "GET", "/api/robot")
     await ask(operator, "PATCH", "/api/access/devices/1", {"role": "operator"})
@@ -125,13 +121,13 @@ def written(settings: Settings) -> list[AuditEntry]:
 
 
 def test_arm_and_stop_are_notices_that_name_who(tmp_path: Path) -> None:
-    said: list[tuple[str, str]] = []
-    log = AuditLog(tmp_path, SimulatedClock(), lambda operation, text: said.append((operation, text)))
+    answer: list[tuple[str, str]] = []
+    log = AuditLog(tmp_path, SimulatedClock(), lambda operation, text: answer.append((operation, text)))
     acts = ("commandArm", "refused"), ("commandArm", "done"), ("startMission", "done"), ("stopRobot", "done")
     for operation, outcome in acts:
         log.record(ANNA, "", "Arm", "", "refused" if outcome == "refused" else "done", operation)
     log.close()
-    assert said == [
+    assert answer == [
         ("commandArm", "“Anna” armed the robot."),
         ("startMission", "“Anna” started a mission."),
         ("stopRobot", "“Anna” pressed STOP."),
@@ -170,8 +166,12 @@ def test_no_program_of_an_operator_pushes_out_what_others_did(
             log.record(PROGRAM, "", f"Action {number % 20}", "x" * 400, "done", "stopRobot")
         clock.forward(WINDOW)
     log.close()
-    found = list(read_entries(tmp_path))
-    assert [one.action for one in found if one.who == "Anna"] == ["Delete a session", "Arm", "Make a token"]
+    entries = list(read_entries(tmp_path))
+    assert [file.action for file in entries if file.who == "Anna"] == [
+        "Delete a session",
+        "Arm",
+        "Make a token",
+    ]
     assert sum(path.stat().st_size for path in tmp_path.iterdir()) < 10 * 10_000
 
 
@@ -181,21 +181,18 @@ def test_a_program_has_as_many_entries_an_hour_whatever_it_does(tmp_path: Path) 
         log.record(PROGRAM, "", f"Action {number % 20}", "", "done")
     log.record(PROGRAM, "", "Delete a session", "", "done", "deleteSession", "deletion")
     log.close()
-    found = list(read_entries(tmp_path))
-    assert sum(one.count for one in found) == 2 * LIMIT_OPERATOR + 1
-    assert len(found) == LIMIT_OPERATOR + 2
-    assert "Delete a session" in {one.action for one in found}
+    entries = list(read_entries(tmp_path))
+    assert sum(entry.count for entry in entries) == 2 * LIMIT_OPERATOR + 1
+    assert len(entries) == LIMIT_OPERATOR + 2
+    assert "Delete a session" in {entry.action for entry in entries}
 
 
-def test_a_long_query_does_not_pad_an_entry(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with open_house(settings) as house:
-            right, operator = house.places("right", "right"), house.people["operator"]
-            await house.ask(operator, "POST", "/api/robot/stop", right, query="x" * 5000)
-        (entry, *_) = (one for one in read_entries(settings.data.audit) if "/api/robot/stop" in one.about)
-        assert entry.about == "POST /api/robot/stop?" + "x" * QUERY_MAX
-
-    asyncio.run(scenario())
+async def test_a_long_query_does_not_pad_an_entry(settings: Settings) -> None:
+    async with open_house(settings) as house:
+        right, operator = house.places("right", "right"), house.people["operator"]
+        await house.ask(operator, "POST", "/api/robot/stop", right, query="x" * 5000)
+    (entry, *_) = (entry for entry in read_entries(settings.data.audit) if "/api/robot/stop" in entry.about)
+    assert entry.about == "POST /api/robot/stop?" + "x" * QUERY_MAX
 
 
 def test_entries_wait_while_the_disk_takes_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -209,7 +206,7 @@ def test_entries_wait_while_the_disk_takes_none(tmp_path: Path, monkeypatch: pyt
         log._thread.submit(lambda: None).result()
     log.record(ANNA, "", "Disarm", "", "done")
     log.close()
-    assert [one.action for one in read_entries(tmp_path)] == ["Disarm", "Arm"]
+    assert [entry.action for entry in read_entries(tmp_path)] == ["Disarm", "Arm"]
 
 
 def test_a_line_that_was_cut_off_costs_no_other(tmp_path: Path) -> None:
@@ -227,16 +224,16 @@ def test_the_oldest_file_goes_when_there_are_too_many(
     for number in range(audit_file.FILES_MOST[""] + 2):
         append_entries(tmp_path, [entry(number)])
     assert len(list(tmp_path.iterdir())) == audit_file.FILES_MOST[""]
-    assert [one.time for one in read_entries(tmp_path)] == [9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0]
+    assert [entry.time for entry in read_entries(tmp_path)] == [9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0]
 
 
 def test_texts_of_others_turn_and_move_nothing(tmp_path: Path) -> None:
     log = make_log(tmp_path, SimulatedClock())
     log.record(ANNA, "", "Request", "\x1b]52;c;\u202e" + "x" * 1000, "done")
     log.close()
-    (found,) = read_entries(tmp_path)
-    assert found.about.isprintable()
-    assert len(found.about) <= audit_file.TEXT_MAX + 1
+    (entries,) = read_entries(tmp_path)
+    assert entries.about.isprintable()
+    assert len(entries.about) <= audit_file.TEXT_MAX + 1
 
 
 def test_a_command_in_the_shell_is_written_with_its_end(settings: Settings) -> None:
@@ -245,11 +242,11 @@ def test_a_command_in_the_shell_is_written_with_its_end(settings: Settings) -> N
     assert cli.main(["sessions", "list", *options]) == 0
     assert cli.main(["backup", str(settings.data.path / "copy.db"), *options]) == 0
     copied, copying, failed, begun = read_entries(settings.data.audit)
-    assert {one.who for one in (copied, copying, failed, begun)} == {SHELL.name}
+    assert {entry.who for entry in (copied, copying, failed, begun)} == {SHELL.name}
     assert (begun.action, begun.outcome) == (failed.action, "begun") == ("mucat sessions delete", "begun")
     assert json.loads(begun.about)["session"] == "5"
     assert (failed.outcome, "There is no session 5" in failed.about) == ("failed", True)
-    assert [(one.action, one.outcome) for one in (copying, copied)] == [
+    assert [(entry.action, entry.outcome) for entry in (copying, copied)] == [
         ("mucat backup", "begun"),
         ("mucat backup", "done"),
     ]
@@ -264,7 +261,7 @@ def test_a_command_in_the_shell_that_ends_with_a_status_has_failed(settings: Set
 
     options = ["--data", str(settings.data.path), "--config", str(settings.config)]
     assert check.main(options, "mucat", standalone_mode=False) == 3
-    assert [one.outcome for one in read_entries(settings.data.audit)] == ["failed", "begun"]
+    assert [entry.outcome for entry in read_entries(settings.data.audit)] == ["failed", "begun"]
 
 
 def test_entries_that_the_disk_takes_in_part_are_written_once(settings: Settings) -> None:
@@ -283,27 +280,24 @@ def test_entries_that_the_disk_takes_in_part_are_written_once(settings: Settings
     assert list(read_entries(folder)) == entries[::-1]
 
 
-def test_the_list_is_filtered_and_exported_without_formulas(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with open_house(settings) as house:
-            right, operator = house.places("right", "right"), house.people["operator"]
-            found = [entry(1), AuditEntry(2.0, "=1+1", 8, "viewer", "192.0.2.2", "STOP", "", "done")]
-            append_entries(settings.data.audit, found)
+async def test_the_list_is_filtered_and_exported_without_formulas(settings: Settings) -> None:
+    async with open_house(settings) as house:
+        right, operator = house.places("right", "right"), house.people["operator"]
+        results = [entry(1), AuditEntry(2.0, "=1+1", 8, "viewer", "192.0.2.2", "STOP", "", "done")]
+        append_entries(settings.data.audit, results)
 
-            async def ask(path: str, query: str) -> bytes:
-                status, _, told = await house.ask(operator, "GET", path, right, query=query)
-                assert status == 200
-                return told
+        async def ask(path: str, query: str) -> bytes:
+            status, _, report = await house.ask(operator, "GET", path, right, query=query)
+            assert status == 200
+            return report
 
-            for query, times in (
-                ("who=anna&until=9", [1.0]),
-                ("what=stop&until=9", [2.0]),
-                ("since=1.5&until=9", [2.0]),
-                ("until=9", [2.0, 1.0]),
-            ):
-                listed = json.loads(await ask("/api/audit", query))
-                assert ([one["time"] for one in listed["entries"]], listed["more"]) == (times, False)
-            lines = (await ask("/api/audit/csv", "until=9")).decode().splitlines()
-            assert lines[1].startswith("1970-01-01T00:00:02.000+00:00,'=1+1,8,viewer,192.0.2.2,STOP,")
-
-    asyncio.run(scenario())
+        for query, times in (
+            ("who=anna&until=9", [1.0]),
+            ("what=stop&until=9", [2.0]),
+            ("since=1.5&until=9", [2.0]),
+            ("until=9", [2.0, 1.0]),
+        ):
+            listed = json.loads(await ask("/api/audit", query))
+            assert ([entry["time"] for entry in listed["entries"]], listed["more"]) == (times, False)
+        lines = (await ask("/api/audit/csv", "until=9")).decode().splitlines()
+        assert lines[1].startswith("1970-01-01T00:00:02.000+00:00,'=1+1,8,viewer,192.0.2.2,STOP,")

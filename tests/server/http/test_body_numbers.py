@@ -18,56 +18,56 @@ Place = tuple[str | int, ...]
 
 
 def bodies() -> Iterator[tuple[str, TypeAdapter[Any]]]:
-    """The name and the schema of each operation's body."""
-    app = create_app(Settings(data=DataFolder(Path("data", every_feature=True)), config=Path("robot.toml")))
+    """Yield the name and the schema of each operation's body."""
+    app = create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml"), every_feature=True))
     for route in iter_route_contexts([*app.routes]):
         field = getattr(route, "body_field", None)
         if field is not None:
             yield str(getattr(route, "operation_id", "")), TypeAdapter(field.field_info.annotation)
 
 
-def list_numbers(schema: dict[str, Any], whole: dict[str, Any], place: Place = ()) -> Iterator[Place]:
-    """The places of the numbers in documents of a schema; keys and items are the first ones."""
-    if len(place) > DEPTH_MAX:
+def list_numbers(schema: dict[str, Any], whole: dict[str, Any], position: Place = ()) -> Iterator[Place]:
+    """Yield the places of the numbers in documents of a schema; keys and items are the first ones."""
+    if len(position) > DEPTH_MAX:
         return
     if "$ref" in schema:
         schema = whole["$defs"][schema["$ref"].rsplit("/", 1)[1]]
     options = schema.get("anyOf", schema.get("oneOf", [schema]))
-    if any(one.get("type") in ("string", "boolean") for one in options):
+    if any(option.get("type") in ("string", "boolean") for option in options):
         return
-    for one in options:
-        if one.get("type") in NUMBERS:
-            yield place
-        if one is not schema:
-            yield from list_numbers(one, whole, place)
+    for item in options:
+        if item.get("type") in NUMBERS:
+            yield position
+        if item is not schema:
+            yield from list_numbers(item, whole, position)
     for name, inner in schema.get("properties", {}).items():
-        yield from list_numbers(inner, whole, (*place, name))
+        yield from list_numbers(inner, whole, (*position, name))
     if isinstance(inner := schema.get("additionalProperties"), dict):
-        yield from list_numbers(inner, whole, (*place, "key"))
+        yield from list_numbers(inner, whole, (*position, "key"))
     if "items" in schema:
-        yield from list_numbers(schema["items"], whole, (*place, 0))
+        yield from list_numbers(schema["items"], whole, (*position, 0))
     for index, inner in enumerate(schema.get("prefixItems", [])):
-        yield from list_numbers(inner, whole, (*place, index))
+        yield from list_numbers(inner, whole, (*position, index))
 
 
-def document(place: Place, value: object) -> object:
-    """A document with nothing but the value at its place."""
-    for step in reversed(place):
+def document(position: Place, value: object) -> object:
+    """Return a document with nothing but the value at its place."""
+    for step in reversed(position):
         value = {step: value} if isinstance(step, str) else [value] * (step + 1)
     return value
 
 
-def kinds(adapter: TypeAdapter[Any], content: object, place: Place) -> set[str]:
-    """The errors of a value at a place, without those that a document has anyway."""
+def kinds(adapter: TypeAdapter[Any], content: object, position: Place) -> set[str]:
+    """Return the errors of a value at a place, without those that a document has anyway."""
     try:
         adapter.validate_python(content)
     except ValidationError as problem:
         return {
-            str(one["type"])
-            for one in problem.errors(include_url=False)
+            str(error["type"])
+            for error in problem.errors(include_url=False)
             # Unions add their alternatives to the places, and errors of those that have no such field.
-            if tuple(step for step in one["loc"] if step in place) == place
-            and one["type"] != "extra_forbidden"
+            if tuple(step for step in error["loc"] if step in position) == position
+            and error["type"] != "extra_forbidden"
         }
     return set()
 
@@ -75,12 +75,12 @@ def kinds(adapter: TypeAdapter[Any], content: object, place: Place) -> set[str]:
 def test_what_is_no_finite_number_is_refused_in_every_body() -> None:
     accepted, asked = [], set()
     for name, adapter in bodies():
-        for place in dict.fromkeys(list_numbers(schema := adapter.json_schema(), schema)):
-            asked.add((name, *place))
+        for position in dict.fromkeys(list_numbers(schema := adapter.json_schema(), schema)):
+            asked.add((name, *position))
             for value in NO_NUMBERS:
-                content = document(place, value)
-                if not kinds(adapter, content, place):
-                    accepted.append((name, place, str(value)[:10]))
+                content = document(position, value)
+                if not kinds(adapter, content, position):
+                    accepted.append((name, position, str(value)[:10]))
     assert accepted == []
     assert {
         ("makeToken", "days"),

@@ -10,7 +10,6 @@ import subprocess
 import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from dataclasses import replace
 from math import inf
 
 import httpx
@@ -30,15 +29,16 @@ from server.http.connections import (
 from server.http.listener import BACKLOG, open_socket
 from server.http.serving import REPORT_SECONDS, OutOfFiles, WebServer, make_server
 from server.platform.certificate import Certificate, prepare_certificate, trust_only
+from server.platform.server_config import ServerConfig
 from server.platform.settings import Settings
-from tests.server.serving import Served, next_text, play
+from tests.server.serving import next_text, serve
 from tests.server.waiting import SECONDS, until
 from tests.shell import shell_headers
 
 Connection = tuple[asyncio.StreamReader, asyncio.StreamWriter]
 
 
-class Site:
+class ConnectionSite:
     """A small server in simulated time, which reads bodies piece by piece."""
 
     def __init__(self, total: int) -> None:
@@ -65,7 +65,7 @@ class Site:
         return reader, writer
 
     async def connect(self, text: str = "") -> Connection:
-        """A connection that the server has admitted, with the first bytes of a request."""
+        """Return a connection that the server has admitted, with the first bytes of a request."""
         before = len(self.limits)
         reader, writer = await self.open()
         await until(lambda: len(self.limits) > before, "the connection")
@@ -78,24 +78,24 @@ class Site:
 
 
 @asynccontextmanager
-async def site(total: int = 400, certificate: Certificate | None = None) -> AsyncIterator[Site]:
-    one = Site(total)
-    server = WebServer(make_server(one.app, certificate).config, one.limits)
+async def site(total: int = 400, certificate: Certificate | None = None) -> AsyncIterator[ConnectionSite]:
+    item = ConnectionSite(total)
+    server = WebServer(make_server(item.app, certificate).config, item.limits)
     with open_socket("127.0.0.1", 0) as listener:
-        one.port = listener.getsockname()[1]
+        item.port = listener.getsockname()[1]
         running = asyncio.create_task(server.serve(sockets=[listener]))
         await until(lambda: server.started, "the server")
         try:
-            yield one
+            yield item
         finally:
-            for writer in one.writers:
+            for writer in item.writers:
                 writer.close()
             server.should_exit = True
             await running
 
 
 async def has_ended(connection: Connection) -> bool:
-    """True where the server closes this connection, soon."""
+    """Return True where the server closes this connection, soon."""
     reader, _ = connection
     try:
         async with asyncio.timeout(30):
@@ -108,163 +108,138 @@ HALF_BODY = "POST /upload HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n{"
 LONG_BODY = HALF_BODY.replace("9", "54001")
 
 
-def test_a_head_has_ten_seconds_also_where_it_comes_byte_by_byte() -> None:
-    async def scenario() -> None:
-        async with site() as one:
-            silent, slow = await one.connect(), await one.connect("GET / HT")
-            for letter in "TP/":
-                one.pass_time(HEAD_SECONDS / 4)
-                slow[1].write(letter.encode())
-                await slow[1].drain()
-            assert len(one.limits) == 2
-            one.pass_time(HEAD_SECONDS / 4)
-            assert len(one.limits) == 0
-            assert await has_ended(silent)
-            assert await has_ended(slow)
-
-    asyncio.run(scenario())
+async def test_a_head_has_ten_seconds_also_where_it_comes_byte_by_byte() -> None:
+    async with site() as server:
+        silent, slow = await server.connect(), await server.connect("GET / HT")
+        for letter in "TP/":
+            server.pass_time(HEAD_SECONDS / 4)
+            slow[1].write(letter.encode())
+            await slow[1].drain()
+        assert len(server.limits) == 2
+        server.pass_time(HEAD_SECONDS / 4)
+        assert len(server.limits) == 0
+        assert await has_ended(silent)
+        assert await has_ended(slow)
 
 
-def test_the_head_of_a_further_request_has_ten_seconds_too_and_an_idle_connection_more() -> None:
-    async def scenario() -> None:
-        async with site() as one:
-            request = "GET / HTTP/1.1\r\nHost: x\r\n\r\n"
-            idle, slow = await one.connect(request), await one.connect(request)
-            for reader, _ in (idle, slow):
-                assert b"Not Found" in await reader.readuntil(b"}")
-            slow[1].write(b"GET")
-            later = one.clock.now() + HEAD_SECONDS
-            await until(lambda: any(found.overdue(later) for found in one.limits), "the first bytes")
-            one.pass_time(HEAD_SECONDS)
-            assert await has_ended(slow)
-            idle[1].write(request.encode())
-            assert b"Not Found" in await idle[0].readuntil(b"}")
-
-    asyncio.run(scenario())
+async def test_the_head_of_a_further_request_has_ten_seconds_too_and_an_idle_connection_more() -> None:
+    async with site() as server:
+        request = "GET / HTTP/1.1\r\nHost: x\r\n\r\n"
+        idle, slow = await server.connect(request), await server.connect(request)
+        for reader, _ in (idle, slow):
+            assert b"Not Found" in await reader.readuntil(b"}")
+        slow[1].write(b"GET")
+        later = server.clock.now() + HEAD_SECONDS
+        await until(lambda: any(result.overdue(later) for result in server.limits), "the first bytes")
+        server.pass_time(HEAD_SECONDS)
+        assert await has_ended(slow)
+        idle[1].write(request.encode())
+        assert b"Not Found" in await idle[0].readuntil(b"}")
 
 
-def test_a_body_may_last_as_long_as_it_progresses() -> None:
-    async def scenario() -> None:
-        async with site() as one:
-            upload, hanging = await one.connect(LONG_BODY), await one.connect(HALF_BODY)
-            await until(lambda: one.got == [b"{"] * 2, "both bodies")
-            pieces = 18_000
-            for number in range(3):
-                one.pass_time(BODY_SECONDS * 0.6)
-                upload[1].write(b"x" * pieces)
-                size = (number + 1) * pieces + 2
-                await until(lambda: len(b"".join(one.got)) == size, "a further piece")  # noqa: B023
-            assert await has_ended(hanging)
-            await until(lambda: one.left == ["ClientDisconnect"], "the end of the hanging body")
-            assert b"done" in await upload[0].readuntil(b'done"')
-
-    asyncio.run(scenario())
+async def test_a_body_may_last_as_long_as_it_progresses() -> None:
+    async with site() as server:
+        upload, hanging = await server.connect(LONG_BODY), await server.connect(HALF_BODY)
+        await until(lambda: server.got == [b"{"] * 2, "both bodies")
+        pieces = 18_000
+        for number in range(3):
+            server.pass_time(BODY_SECONDS * 0.6)
+            upload[1].write(b"x" * pieces)
+            size = (number + 1) * pieces + 2
+            await until(lambda: len(b"".join(server.got)) == size, "a further piece")  # noqa: B023
+        assert await has_ended(hanging)
+        await until(lambda: server.left == ["ClientDisconnect"], "the end of the hanging body")
+        assert b"done" in await upload[0].readuntil(b'done"')
 
 
-def test_a_body_that_drips_is_ended() -> None:
-    async def scenario() -> None:
-        async with site() as one:
-            dripping = await one.connect(HALF_BODY)
-            await until(lambda: one.got == [b"{"], "the body")
-            one.pass_time(BODY_SECONDS - 1)
-            dripping[1].write(b"x")
-            await until(lambda: len(one.got) == 2, "a further byte")
-            assert len(one.limits) == 1
-            one.pass_time(1.01)
-            assert len(one.limits) == 0
-            assert await has_ended(dripping)
-
-    asyncio.run(scenario())
+async def test_a_body_that_drips_is_ended() -> None:
+    async with site() as server:
+        dripping = await server.connect(HALF_BODY)
+        await until(lambda: server.got == [b"{"], "the body")
+        server.pass_time(BODY_SECONDS - 1)
+        dripping[1].write(b"x")
+        await until(lambda: len(server.got) == 2, "a further byte")
+        assert len(server.limits) == 1
+        server.pass_time(1.01)
+        assert len(server.limits) == 0
+        assert await has_ended(dripping)
 
 
-def test_connections_are_counted_from_accept_on_also_with_tls(settings: Settings) -> None:
-    certificate = prepare_certificate(replace(settings, tls=True))
+async def test_connections_are_counted_from_accept_on_also_with_tls(settings: Settings) -> None:
+    certificate = prepare_certificate(settings.with_section(ServerConfig(tls=True)))
 
-    async def scenario() -> None:
-        async with site(certificate=certificate) as one:
-            silent = [await one.connect() for _ in range(ADDRESS_MAX)]
-            assert len(one.limits) == ADDRESS_MAX
-            one.clock.forward(HEAD_SECONDS / 2)
-            tls = trust_only(settings.data)
-            address = f"https://127.0.0.1:{one.port}/upload"
-            async with httpx.AsyncClient(verify=tls) as client:
-                assert (await client.post(address, content=b"x")).text == '"done"'
-                assert await has_ended(silent[0])
-                one.pass_time(HEAD_SECONDS / 2)
-                assert len(one.limits) == 1
-                assert await has_ended(silent[1])
-                assert (await client.post(address, content=b"x")).text == '"done"'
-
-    asyncio.run(scenario())
+    async with site(certificate=certificate) as server:
+        silent = [await server.connect() for _ in range(ADDRESS_MAX)]
+        assert len(server.limits) == ADDRESS_MAX
+        server.clock.forward(HEAD_SECONDS / 2)
+        tls = trust_only(settings.data)
+        address = f"https://127.0.0.1:{server.port}/upload"
+        async with httpx.AsyncClient(verify=tls) as client:
+            assert (await client.post(address, content=b"x")).text == '"done"'
+            assert await has_ended(silent[0])
+            server.pass_time(HEAD_SECONDS / 2)
+            assert len(server.limits) == 1
+            assert await has_ended(silent[1])
+            assert (await client.post(address, content=b"x")).text == '"done"'
 
 
-def test_a_head_has_ten_seconds_from_the_end_of_the_tls_handshake(settings: Settings) -> None:
-    certificate = prepare_certificate(replace(settings, tls=True))
+async def test_a_head_has_ten_seconds_from_the_end_of_the_tls_handshake(settings: Settings) -> None:
+    certificate = prepare_certificate(settings.with_section(ServerConfig(tls=True)))
 
-    async def scenario() -> None:
-        async with site(certificate=certificate) as one:
-            reader, writer = await one.connect()
-            one.pass_time(0.9 * HEAD_SECONDS)
-            await writer.start_tls(trust_only(settings.data), server_hostname="127.0.0.1")
-            await until(lambda: any(isinstance(found, HttpProtocol) for found in one.limits), "the handshake")
-            one.pass_time(0.9 * HEAD_SECONDS)
-            writer.write(HALF_BODY.encode() + b"}" * 8)
-            async with asyncio.timeout(SECONDS):
-                assert b" 200 " in await reader.readline()
-            writer.close()
-
-    asyncio.run(scenario())
-
-
-def test_a_connection_that_waits_for_its_client_makes_room() -> None:
-    async def scenario() -> None:
-        async with site(total=3) as one:
-            first = await one.connect(HALF_BODY)
-            await until(lambda: one.got, "the body")
-            one.clock.forward(1)
-            for _ in range(2):
-                await one.connect()
-            await one.open()
-            assert await has_ended(first)
-            assert len(one.limits) == 3
-
-    asyncio.run(scenario())
+    async with site(certificate=certificate) as server:
+        reader, writer = await server.connect()
+        server.pass_time(0.9 * HEAD_SECONDS)
+        await writer.start_tls(trust_only(settings.data), server_hostname="127.0.0.1")
+        await until(
+            lambda: any(isinstance(result, HttpProtocol) for result in server.limits), "the handshake"
+        )
+        server.pass_time(0.9 * HEAD_SECONDS)
+        writer.write(HALF_BODY.encode() + b"}" * 8)
+        async with asyncio.timeout(SECONDS):
+            assert b" 200 " in await reader.readline()
+        writer.close()
 
 
-def test_an_address_has_so_many_connections_however_many_the_server_could_have() -> None:
-    async def scenario() -> None:
-        async with site() as one:
-            first = await one.connect()
-            one.clock.forward(1)
-            for _ in range(ADDRESS_MAX - 1):
-                await one.connect()
-            await one.open()
-            assert await has_ended(first)
-            assert len(one.limits) == ADDRESS_MAX
-
-    asyncio.run(scenario())
+async def test_a_connection_that_waits_for_its_client_makes_room() -> None:
+    async with site(total=3) as server:
+        first = await server.connect(HALF_BODY)
+        await until(lambda: server.got, "the body")
+        server.clock.forward(1)
+        for _ in range(2):
+            await server.connect()
+        await server.open()
+        assert await has_ended(first)
+        assert len(server.limits) == 3
 
 
-def test_requests_that_are_worked_on_are_not_ended_for_others() -> None:
-    async def scenario() -> None:
-        async with site(total=2) as one:
-            release = asyncio.Event()
+async def test_an_address_has_so_many_connections_however_many_the_server_could_have() -> None:
+    async with site() as server:
+        first = await server.connect()
+        server.clock.forward(1)
+        for _ in range(ADDRESS_MAX - 1):
+            await server.connect()
+        await server.open()
+        assert await has_ended(first)
+        assert len(server.limits) == ADDRESS_MAX
 
-            async def work() -> str:
-                one.got.append(b"working")
-                await release.wait()
-                return "done"
 
-            one.app.get("/work")(work)
-            request = "GET /work HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n"
-            busy = [await one.connect(request) for _ in range(2)]
-            await until(lambda: len(one.got) == 2, "both requests")
-            assert await has_ended(await one.open())
-            release.set()
-            for reader, _ in busy:
-                assert b"done" in await reader.read()
+async def test_requests_that_are_worked_on_are_not_ended_for_others() -> None:
+    async with site(total=2) as server:
+        release = asyncio.Event()
 
-    asyncio.run(scenario())
+        async def work() -> str:
+            server.got.append(b"working")
+            await release.wait()
+            return "done"
+
+        server.app.get("/work")(work)
+        request = "GET /work HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n"
+        busy = [await server.connect(request) for _ in range(2)]
+        await until(lambda: len(server.got) == 2, "both requests")
+        assert await has_ended(await server.open())
+        release.set()
+        for reader, _ in busy:
+            assert b"done" in await reader.read()
 
 
 def count_files() -> float:
@@ -275,7 +250,7 @@ def count_files() -> float:
         return inf
 
 
-def test_stop_and_an_open_page_are_served_while_300_silent_connections_hang(settings: Settings) -> None:
+async def test_stop_and_an_open_page_are_served_while_300_silent_connections_hang(settings: Settings) -> None:
     attack = """if True:
         import socket, sys
         sys.stdin.readline()
@@ -284,13 +259,13 @@ def test_stop_and_an_open_page_are_served_while_300_silent_connections_hang(sett
         sys.stdin.readline()
     """
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         stop = f"{served.api.base_url}robot/stop"
         # Read first: this process is the server's, and may soon open no more files.
         headers = shell_headers(settings.data)
         # Started first: a process inherits the limit.
         attacker = subprocess.Popen(
-            [sys.executable, "-c", attack, str(served.settings.port)],
+            [sys.executable, "-c", attack, str(served.settings.server.port)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
         )
@@ -316,8 +291,6 @@ def test_stop_and_an_open_page_are_served_while_300_silent_connections_hang(sett
             resource.setrlimit(resource.RLIMIT_NOFILE, limit)
             attacker.communicate(b"end\n")
 
-    play(settings, scenario)
-
 
 def test_missing_file_handles_are_reported_once_a_minute(caplog: pytest.LogCaptureFixture) -> None:
     clock = SimulatedClock()
@@ -336,19 +309,16 @@ def test_missing_file_handles_are_reported_once_a_minute(caplog: pytest.LogCaptu
         loop.close()
 
 
-def test_the_backlog_is_the_servers_own() -> None:
-    async def scenario() -> None:
-        server = make_server(FastAPI())
-        with open_socket("127.0.0.1", 0) as listener:
-            running = asyncio.create_task(server.serve(sockets=[listener]))
-            await until(lambda: server.started, "the server")
-            described = listener.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 32)
-            # Of a listening socket, `tcpi_sacked` is the greatest backlog.
-            assert struct.unpack_from("I", described, 28) == (BACKLOG,)
-            server.should_exit = True
-            await running
-
-    asyncio.run(scenario())
+async def test_the_backlog_is_the_servers_own() -> None:
+    server = make_server(FastAPI())
+    with open_socket("127.0.0.1", 0) as listener:
+        running = asyncio.create_task(server.serve(sockets=[listener]))
+        await until(lambda: server.started, "the server")
+        described = listener.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 32)
+        # Of a listening socket, `tcpi_sacked` is the greatest backlog.
+        assert struct.unpack_from("I", described, 28) == (BACKLOG,)
+        server.should_exit = True
+        await running
 
 
 def test_the_limit_of_open_files_is_raised() -> None:

@@ -7,10 +7,10 @@ from fastapi import FastAPI
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.problems import DocumentEntry
 from robot_runtime.errors import RefusedError
-from server.features.lease.lease import NotInControlError
-from server.features.sessions.recording import RecordingError
+from server.driving.lease import NotInControlError
 from server.http.error_handlers import add_error_handlers
 from server.http.sign_in.pairing_codes import TooManyTriesError
+from server.library.content import RecordingError
 from server.platform.errors import ApiError
 from server.platform.store import FULL, StoreError
 from server.stream.bridge import RuntimeSilentError
@@ -26,7 +26,7 @@ class TeapotError(ApiError):
 
 
 def ask(problem: Exception) -> httpx.Response:
-    """The answer of an application whose route raises this error."""
+    """Return the answer of an application whose route raises this error."""
     app = FastAPI()
     add_error_handlers(app)
 

@@ -8,9 +8,10 @@ from robot_runtime.contract.missions import NODES_MAX
 from robot_runtime.contract.vision_settings import COLOURS_MAX, MARKERS_MAX
 from robot_runtime.experiments.comm_test.document import CELLS_MAX
 from robot_runtime.experiments.scenario.document import EVENTS_MAX as SCENARIO_EVENTS_MAX
+from server.analysis.schemas import SESSIONS_MAX
 from server.app import create_app
+from server.driving.changes import SHOWN
 from server.features.comm_tests.runs import LISTED_MOST as TESTS_LISTED
-from server.features.comparison.schemas import SESSIONS_MAX
 from server.features.doors.house import CLIENTS_MAX
 from server.features.doors.subscriptions import SUBSCRIPTIONS_MAX
 from server.features.exports.archive_models import COLUMNS_MAX, TAGS_MAX, TOPICS_MAX
@@ -19,18 +20,18 @@ from server.features.layouts.library import LAYOUTS_MOST
 from server.features.missions.library import MISSIONS_MAX, VERSIONS_MAX
 from server.features.missions.schemas import SEEDS_MAX
 from server.features.panels.scripts import PANELS_SHOWN
-from server.features.parameters.changes import SHOWN
 from server.features.parameters.profiles import PROFILES_MAX
 from server.features.parameters.schemas import PARAMETERS_MAX
 from server.features.people.audit import LISTED_MOST as ENTRIES_LISTED
 from server.features.scenarios.library import SCENARIOS_MAX
 from server.features.scenarios.runs import QUEUE_MAX
-from server.features.sessions.crafts import CRAFTS_MAX
-from server.features.sessions.listing import COLUMNS_SHOWN, PAGE_MAX, TAGS_SHOWN
-from server.features.sessions.missions import MISSIONS_SHOWN
-from server.features.sessions.schemas import SHOWN_MAX
 from server.features.tuning.runs import LISTED_MOST as RUNS_LISTED
 from server.http.sign_in.devices import DEVICES_MAX
+from server.library.crafts import CRAFTS_MAX
+from server.library.listing import COLUMNS_SHOWN, PAGE_MAX, TAGS_SHOWN
+from server.library.missions import MISSIONS_SHOWN
+from server.library.schemas import SHOWN_MAX
+from server.library.snapshots import SNAPSHOTS_SHOWN
 from server.platform.settings import Settings
 
 LIMITS = {
@@ -71,6 +72,7 @@ LIMITS = {
     "/api/sessions/{session}/missions mission steps": NODES_MAX,
     "/api/sessions/{session}/missions started": NODES_MAX,
     "/api/sessions/{session}/signals": COLUMNS_MAX,
+    "/api/sessions/{session}/snapshots": SNAPSHOTS_SHOWN,
     "/api/sessions/{session}/timeline events": SHOWN_MAX,
     "/api/sessions/{session}/timeline holes": SHOWN_MAX,
     "/api/sessions/{session}/timeline markers": SHOWN_MAX,
@@ -151,32 +153,34 @@ FIXED = {
 """Lists whose length the program, the robot's build or a measurement of bounded length gives."""
 
 
-def lists(schema: dict[str, Any], parts: dict[str, Any], place: str = "", ahead: str = "") -> Iterator[str]:
-    """The places of the arrays and tables in a schema that name no most themselves; `ahead`: parts around."""
+def lists(
+    schema: dict[str, Any], parts: dict[str, Any], position: str = "", ahead: str = ""
+) -> Iterator[str]:
+    """Yield the paths of arrays and tables in a schema without a maximum; `ahead`: parts around."""
     if "$ref" in schema:
         name = schema["$ref"].rpartition("/")[2]
         if name not in ahead.split():
-            yield from lists(parts[name], parts, place, f"{ahead} {name}")
+            yield from lists(parts[name], parts, position, f"{ahead} {name}")
         return
-    for one in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ())):
-        yield from lists(one, parts, place, ahead)
-    for name, one in schema.get("properties", {}).items():
-        yield from lists(one, parts, f"{place} {name}", ahead)
+    for option in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ())):
+        yield from lists(option, parts, position, ahead)
+    for name, option in schema.get("properties", {}).items():
+        yield from lists(option, parts, f"{position} {name}", ahead)
     inner = schema.get("items") or schema.get("additionalProperties")
     if isinstance(inner, dict) and "maxItems" not in schema:
-        yield place
-        yield from lists(inner, parts, place, ahead)
+        yield position
+        yield from lists(inner, parts, position, ahead)
 
 
 def test_every_list_that_grows_with_data_has_a_limit(settings: Settings) -> None:
     document = create_app(replace(settings, every_feature=True)).openapi()
-    found = {
-        f"{path}{place}"
+    results = {
+        f"{path}{position}"
         for path, operations in document["paths"].items()
         for status, answer in operations.get("get", {}).get("responses", {}).items()
         if status.startswith("2")
         for content in answer.get("content", {}).values()
-        for place in lists(content.get("schema", {}), document["components"]["schemas"])
+        for position in lists(content.get("schema", {}), document["components"]["schemas"])
     }
-    assert found == LIMITS.keys() | FIXED
+    assert results == LIMITS.keys() | FIXED
     assert all(limit <= 5000 for limit in LIMITS.values())

@@ -23,52 +23,50 @@ from server.platform.settings import Settings
 from tests.server.waiting import SECONDS
 
 
-def test_a_device_has_one_heavy_request_at_a_time_and_few_that_wait() -> None:
-    async def scenario() -> None:
-        heavy = HeavyRequests()
-        begun: list[tuple[int, int]] = []
-        gates = [asyncio.Event() for _ in range(WAITING_MAX + 1)]
+async def test_a_device_has_one_heavy_request_at_a_time_and_few_that_wait() -> None:
+    heavy = HeavyRequests()
+    begun: list[tuple[int, int]] = []
+    gates = [asyncio.Event() for _ in range(WAITING_MAX + 1)]
 
-        async def ask(device: int, number: int) -> None:
-            async with heavy.turn(device):
-                begun.append((device, number))
-                await gates[number].wait()
+    async def ask(device: int, number: int) -> None:
+        async with heavy.turn(device):
+            begun.append((device, number))
+            await gates[number].wait()
 
-        tasks = [asyncio.create_task(ask(1, number)) for number in range(WAITING_MAX + 1)]
-        await asyncio.sleep(0)
-        assert begun == [(1, 0)]
-        with pytest.raises(TooManyHeavyError, match="Wait for their answers"):
-            async with asyncio.timeout(10):
-                await ask(1, 0)
-        other = asyncio.create_task(ask(2, 0))
-        await asyncio.sleep(0)
-        assert begun == [(1, 0), (2, 0)]
-        for gate in gates:
-            gate.set()
-        await asyncio.gather(other, *tasks)
-        assert [number for device, number in begun if device == 1] == list(range(WAITING_MAX + 1))
-        await ask(1, 0)
-
-    asyncio.run(scenario())
+    tasks = [asyncio.create_task(ask(1, number)) for number in range(WAITING_MAX + 1)]
+    await asyncio.sleep(0)
+    assert begun == [(1, 0)]
+    with pytest.raises(TooManyHeavyError, match="Wait for their answers"):
+        async with asyncio.timeout(10):
+            await ask(1, 0)
+    other = asyncio.create_task(ask(2, 0))
+    await asyncio.sleep(0)
+    assert begun == [(1, 0), (2, 0)]
+    for gate in gates:
+        gate.set()
+    await asyncio.gather(other, *tasks)
+    assert [number for device, number in begun if device == 1] == list(range(WAITING_MAX + 1))
+    await ask(1, 0)
 
 
 def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -> None:
-    turns = {get_args(one)[1].dependency for one in (Turn, ReadingTurn, RecordingTurn)}
+    turns = {get_args(annotation)[1].dependency for annotation in (Turn, ReadingTurn, RecordingTurn)}
     routes = iter_route_contexts([*create_app(replace(settings, every_feature=True)).routes])
     heavy = {
         str(getattr(route, "operation_id", ""))
         for route in routes
         if (dependant := getattr(route, "dependant", None)) is not None
-        and any(one.call in turns for one in dependant.dependencies)
+        and any(dependency.call in turns for dependency in dependant.dependencies)
     }
     assert heavy == {
         *("getComparisonReport", "compareSessions", "compareLines", "getBlocks"),
         *("checkScenario", "checkMission", "readVision", "examineAgain"),
         *("getSession", "getTimeline", "getThumbnail", "listSessionMissions"),
+        *("listSessionSnapshots", "getSnapshot"),
     }
 
 
-def test_a_reading_whose_caller_has_gone_is_left_out() -> None:
+async def test_a_reading_whose_caller_has_gone_is_left_out() -> None:
     read: list[str] = []
     app = FastAPI()
     app.state.services = {HeavyRequests: HeavyRequests()}
@@ -77,7 +75,7 @@ def test_a_reading_whose_caller_has_gone_is_left_out() -> None:
     def read_something(_: ReadingTurn, name: str) -> None:
         read.append(name)
 
-    async def scenario(name: str, *, gone: bool) -> None:
+    async def ask(name: str, *, gone: bool) -> None:
         async def receive() -> Message:
             if not gone:
                 await asyncio.sleep(SECONDS)
@@ -89,7 +87,7 @@ def test_a_reading_whose_caller_has_gone_is_left_out() -> None:
         scope = {"type": "http", "method": "GET", "path": "/read", "headers": [], IDENTITY: SHELL}
         await app(scope | {"query_string": f"name={name}".encode()}, receive, send)
 
-    asyncio.run(scenario("wanted", gone=False))
+    await ask("wanted", gone=False)
     with pytest.raises(TooManyHeavyError, match="given up"):
-        asyncio.run(scenario("gone", gone=True))
+        await ask("gone", gone=True)
     assert read == ["wanted"]

@@ -58,7 +58,14 @@ def test_a_file_keeps_the_app_s_policy_and_the_other_headers(folder: Path) -> No
     assert "immutable" in script.headers["cache-control"]
     assert script.headers["content-security-policy"].startswith("default-src 'self'; img-src 'self' blob:")
     assert get(folder, "/help/index.json").headers["cache-control"] == "no-cache"
-    assert get(folder, "/help/").headers["x-frame-options"] == "DENY"
+    # What is no page has the policy of all else: nobody frames it.
+    assert script.headers["x-frame-options"] == "DENY"
+
+
+def test_the_servers_own_page_alone_may_frame_the_help(folder: Path) -> None:
+    headers = get(folder, "/help/").headers
+    assert headers["x-frame-options"] == "SAMEORIGIN"
+    assert "frame-ancestors 'self'" in headers["content-security-policy"]
 
 
 @pytest.mark.parametrize("path", ["/help/gone", "/help/..%2fsecret.txt", "/help/%00", "/help/" + "a" * 300])

@@ -2,13 +2,13 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from server.features.sessions.session import UnknownSessionError
 from server.http.operations import Operations
 from server.http.sign_in.policy import Need, list_needs
 from server.platform.errors import ApiError
+from server.recording.session import UnknownSessionError
 
 
-class TeapotError(ApiError):
+class KettleError(ApiError):
     """It is a teapot
 
     What follows the first line is for whoever reads the source.
@@ -18,7 +18,7 @@ class TeapotError(ApiError):
 
 
 def describe(router: Operations) -> tuple[FastAPI, dict[str, Any]]:
-    """An application with these operations, and the paths of its document."""
+    """Return an application with these operations, and the paths of its document."""
     app = FastAPI()
     app.router.routes.extend(router.build())
     return app, app.openapi()["paths"]
@@ -52,7 +52,7 @@ def test_documented_answers_come_from_the_errors() -> None:
     router = Operations(prefix="/api")
 
     @router.operation(
-        "GET /tea", Need.VIEWER, TeapotError, UnknownSessionError, {409: "Refused now"}, media_type="text/tea"
+        "GET /tea", Need.VIEWER, KettleError, UnknownSessionError, {409: "Refused now"}, media_type="text/tea"
     )
     def get_tea() -> str:
         """Return tea."""

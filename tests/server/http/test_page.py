@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from server.http.page import Page, make_router
 
 
-class Client:
+class PageClient:
     """A client of the page's routes."""
 
     def __init__(self, folder: Path) -> None:
@@ -38,18 +38,18 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def client(folder: Path) -> Client:
-    return Client(folder)
+def client(folder: Path) -> PageClient:
+    return PageClient(folder)
 
 
-def test_paths_of_the_page_show_its_index(client: Client) -> None:
+def test_paths_of_the_page_show_its_index(client: PageClient) -> None:
     for path in ("/", "/operate", "/sessions/3"):
         answer = client.get(path)
         assert (answer.status_code, answer.text) == (200, "<p>index</p>")
         assert answer.headers["cache-control"] == "no-cache"
 
 
-def test_hashed_files_are_cached_for_ever_and_sent_compressed(client: Client) -> None:
+def test_hashed_files_are_cached_for_ever_and_sent_compressed(client: PageClient) -> None:
     plain = client.get("/assets/main-abc123.js", **{"accept-encoding": "identity"})
     packed = client.get("/assets/main-abc123.js", **{"accept-encoding": "br;q=1, gzip;q=0.8"})
     assert plain.text == packed.text == "run()"
@@ -61,12 +61,12 @@ def test_hashed_files_are_cached_for_ever_and_sent_compressed(client: Client) ->
         assert answer.headers["vary"] == "accept-encoding"
 
 
-def test_files_without_a_hash_are_revalidated(client: Client) -> None:
+def test_files_without_a_hash_are_revalidated(client: PageClient) -> None:
     answer = client.get("/icon.svg")
     assert (answer.text, answer.headers["cache-control"]) == ("<svg/>", "no-cache")
 
 
-def test_a_missing_asset_is_missing_and_not_the_index(client: Client) -> None:
+def test_a_missing_asset_is_missing_and_not_the_index(client: PageClient) -> None:
     assert client.get("/assets/main-old.js").status_code == 404
 
 
@@ -83,8 +83,8 @@ def test_a_missing_asset_is_missing_and_not_the_index(client: Client) -> None:
     ],
 )
 def test_no_path_leads_out_of_the_folder(folder: Path, path: str) -> None:
-    found = Page(folder).find(path)
-    assert found is None or found == folder / "index.html"
+    result = Page(folder).find(path)
+    assert result is None or result == folder / "index.html"
 
 
 def test_links_out_of_the_folder_are_not_followed(folder: Path) -> None:
@@ -93,7 +93,7 @@ def test_links_out_of_the_folder_are_not_followed(folder: Path) -> None:
 
 
 def test_a_missing_build_is_reported_and_found_once_it_exists(tmp_path: Path) -> None:
-    client = Client(tmp_path / "page")
+    client = PageClient(tmp_path / "page")
     answer = client.get("/")
     assert answer.status_code == 503
     assert "not built" in answer.text

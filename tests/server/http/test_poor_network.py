@@ -22,11 +22,11 @@ def seen() -> dict[str, Any]:
     command = ["unshare", "--user", "--map-root-user", "--net", sys.executable, "-m", "tests.poor_network"]
     ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr[-4000:]
-    found: dict[str, Any] = json.loads(ended.stdout)
-    carried, lost = found["packets"]
+    answer: dict[str, Any] = json.loads(ended.stdout)
+    carried, lost = answer["packets"]
     assert carried > 1000
     assert lost > 20
-    return found
+    return answer
 
 
 def test_what_the_page_shows_stays_young_and_only_pictures_are_left_out(seen: dict[str, Any]) -> None:

@@ -1,6 +1,5 @@
 """Numbers in queries: what is no finite number is refused everywhere."""
 
-import asyncio
 import re
 from collections.abc import Iterator
 from contextlib import closing
@@ -10,7 +9,7 @@ from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import depth_block
-from tests.server.features.exports.recordings import record
+from tests.server.features.exports.recordings import record_batches
 from tests.server.serving import serve
 
 
@@ -26,24 +25,21 @@ def list_numbers(document: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
 def is_number(schema: dict[str, object]) -> bool:
     options = schema.get("anyOf", [schema])
     assert isinstance(options, list)
-    return any(one.get("type") == "number" for one in options)
+    return any(option.get("type") == "number" for option in options)
 
 
-def test_what_is_no_finite_number_is_refused(settings: Settings) -> None:
+async def test_what_is_no_finite_number_is_refused(settings: Settings) -> None:
     prepare(settings.data)
     with closing(Store(settings.data.database)) as store:
-        record(store, settings, [depth_block(0, 5)])
+        await record_batches(store, settings, [depth_block(0, 5)])
 
-    async def run() -> None:
-        async with serve(settings) as served:
-            document = (await served.api.get("/openapi.json")).raise_for_status().json()
-            asked = []
-            for url, method, name in list_numbers(document):
-                for number in ("nan", "inf", "-inf", "1e999", "true"):
-                    answer = await served.api.request(method, url, params={name: number})
-                    assert answer.status_code == 422, (url, name, answer.text)
-                    assert name in answer.json()["detail"], (url, answer.text)
-                asked.append(name)
-            assert {"view_start", "history", "time"} <= set(asked)
-
-    asyncio.run(run())
+    async with serve(settings) as served:
+        document = (await served.api.get("/openapi.json")).raise_for_status().json()
+        asked = []
+        for url, method, name in list_numbers(document):
+            for number in ("nan", "inf", "-inf", "1e999", "true"):
+                answer = await served.api.request(method, url, params={name: number})
+                assert answer.status_code == 422, (url, name, answer.text)
+                assert name in answer.json()["detail"], (url, answer.text)
+            asked.append(name)
+        assert {"view_start", "history", "time"} <= set(asked)

@@ -13,8 +13,8 @@ OWN = "http://localhost:8000"
 def ask(
     kind: str = "http", method: str = "GET", *, port: int = 8000, at: str | None = None, **headers: Any
 ) -> int:
-    """The status of a request with these headers that arrived `at` this address; 101 where a WebSocket is
-    accepted."""
+    """Return the status of a request with these headers that arrived `at` this address; 101 where a WebSocket
+    is accepted."""
     sent: list[Message] = []
 
     async def inner(scope: Scope, _receive: Receive, send: Send) -> None:
@@ -149,8 +149,8 @@ def test_programs_and_links_need_no_origin() -> None:
 
 @pytest.mark.parametrize("header", ["x_forwarded_host", "x_forwarded_for", "forwarded", "x_real_ip"])
 def test_proxy_headers_change_nothing(header: str) -> None:
-    said: dict[str, Any] = {header: "localhost:8000"}
-    assert ask(host="evil.example:8000", **said) == 403
+    answer: dict[str, Any] = {header: "localhost:8000"}
+    assert ask(host="evil.example:8000", **answer) == 403
 
 
 def test_bodies_are_limited_and_have_a_length() -> None:

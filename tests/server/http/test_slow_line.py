@@ -65,7 +65,7 @@ def wait_for_depth(stack: Stack) -> None:
 
 
 def wait_for_navigation(stack: Stack) -> Any:
-    """The last frames, once an acknowledged navigation command is among them."""
+    """Return the last frames, once an acknowledged navigation command is among them."""
     end = time.monotonic() + PATIENCE
     while True:
         frames = stack.api.get("/link/frames").json()

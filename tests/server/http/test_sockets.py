@@ -19,7 +19,7 @@ from server.http.websocket_protocol import PARTS_MAX, PIECE_BYTES, UNREAD_MAX, W
 SIZES = (0, 1, 125, 126, 65_535, 65_536, 300_000)
 
 
-def test_messages_of_every_size_arrive_whole_and_between_texts() -> None:
+async def test_messages_of_every_size_arrive_whole_and_between_texts() -> None:
     app = FastAPI()
 
     @app.websocket("/")
@@ -30,21 +30,18 @@ def test_messages_of_every_size_arrive_whole_and_between_texts() -> None:
             await socket.send_text(str(size))
         await socket.close()
 
-    async def scenario(url: str) -> None:
-        async with connect(url, max_size=None) as client:
-            for size in SIZES:
-                data = await client.recv()
-                assert isinstance(data, bytes)
-                assert len(data) == size
-                assert data[-1:] == (b"x" if size else b"")
-                assert await client.recv() == str(size)
-            with pytest.raises(ConnectionClosedOK):
-                await client.recv()
-
-    asyncio.run(_serve(app, scenario))
+    async with _serve(app) as url, connect(url, max_size=None) as client:
+        for size in SIZES:
+            data = await client.recv()
+            assert isinstance(data, bytes)
+            assert len(data) == size
+            assert data[-1:] == (b"x" if size else b"")
+            assert await client.recv() == str(size)
+        with pytest.raises(ConnectionClosedOK):
+            await client.recv()
 
 
-def test_nothing_is_sent_to_a_closed_socket() -> None:
+async def test_nothing_is_sent_to_a_closed_socket() -> None:
     app = FastAPI()
     outcomes: list[BaseException] = []
     over = asyncio.Event()
@@ -61,16 +58,14 @@ def test_nothing_is_sent_to_a_closed_socket() -> None:
             outcomes.append(problem)
         over.set()
 
-    async def scenario(url: str) -> None:
+    async with _serve(app) as url:
         async with connect(url):
             pass
         await over.wait()
-
-    asyncio.run(_serve(app, scenario))
     assert [type(problem) for problem in outcomes] == [ClientDisconnected]
 
 
-def test_the_server_ends_in_order_while_a_page_that_has_left_still_has_unread_data() -> None:
+async def test_the_server_ends_in_order_while_a_page_that_has_left_still_has_unread_data() -> None:
     ended: list[bool] = []
     clients: list[ClientConnection] = []
 
@@ -81,7 +76,7 @@ def test_the_server_ends_in_order_while_a_page_that_has_left_still_has_unread_da
         clients[0].transport.abort()
 
     app = FastAPI(lifespan=lifespan)
-    left = asyncio.Event()
+    remaining = asyncio.Event()
 
     @app.websocket("/")
     async def send_much(socket: WebSocket) -> None:
@@ -89,34 +84,32 @@ def test_the_server_ends_in_order_while_a_page_that_has_left_still_has_unread_da
         await socket.send_bytes(bytes(5_000_000))
         while (await socket.receive())["type"] != "websocket.disconnect":
             pass
-        left.set()
+        remaining.set()
 
-    async def scenario(url: str) -> None:
+    async with _serve(app) as url:
         clients.append(client := await connect(url, max_size=None))
         client.transport.pause_reading()
         client.protocol.send_close(1001)
         client.transport.write(b"".join(client.protocol.data_to_send()))
-        await left.wait()
-
-    asyncio.run(_serve(app, scenario))
+        await remaining.wait()
     assert ended == [True]
 
 
 @pytest.fixture
 def protocols(monkeypatch: pytest.MonkeyPatch) -> list[WebSocketProtocol]:
     """The server's ends of the sockets that were opened."""
-    found: list[WebSocketProtocol] = []
+    results: list[WebSocketProtocol] = []
     opened = WebSocketProtocol.connection_made
 
     def note(protocol: WebSocketProtocol, transport: Any) -> None:
-        found.append(protocol)
+        results.append(protocol)
         opened(protocol, transport)
 
     monkeypatch.setattr(WebSocketProtocol, "connection_made", note)
-    return found
+    return results
 
 
-def test_a_burst_of_small_messages_is_taken_in_pieces(protocols: list[WebSocketProtocol]) -> None:
+async def test_a_burst_of_small_messages_is_taken_in_pieces(protocols: list[WebSocketProtocol]) -> None:
     sent, most = 20_000, 0
     app, done = FastAPI(), asyncio.Event()
     numbers: list[int] = []
@@ -131,17 +124,14 @@ def test_a_burst_of_small_messages_is_taken_in_pieces(protocols: list[WebSocketP
             most = max(most, protocol.queue.qsize())
         done.set()
 
-    async def scenario(url: str) -> None:
-        async with connect(url) as client:
-            client.transport.write(b"".join(_frame(str(number).encode()) for number in range(sent)))
-            await done.wait()
-
-    asyncio.run(_serve(app, scenario))
+    async with _serve(app) as url, connect(url) as client:
+        client.transport.write(b"".join(_frame(str(number).encode()) for number in range(sent)))
+        await done.wait()
     assert numbers == list(range(sent))
     assert most <= PIECE_BYTES / len(_frame(b"1"))
 
 
-def test_others_have_a_turn_after_each_message() -> None:
+async def test_others_have_a_turn_after_each_message() -> None:
     app, done = FastAPI(), asyncio.Event()
     turns: list[int] = []
     turn = 0
@@ -160,47 +150,41 @@ def test_others_have_a_turn_after_each_message() -> None:
             turn += 1
             await asyncio.sleep(0)
 
-    async def scenario(url: str) -> None:
-        async with connect(url) as client:
-            counting = asyncio.create_task(count())
-            client.transport.write(_frame(b"") * 500)
-            await counting
-
-    asyncio.run(_serve(app, scenario))
+    async with _serve(app) as url, connect(url) as client:
+        counting = asyncio.create_task(count())
+        client.transport.write(_frame(b"") * 500)
+        await counting
     assert len(set(turns)) == len(turns)
 
 
-def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_disconnected(
+async def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_disconnected(
     protocols: list[WebSocketProtocol],
 ) -> None:
     most = 0
-    app, left = FastAPI(), asyncio.Event()
+    app, remaining = FastAPI(), asyncio.Event()
 
     @app.websocket("/")
     async def listen(socket: WebSocket) -> None:
         await socket.accept()
         while (await socket.receive())["type"] != "websocket.disconnect":
             pass
-        left.set()
+        remaining.set()
 
-    async def scenario(url: str) -> None:
-        nonlocal most
+    async with _serve(app) as url:
         client = await connect(url, ping_interval=None)
         client.transport.pause_reading()
         pings = _frame(bytes(125), 9) * 1000
-        while not left.is_set() and most < 2 * UNREAD_MAX:
+        while not remaining.is_set() and most < 2 * UNREAD_MAX:
             if not client.transport.get_write_buffer_size():
                 client.transport.write(pings)
             await asyncio.sleep(0)
             most = max(most, protocols[0].transport.get_write_buffer_size())
         client.transport.abort()
-        await left.wait()
-
-    asyncio.run(_serve(app, scenario))
+        await remaining.wait()
     assert most < 2 * UNREAD_MAX
 
 
-def test_what_waits_for_a_client_does_not_outlive_its_socket_for_long(
+async def test_what_waits_for_a_client_does_not_outlive_its_socket_for_long(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(websocket_protocol, "FLUSH_SECONDS", 0.0)
@@ -217,18 +201,16 @@ def test_what_waits_for_a_client_does_not_outlive_its_socket_for_long(
         await socket.accept()
         await socket.send_bytes(bytes(20_000_000))
 
-    async def scenario(url: str) -> None:
+    async with _serve(app) as url:
         client = await connect(url, max_size=None)
         client.transport.pause_reading()
         async with asyncio.timeout(20):
             await ended.wait()
         client.transport.abort()
 
-    asyncio.run(_serve(app, scenario))
 
-
-def test_a_message_without_an_end_is_ended() -> None:
-    app, left = FastAPI(), asyncio.Event()
+async def test_a_message_without_an_end_is_ended() -> None:
+    app, remaining = FastAPI(), asyncio.Event()
     received: list[str] = []
 
     @app.websocket("/")
@@ -236,34 +218,32 @@ def test_a_message_without_an_end_is_ended() -> None:
         await socket.accept()
         while (message := await socket.receive())["type"] != "websocket.disconnect":
             received.append(message["text"])
-        left.set()
+        remaining.set()
 
-    async def scenario(url: str) -> None:
-        async with connect(url) as client:
-            first, part, last = _part(b"a", 1), _part(b"", 0), _frame(b"b", 0)
-            client.transport.write(first + part * (PARTS_MAX - 2) + last + first + part * PARTS_MAX)
-            await left.wait()
-
-    asyncio.run(_serve(app, scenario))
+    async with _serve(app) as url, connect(url) as client:
+        first, part, last = _part(b"a", 1), _part(b"", 0), _frame(b"b", 0)
+        client.transport.write(first + part * (PARTS_MAX - 2) + last + first + part * PARTS_MAX)
+        await remaining.wait()
     assert received == ["ab"]
 
 
 def _part(payload: bytes, opcode: int) -> bytes:
-    """A part of a message that is not its last."""
+    """Return a part of a message that is not its last."""
     return bytes([opcode]) + _frame(payload)[1:]
 
 
 def _frame(payload: bytes, opcode: int = 1) -> bytes:
-    """A short message of a client, masked by zeros (RFC 6455, 5.2)."""
+    """Return a short message of a client, masked by zeros (RFC 6455, 5.2)."""
     return bytes([128 + opcode, 128 + len(payload)]) + bytes(4) + payload
 
 
-async def _serve(app: FastAPI, scenario: Any) -> None:
+@asynccontextmanager
+async def _serve(app: FastAPI) -> AsyncIterator[str]:
     server = make_server(app)
     with open_socket("127.0.0.1", 0) as listener:
         running = asyncio.create_task(server.serve(sockets=[listener]))
         try:
-            await scenario(f"ws://127.0.0.1:{listener.getsockname()[1]}/")
+            yield f"ws://127.0.0.1:{listener.getsockname()[1]}/"
         finally:
             server.should_exit = True
             await running

@@ -50,61 +50,49 @@ async def turn_over() -> None:
         await asyncio.sleep(0)
 
 
-def test_a_viewer_s_device_has_a_few_requests_under_way_and_its_stops_besides() -> None:
-    async def scenario() -> None:
-        crowd = Crowd()
-        asked = [crowd.ask(VIEWER, "/api/past") for _ in range(100)]
-        asked += [crowd.ask(VIEWER, STOP_PATH) for _ in range(100)]
-        asked += [crowd.ask(OTHER, STOP_PATH), crowd.ask(SHELL, STOP_PATH)]
-        asked += [crowd.ask(SHELL, "/api/past") for _ in range(50)]
-        await turn_over()
-        assert crowd.begun == {
-            (VIEWER.device, "/api/past"): REQUESTS_AT_ONCE,
-            (VIEWER.device, STOP_PATH): STOPS_AT_ONCE,
-            (OTHER.device, STOP_PATH): 1,
-            (SHELL.device, STOP_PATH): 1,
-            (SHELL.device, "/api/past"): 50,
-        }
-        crowd.may_end.set()
-        await asyncio.gather(*asked)
-        assert crowd.begun[VIEWER.device, "/api/past"] == crowd.begun[VIEWER.device, STOP_PATH] == 100
-
-    asyncio.run(scenario())
+async def test_a_viewer_s_device_has_a_few_requests_under_way_and_its_stops_besides() -> None:
+    crowd = Crowd()
+    asked = [crowd.ask(VIEWER, "/api/past") for _ in range(100)]
+    asked += [crowd.ask(VIEWER, STOP_PATH) for _ in range(100)]
+    asked += [crowd.ask(OTHER, STOP_PATH), crowd.ask(SHELL, STOP_PATH)]
+    asked += [crowd.ask(SHELL, "/api/past") for _ in range(50)]
+    await turn_over()
+    assert crowd.begun == {
+        (VIEWER.device, "/api/past"): REQUESTS_AT_ONCE,
+        (VIEWER.device, STOP_PATH): STOPS_AT_ONCE,
+        (OTHER.device, STOP_PATH): 1,
+        (SHELL.device, STOP_PATH): 1,
+        (SHELL.device, "/api/past"): 50,
+    }
+    crowd.may_end.set()
+    await asyncio.gather(*asked)
+    assert crowd.begun[VIEWER.device, "/api/past"] == crowd.begun[VIEWER.device, STOP_PATH] == 100
 
 
 @pytest.mark.parametrize("path", [STOP_PATH, "/api/robot/commands/arm", "/api/control/take", "/api/alive"])
 @pytest.mark.parametrize("caller", [VIEWER, SHELL])
-def test_where_memory_is_short_the_robot_is_operated(caller: Identity, path: str) -> None:
-    async def scenario() -> None:
-        crowd = Crowd(short=True)
-        asked = crowd.ask(caller, path)
-        await turn_over()
-        assert crowd.begun == {(caller.device, path): 1}
-        crowd.may_end.set()
-        await asked
-
-    asyncio.run(scenario())
+async def test_where_memory_is_short_the_robot_is_operated(caller: Identity, path: str) -> None:
+    crowd = Crowd(short=True)
+    asked = crowd.ask(caller, path)
+    await turn_over()
+    assert crowd.begun == {(caller.device, path): 1}
+    crowd.may_end.set()
+    await asked
 
 
 @pytest.mark.parametrize("path", ["/api/past", "/api/sessions/1", "/api/imports", "/api/robotics"])
-def test_where_memory_is_short_everything_else_is_refused_in_words(path: str) -> None:
-    async def scenario() -> None:
-        crowd = Crowd(short=True)
-        crowd.may_end.set()
-        await asyncio.gather(crowd.ask(VIEWER, path), crowd.ask(SHELL, path))
-        assert crowd.answers == [503, 503]
-        assert not crowd.begun
-
-    asyncio.run(scenario())
+async def test_where_memory_is_short_everything_else_is_refused_in_words(path: str) -> None:
+    crowd = Crowd(short=True)
+    crowd.may_end.set()
+    await asyncio.gather(crowd.ask(VIEWER, path), crowd.ask(SHELL, path))
+    assert crowd.answers == [503, 503]
+    assert not crowd.begun
 
 
-def test_where_memory_is_short_operators_get_a_socket_and_viewers_do_not() -> None:
-    async def scenario() -> None:
-        crowd = Crowd(short=True)
-        crowd.may_end.set()
-        await asyncio.gather(*(crowd.ask(one, "/api/live", "websocket") for one in (VIEWER, SHELL)))
-        assert crowd.begun == {(SHELL.device, "/api/live"): 1}
-        (reason,) = crowd.answers
-        assert "little memory" in str(reason)
-
-    asyncio.run(scenario())
+async def test_where_memory_is_short_operators_get_a_socket_and_viewers_do_not() -> None:
+    crowd = Crowd(short=True)
+    crowd.may_end.set()
+    await asyncio.gather(*(crowd.ask(identity, "/api/live", "websocket") for identity in (VIEWER, SHELL)))
+    assert crowd.begun == {(SHELL.device, "/api/live"): 1}
+    (reason,) = crowd.answers
+    assert "little memory" in str(reason)

@@ -33,7 +33,7 @@ def test_noise_on_a_sine_changes_little() -> None:
 
 
 def relay_cycle(delay: float, seconds: float) -> Series:
-    """A relay of ±1 on an integrator whose output reaches the relay late by `delay`: dy/dt = u(t).
+    """Return a relay of ±1 on an integrator whose output reaches the relay late by `delay`: dy/dt = u(t).
 
     The triangle that results has the amplitude 2 `delay` peak to peak, and the period 4 `delay`.
     """

@@ -14,7 +14,7 @@ STEP, FROM, TO = 3.0, 0.1, 0.6
 
 
 def second_order(damping: float, since: Floats) -> Floats:
-    """The response from 0 to 1 of wn² / (s² + 2 ζ wn s + wn²)."""
+    """Return the response from 0 to 1 of wn² / (s² + 2 ζ wn s + wn²)."""
     if damping == 1:
         return 1 - np.exp(-WN * since) * (1 + WN * since)
     wd = WN * sqrt(1 - damping**2)
@@ -70,12 +70,12 @@ def test_the_last_time_out_of_the_band_counts() -> None:
 def test_a_step_upwards_gives_the_same_figures() -> None:
     down = respond(0.4)
     up = Series(down.times, -down.values)
-    one, other = measure_step(down, STEP, 23.0, TO), measure_step(up, STEP, 23.0, -TO)
-    assert one is not None
+    first, other = measure_step(down, STEP, 23.0, TO), measure_step(up, STEP, 23.0, -TO)
+    assert first is not None
     assert other is not None
-    assert one.overshoot == pytest.approx(other.overshoot)
-    assert one.rise_time == pytest.approx(other.rise_time)
-    assert one.settling_time == pytest.approx(other.settling_time)
+    assert first.overshoot == pytest.approx(other.overshoot)
+    assert first.rise_time == pytest.approx(other.rise_time)
+    assert first.settling_time == pytest.approx(other.settling_time)
 
 
 def test_a_response_that_never_arrives_has_no_times() -> None:

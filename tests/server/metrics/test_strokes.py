@@ -50,7 +50,7 @@ def test_the_count_equals_the_definition_applied_step_by_step(seed: int) -> None
 
 
 def swings(values: list[float], least: float) -> int:
-    """The plain definition: a swing begins once the fin is back by the least from its furthest."""
+    """Return the strokes by the plain definition: a swing begins once the fin is back by the least."""
     count, direction = 0, 0
     low = high = values[0]
     for value in values:

@@ -2,7 +2,7 @@
 
 import shutil
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -20,16 +20,17 @@ from server.platform.authority import AUTHORITY_KEY, Authority
 from server.platform.settings import Settings, SetupError
 from tests.server.ports import reserved_port
 from tests.server.waiting import SECONDS
+from tests.waiting import wait_for
 
 
-class Robot:
+class NetworkedRobot:
     """A robot that listens on the network, and a server that is connected to it as on the robot."""
 
     def __init__(self, settings: Settings, port: int) -> None:
         self.settings = settings
         self.endpoint = f"tls/127.0.0.1:{port}"
         self.config = Config(
-            robot=RobotConfig(name=settings.robot), zenoh=ZenohConfig(listen=[self.endpoint])
+            robot=RobotConfig(name=settings.robot.name), zenoh=ZenohConfig(listen=[self.endpoint])
         )
         self.armed: list[Mapping[str, Any]] = []
         self.heard: list[tuple[str, bytes]] = []
@@ -41,7 +42,7 @@ class Robot:
         with (
             open_transport(self.config, folder.path) as runtime,
             ZenohTransport(
-                self.settings.robot, connect=[f"unixsock-stream/{folder.runtime_socket}"]
+                self.settings.robot.name, connect=[f"unixsock-stream/{folder.runtime_socket}"]
             ) as server,
         ):
             runtime.serve("command/arm", self.armed.append)
@@ -52,12 +53,14 @@ class Robot:
             yield runtime
 
     def join(self, network: Mapping[str, Any]) -> ZenohTransport:
-        """A client on another computer, once it is let in."""
-        return join(self.settings.robot, [self.endpoint], network)
+        """Return a client on another computer, once it is let in."""
+        return join(self.settings.robot.name, [self.endpoint], network)
 
     def try_to_join(self, network: Mapping[str, Any]) -> None:
-        """Raises OSError where it is not let in at once."""
-        ZenohTransport(self.settings.robot, connect=[self.endpoint], client=True, network=network).close()
+        """Raise OSError where it is not let in at once."""
+        ZenohTransport(
+            self.settings.robot.name, connect=[self.endpoint], client=True, network=network
+        ).close()
 
 
 @pytest.fixture
@@ -67,23 +70,16 @@ def port() -> Iterator[int]:
 
 
 @pytest.fixture
-def robot(settings: Settings, port: int) -> Robot:
+def robot(settings: Settings, port: int) -> NetworkedRobot:
     Authority(settings).prepare()
-    return Robot(settings, port)
+    return NetworkedRobot(settings, port)
 
 
 @pytest.fixture
-def pool(robot: Robot, tmp_path: Path) -> Path:
+def pool(robot: NetworkedRobot, tmp_path: Path) -> Path:
     """The folder of the certificate of a simulator called pool."""
     Authority(robot.settings).issue("pool", tmp_path / "pool")
     return tmp_path / "pool"
-
-
-def wait_for(condition: Callable[[], object]) -> None:
-    end = time.monotonic() + SECONDS
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.005)
 
 
 def ask(robot: ZenohTransport, name: str) -> Mapping[str, Any]:
@@ -97,7 +93,7 @@ def ask(robot: ZenohTransport, name: str) -> Mapping[str, Any]:
             time.sleep(0.01)
 
 
-def test_a_simulator_does_its_work_and_commands_nothing(robot: Robot, pool: Path) -> None:
+def test_a_simulator_does_its_work_and_commands_nothing(robot: NetworkedRobot, pool: Path) -> None:
     with robot.running() as runtime, robot.join(connect_settings(pool)) as simulator:
         simulator.serve("simulator/surroundings", lambda _: {"world": "pool"})
         motors: list[bytes] = []
@@ -125,16 +121,18 @@ def test_a_simulator_does_its_work_and_commands_nothing(robot: Robot, pool: Path
         assert robot.armed == []
 
 
-def test_the_own_processes_need_no_certificate(robot: Robot) -> None:
+def test_the_own_processes_need_no_certificate(robot: NetworkedRobot) -> None:
     with (
         robot.running(),
-        join(robot.settings.robot, [f"unixsock-stream/{robot.settings.data.runtime_socket}"]) as server,
+        join(robot.settings.robot.name, [f"unixsock-stream/{robot.settings.data.runtime_socket}"]) as server,
     ):
         ask(server, "command/arm")
         assert robot.armed == [{}]
 
 
-def test_without_a_certificate_of_this_robot_nobody_gets_in(robot: Robot, pool: Path, tmp_path: Path) -> None:
+def test_without_a_certificate_of_this_robot_nobody_gets_in(
+    robot: NetworkedRobot, pool: Path, tmp_path: Path
+) -> None:
     tls = {"root_ca_certificate": str(pool / AUTHORITY), "verify_name_on_connect": False}
     other = replace(robot.settings, data=type(robot.settings.data)(tmp_path / "other"))
     Authority(other).issue("pool", tmp_path / "of_another_robot")
@@ -151,7 +149,7 @@ def test_without_a_certificate_of_this_robot_nobody_gets_in(robot: Robot, pool: 
 
 
 def test_a_revoked_certificate_gets_nothing_from_the_next_start_on(
-    robot: Robot, pool: Path, tmp_path: Path
+    robot: NetworkedRobot, pool: Path, tmp_path: Path
 ) -> None:
     authority = Authority(robot.settings)
     with robot.running(), robot.join(connect_settings(pool)) as simulator:
@@ -173,7 +171,7 @@ def test_a_revoked_certificate_gets_nothing_from_the_next_start_on(
         assert robot.heard == [("sense", b"of the new")]
 
 
-def test_no_certificate_in_force_lets_nobody_in(robot: Robot, pool: Path) -> None:
+def test_no_certificate_in_force_lets_nobody_in(robot: NetworkedRobot, pool: Path) -> None:
     Authority(robot.settings).revoke("pool")
     with robot.running() as runtime, robot.join(connect_settings(pool)) as revoked:
         revoked.serve("simulator/surroundings", lambda _: {})
@@ -184,7 +182,7 @@ def test_no_certificate_in_force_lets_nobody_in(robot: Robot, pool: Path) -> Non
     assert robot.armed == []
 
 
-def test_a_simulator_s_certificate_cannot_pose_as_the_robot(robot: Robot, pool: Path) -> None:
+def test_a_simulator_s_certificate_cannot_pose_as_the_robot(robot: NetworkedRobot, pool: Path) -> None:
     tls = {
         "root_ca_certificate": str(pool / AUTHORITY),
         "listen_certificate": str(pool / CERTIFICATE),
@@ -193,28 +191,28 @@ def test_a_simulator_s_certificate_cannot_pose_as_the_robot(robot: Robot, pool: 
     }
     impostor = {"transport/link/protocols": ["tls"], "transport/link/tls": tls}
     with (
-        ZenohTransport(robot.settings.robot, listen=[robot.endpoint], network=impostor),
+        ZenohTransport(robot.settings.robot.name, listen=[robot.endpoint], network=impostor),
         pytest.raises(OSError, match="cannot reach"),
     ):
         robot.try_to_join(connect_settings(pool))
 
 
-def test_a_process_without_certificates_connects_through_no_network(robot: Robot, port: int) -> None:
+def test_a_process_without_certificates_connects_through_no_network(robot: NetworkedRobot, port: int) -> None:
     plain = f"tcp/127.0.0.1:{port}"
     open_to_all = {"transport/link/protocols": ["tcp"]}
     with (
-        ZenohTransport(robot.settings.robot, listen=[plain], network=open_to_all),
+        ZenohTransport(robot.settings.robot.name, listen=[plain], network=open_to_all),
         pytest.raises(OSError, match="cannot reach"),
     ):
-        ZenohTransport(robot.settings.robot, connect=[plain], client=True).close()
+        ZenohTransport(robot.settings.robot.name, connect=[plain], client=True).close()
 
 
 def test_a_robot_without_certificates_is_refused_in_words(settings: Settings, port: int) -> None:
     with pytest.raises(ConfigError, match=r"lacks authority\.pem, certificate\.pem, key\.pem for"):
-        open_transport(Robot(settings, port).config, settings.data.path)
+        open_transport(NetworkedRobot(settings, port).config, settings.data.path)
 
 
-def test_keys_are_readable_by_their_user_alone(robot: Robot, pool: Path) -> None:
+def test_keys_are_readable_by_their_user_alone(robot: NetworkedRobot, pool: Path) -> None:
     folder = robot.settings.data.zenoh
     for path in (folder, pool):
         assert path.stat().st_mode & 0o777 == 0o700
@@ -229,12 +227,12 @@ def test_names_of_certificates_are_plain(settings: Settings, tmp_path: Path, nam
     assert not settings.data.zenoh.exists()
 
 
-def test_a_name_has_one_certificate_at_a_time(robot: Robot, pool: Path, tmp_path: Path) -> None:
+def test_a_name_has_one_certificate_at_a_time(robot: NetworkedRobot, pool: Path, tmp_path: Path) -> None:
     authority = Authority(robot.settings)
     with pytest.raises(SetupError, match="Revoke it first"):
         authority.issue("pool", tmp_path / "second")
     with pytest.raises(SetupError, match="cannot be made"):
         authority.issue("tank", pool)
-    assert [one.name for one in authority.issued()] == ["pool"]
+    assert [certificate.name for certificate in authority.issued()] == ["pool"]
     with pytest.raises(SetupError, match="There is no certificate tank"):
         authority.revoke("tank")

@@ -19,20 +19,20 @@ def read(settings: Settings) -> Settings:
 def used(settings: Settings) -> Settings:
     """A robot whose configuration was in force once."""
     settings.config.write_text(GOOD)
-    found = read(settings)
-    assert (found.configuration_problem, found.config) == ("", settings.config)
-    keep_configuration(found)
+    result = read(settings)
+    assert (result.configuration_problem, result.config) == ("", settings.config)
+    keep_configuration(result)
     return settings
 
 
 @pytest.mark.parametrize("cut", range(0, len(GOOD), 3))
 def test_a_file_that_was_cut_off_anywhere_starts_the_robot_that_it_was(used: Settings, cut: int) -> None:
     used.config.write_text(GOOD[:cut])
-    found = read(used)
-    assert (found.robot, found.mode, found.link.port) == ("nemo", "robot", "/dev/ttyAMA0")
-    assert "the last configuration that could be used is in force" in found.configuration_problem
-    assert "\n" not in found.configuration_problem
-    keep_configuration(found)
+    result = read(used)
+    assert (result.robot.name, result.robot.mode, result.link.port) == ("nemo", "robot", "/dev/ttyAMA0")
+    assert "the last configuration that could be used is in force" in result.configuration_problem
+    assert "\n" not in result.configuration_problem
+    keep_configuration(result)
     assert used.data.last_config.read_text() == GOOD
 
 
@@ -51,15 +51,15 @@ def test_a_file_that_somebody_has_shortened_holds_without_the_copy(used: Setting
 @pytest.mark.parametrize("nonsense", [b"\0" * 300, b"\xff\xfe[robot]", b"[robot]\nmode = 3\n", b"[sever]\n"])
 def test_nonsense_is_not_kept_and_the_robot_starts(used: Settings, nonsense: bytes) -> None:
     used.config.write_bytes(nonsense)
-    found = read(used)
-    keep_configuration(found)
+    result = read(used)
+    keep_configuration(result)
     assert used.data.last_config.read_text() == GOOD
-    assert found.robot == "nemo"
+    assert result.robot.name == "nemo"
 
 
 def test_a_file_that_is_gone_starts_the_robot_too(used: Settings) -> None:
     used.config.unlink()
-    assert read(used).robot == "nemo"
+    assert read(used).robot.name == "nemo"
 
 
 def test_without_an_earlier_one_it_is_refused_in_one_line(settings: Settings) -> None:
@@ -73,9 +73,9 @@ def test_a_corrected_file_is_in_force_again_and_kept(used: Settings) -> None:
     used.config.write_text("[robot")
     assert read(used).configuration_problem
     used.config.write_text(GOOD.replace("nemo", "dory"))
-    found = read(used)
-    keep_configuration(found)
-    assert (found.robot, found.configuration_problem) == ("dory", "")
+    result = read(used)
+    keep_configuration(result)
+    assert (result.robot.name, result.configuration_problem) == ("dory", "")
     assert "dory" in used.data.last_config.read_text()
 
 
@@ -93,4 +93,4 @@ def test_a_disk_that_cannot_be_written_hinders_no_start(
 
 def test_empty_text_is_the_default_robot_and_no_damage(settings: Settings) -> None:
     settings.config.write_text("")
-    assert read(settings).mode == "emulated"
+    assert read(settings).robot.mode == "emulated"

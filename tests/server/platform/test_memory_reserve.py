@@ -18,7 +18,7 @@ from server.platform.memory_reserve import (
 LIMIT = 500_000_000
 
 
-class Process:
+class ReservingProcess:
     """A process of this much memory, of which it can give some back."""
 
     def __init__(self) -> None:
@@ -45,7 +45,7 @@ def limits(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 def test_memory_is_short_from_a_share_of_the_limit_on(limits: list[int]) -> None:
-    clock, process = SimulatedClock(), Process()
+    clock, process = SimulatedClock(), ReservingProcess()
     reserve = MemoryReserve(clock, process.own_bytes, process.give_back)
     process.bytes = int(SHARE * LIMIT)
     assert not reserve.short
@@ -59,7 +59,7 @@ def test_memory_is_short_from_a_share_of_the_limit_on(limits: list[int]) -> None
 
 
 def test_what_was_freed_is_given_back_before_anything_is_refused(limits: list[int]) -> None:
-    clock, process = SimulatedClock(), Process()
+    clock, process = SimulatedClock(), ReservingProcess()
     reserve = MemoryReserve(clock, process.own_bytes, process.give_back)
     process.bytes, process.spare = LIMIT, LIMIT // 2
     assert not reserve.short
@@ -73,25 +73,22 @@ def test_what_was_freed_is_given_back_before_anything_is_refused(limits: list[in
     assert limits == [LIMIT]
 
 
-def test_an_allocation_that_fails_in_the_event_loop_raises_the_limit_until_there_is_room(
+async def test_an_allocation_that_fails_in_the_event_loop_raises_the_limit_until_there_is_room(
     limits: list[int],
 ) -> None:
-    clock, process = SimulatedClock(), Process()
+    clock, process = SimulatedClock(), ReservingProcess()
     reserve = MemoryReserve(clock, process.own_bytes, process.give_back)
     reported: list[object] = []
-
-    async def fail() -> None:
-        loop = asyncio.get_running_loop()
-        loop.set_exception_handler(lambda _, context: reported.append(context.get("exception")))
-        reserve.watch(loop)
-        loop.call_soon(allocate)
-        await asyncio.sleep(0)
 
     def allocate() -> None:
         raise MemoryError
 
     process.bytes = LIMIT
-    asyncio.run(fail())
+    loop = asyncio.get_running_loop()
+    loop.set_exception_handler(lambda _, context: reported.append(context.get("exception")))
+    reserve.watch(loop)
+    loop.call_soon(allocate)
+    await asyncio.sleep(0)
     assert reserve.short
     assert isinstance(reported[0], MemoryError)
     assert limits == [LIMIT, LIMIT + OPENED_BYTES]

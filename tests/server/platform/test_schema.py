@@ -14,17 +14,21 @@ from sqlmodel import SQLModel, select
 
 import server.platform.models  # noqa: F401 - declares the tables
 from migrations import HEAD
-from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.recording import Recording
-from server.features.sessions.session import find_row
+from server.library.catalogue import Catalogue
+from server.library.content import Recording
 from server.platform import schema
 from server.platform.database_copies import COPIES_MOST, copy_database
 from server.platform.settings import Settings, SetupError
 from server.platform.store import Store
+from server.recording.session import find_row
 from tests.server.older import ROWS, fill_tables, make_session, read_tables, upgrade_to
 
 Tables = dict[str, list[dict[str, Any]]]
-OLDER = [one.revision for one in ScriptDirectory(schema._scripts()).walk_revisions() if one.revision != HEAD]
+OLDER = [
+    revision.revision
+    for revision in ScriptDirectory(schema._scripts()).walk_revisions()
+    if revision.revision != HEAD
+]
 
 
 def test_the_newest_revision_is_the_server_s() -> None:
@@ -124,8 +128,8 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
     assert schema.read_revision(copy) == revision
     with closing(Store(settings.data.database)) as store:
         catalogue = Catalogue(store)
-        (found,) = catalogue.page("COLD").sessions
-        assert (found.name, found.origin, found.tags, found.kept, found.deleted) == (
+        (result,) = catalogue.page("COLD").sessions
+        assert (result.name, result.origin, result.tags, result.kept, result.deleted) == (
             "old",
             "operator",
             [],

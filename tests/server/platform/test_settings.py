@@ -24,6 +24,14 @@ def read(folder: Path, text: str) -> Settings:
         ("[sessions]\nkeep_dais = 3", r"sessions: 'keep_dais' is not known here"),
         ("[sessions]\nkeep_days = -1", r"sessions.*keep_days is -1; it must lie between 0 and"),
         ("[server]\nport = 0", "port is 0; it must lie between 1 and 65535"),
+        (
+            "[server]\npublic_url = 'robots.lab'",
+            r"robot.toml.* server: public_url is 'robots.lab'; write it like",
+        ),
+        (
+            "[server]\ntrusted_proxies = ['nginx']",
+            r"robot.toml.* server: trusted_proxies has 'nginx', which is",
+        ),
         ("doors = 3", "doors must be a table"),
         ("[features]\nsessions = false", r"sessions is no optional feature; there are .*identification"),
         ("[features]\nidentification = 'no'", "must be true or false"),
@@ -49,11 +57,11 @@ def test_the_shipped_file_holds_the_defaults_of_every_feature(tmp_path: Path) ->
     for feature in list_features().values():
         if feature.section is not None:
             assert shipped.section(feature.section) == plain.section(feature.section)
-    assert (shipped.host, shipped.port, shipped.tls) == (plain.host, plain.port, plain.tls)
+    assert shipped.server == plain.server
 
 
 def on(settings: Settings, name: str) -> bool:
-    """True where this feature is on."""
+    """Return True where this feature is on."""
     feature: Feature = list_features()[name]
     return settings.has(feature)
 

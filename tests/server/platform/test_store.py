@@ -68,25 +68,22 @@ def test_a_failed_change_is_rolled_back_and_reported(store: Store) -> None:
     assert store.failing is None
 
 
-def test_a_full_disk_is_reported_and_writing_works_again_with_free_space(settings: Settings) -> None:
+async def test_a_full_disk_is_reported_and_writing_works_again_with_free_space(settings: Settings) -> None:
     prepare(settings.data)
     store = Store(settings.data.database)
 
-    async def scenario() -> None:
-        def limit(pages: int) -> None:
-            store_limit = f"PRAGMA max_page_count = {pages}"
-            store._thread.submit(lambda: store._connection.exec_driver_sql(store_limit).scalar()).result()
-            store._thread.submit(store._connection.rollback).result()
+    def limit(pages: int) -> None:
+        store_limit = f"PRAGMA max_page_count = {pages}"
+        store._thread.submit(lambda: store._connection.exec_driver_sql(store_limit).scalar()).result()
+        store._thread.submit(store._connection.rollback).result()
 
-        large = SESSION | {"note": "x" * 500_000}
-        limit(1)
-        with pytest.raises(StoreError, match="disk is full"):
-            await store.write(lambda connection: connection.execute(insert(SessionRow).values(**large)))
-        limit(100_000)
+    large = SESSION | {"note": "x" * 500_000}
+    limit(1)
+    with pytest.raises(StoreError, match="disk is full"):
         await store.write(lambda connection: connection.execute(insert(SessionRow).values(**large)))
-        assert store.failing is None
-
-    asyncio.run(scenario())
+    limit(100_000)
+    await store.write(lambda connection: connection.execute(insert(SessionRow).values(**large)))
+    assert store.failing is None
     store.close()
 
 

@@ -12,7 +12,7 @@ NOW = SOFTWARE_MADE + 1e7
 HOUR = 3600.0
 
 
-class Computer:
+class RestartedComputer:
     """A computer that is started again and again; `synchronised` is what its kernel says."""
 
     def __init__(self, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -33,18 +33,18 @@ class Computer:
         self._wall = WallClock(self.clock, self._path)
 
     def knows(self, now: float) -> bool:
-        found = self._wall.knows_ages(now)
+        result = self._wall.knows_ages(now)
         self._wall.store()
-        return found
+        return result
 
 
 @pytest.fixture
-def computer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Computer:
-    return Computer(tmp_path / "wall-clock.json", monkeypatch)
+def computer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> RestartedComputer:
+    return RestartedComputer(tmp_path / "wall-clock.json", monkeypatch)
 
 
 def test_a_start_with_a_date_in_the_future_or_the_past_is_doubted_for_a_day_of_running(
-    computer: Computer,
+    computer: RestartedComputer,
 ) -> None:
     assert computer.knows(NOW)
     for wrong in (NOW + 365 * DAY, NOW - HOUR):
@@ -64,7 +64,7 @@ def test_a_start_with_a_date_in_the_future_or_the_past_is_doubted_for_a_day_of_r
         assert computer.knows(wrong)
 
 
-def test_a_night_off_and_a_time_server_leave_no_doubt(computer: Computer) -> None:
+def test_a_night_off_and_a_time_server_leave_no_doubt(computer: RestartedComputer) -> None:
     assert computer.knows(NOW)
     computer.restart()
     assert computer.knows(NOW + AWAY_SECONDS - 1)
@@ -77,7 +77,7 @@ def test_a_night_off_and_a_time_server_leave_no_doubt(computer: Computer) -> Non
     assert computer.knows(NOW + 90 * DAY)
 
 
-def test_a_jump_between_two_servers_is_seen_and_one_server_s_time_is_not(computer: Computer) -> None:
+def test_a_jump_between_two_servers_is_seen_and_one_server_s_time_is_not(computer: RestartedComputer) -> None:
     assert computer.knows(NOW)
     computer.clock.forward(2 * HOUR)
     computer.restart(whole=False)
@@ -88,6 +88,6 @@ def test_a_jump_between_two_servers_is_seen_and_one_server_s_time_is_not(compute
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"boot": "1"}', b"null"])
-def test_a_damaged_file_is_as_none(computer: Computer, tmp_path: Path, content: bytes) -> None:
+def test_a_damaged_file_is_as_none(computer: RestartedComputer, tmp_path: Path, content: bytes) -> None:
     (tmp_path / "wall-clock.json").write_bytes(content)
     assert computer.knows(NOW)

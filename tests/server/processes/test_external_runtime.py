@@ -5,8 +5,7 @@ import signal
 import socket
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,24 +20,18 @@ from server.platform.settings import DataFolder, Settings, SetupError, make_fold
 from server.processes import external_process, runtime_service
 from server.processes.external_process import ABSENT
 from server.processes.managed_process import ProcessCommand
-from tests.server.processes.test_parts import Crew, run
+from tests.server.processes.test_parts import Crew, running
 from tests.server.waiting import SECONDS, alive, until
 from tests.stack import ROOT
+from tests.waiting import wait_for
 
 CONFIG = '[robot]\nname = "tested"\nmode = "robot"\n[link]\nport = "/nowhere"\n'
 WAITS = b"READY=1\nWATCHDOG_USEC=60000000\nWATCHDOG=1"
 
 
-def wait_for(condition: Callable[[], bool]) -> None:
-    end = time.monotonic() + SECONDS
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
 def runtime_of(folder: DataFolder) -> int | None:
-    found = running_parts(folder.run).get("runtime")
-    return None if found is None else found.pid
+    result = running_parts(folder.run).get("runtime")
+    return None if result is None else result.pid
 
 
 @contextmanager
@@ -74,31 +67,29 @@ def engine(crew_folder: Path) -> Iterator[subprocess.Popen[bytes]]:
     """A process that somebody else starts, and that enters itself."""
     with subprocess.Popen(
         [sys.executable, "-c", "import time; time.sleep(600)"], start_new_session=True
-    ) as one:
-        pid_file(crew_folder / "run", "engine").write(one.pid, "made")
+    ) as visitor:
+        pid_file(crew_folder / "run", "engine").write(visitor.pid, "made")
         try:
-            yield one
+            yield visitor
         finally:
-            one.kill()
+            visitor.kill()
 
 
-def test_a_server_watches_it_and_leaves_it_running(tmp_path: Path) -> None:
+async def test_a_server_watches_it_and_leaves_it_running(tmp_path: Path) -> None:
     crew = Crew(tmp_path, external())
 
-    async def scenario() -> None:
-        await until(lambda: crew.part("engine").state == "running", "running")
-        assert crew.part("engine").pid == first.pid
-
     with engine(tmp_path) as first:
-        run(crew, scenario)
+        async with running(crew):
+            await until(lambda: crew.part("engine").state == "running", "running")
+            assert crew.part("engine").pid == first.pid
         assert first.poll() is None
         assert crew.told == []
 
 
-def test_its_death_is_reported_and_the_next_one_watched(tmp_path: Path) -> None:
+async def test_its_death_is_reported_and_the_next_one_watched(tmp_path: Path) -> None:
     crew = Crew(tmp_path, external())
 
-    async def scenario() -> None:
+    async with running(crew):
         with engine(tmp_path) as first:
             await until(lambda: crew.part("engine").state == "running", "running")
             first.kill()
@@ -112,26 +103,22 @@ def test_its_death_is_reported_and_the_next_one_watched(tmp_path: Path) -> None:
             "The part engine has ended; journalctl -u mucat-runtime says why. systemd starts it again."
         )
 
-    run(crew, scenario)
 
-
-def test_one_that_does_not_come_back_is_reported_with_how_to_start_it(
+async def test_one_that_does_not_come_back_is_reported_with_how_to_start_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(external_process, "ABSENT_SECONDS", 0.0)
     crew = Crew(tmp_path, external())
 
-    async def scenario() -> None:
-        await until(lambda: crew.part("engine").state == "running", "running")
-        first.kill()
-        first.wait()
-        await until(lambda: crew.part("engine").problem == ABSENT, "it to be missed")
-        with engine(tmp_path):
-            await until(lambda: crew.part("engine").state == "running", "running")
-            assert [text for _, text in crew.told][1:] == [f"The part engine {ABSENT}."]
-
     with engine(tmp_path) as first:
-        run(crew, scenario)
+        async with running(crew):
+            await until(lambda: crew.part("engine").state == "running", "running")
+            first.kill()
+            first.wait()
+            await until(lambda: crew.part("engine").problem == ABSENT, "it to be missed")
+            with engine(tmp_path):
+                await until(lambda: crew.part("engine").state == "running", "running")
+                assert [text for _, text in crew.told][1:] == [f"The part engine {ABSENT}."]
 
 
 @pytest.mark.parametrize("moment", ["before", "after"])
@@ -140,7 +127,7 @@ def test_a_pause_while_it_enters_itself_is_obeyed(
 ) -> None:
     """The program that pauses it finds no process yet, or one that must end."""
     folder, turns = settings.data, []
-    found: list[bool] = []
+    results: list[bool] = []
 
     def wait(*_: object) -> None:
         turns.append(runtime_of(folder))
@@ -151,11 +138,11 @@ def test_a_pause_while_it_enters_itself_is_obeyed(
     def hold(_: Path) -> Iterator[None]:
         if moment == "before":
             folder.runtime_paused.touch()
-            found.append("runtime" in running_parts(folder.run))
+            results.append("runtime" in running_parts(folder.run))
         yield
         if moment == "after":
             folder.runtime_paused.touch()
-            found.append("runtime" in running_parts(folder.run))
+            results.append("runtime" in running_parts(folder.run))
 
     monkeypatch.setattr(runtime_service, "_wait_for_turn", wait)
     monkeypatch.setattr(runtime_service, "hold_still", hold)
@@ -164,44 +151,40 @@ def test_a_pause_while_it_enters_itself_is_obeyed(
     options = ["--config", str(settings.config), "--data", str(folder.path)]
     with claim(folder):
         assert cli.main(["runtime", *options]) == 1
-    assert found == [moment == "after"]
+    assert results == [moment == "after"]
     assert turns == [None, None]
 
 
-def test_a_pause_ends_it_and_marks_the_folder_until_it_is_resumed(tmp_path: Path) -> None:
+async def test_a_pause_ends_it_and_marks_the_folder_until_it_is_resumed(tmp_path: Path) -> None:
     crew = Crew(tmp_path, external())
     marker = DataFolder(tmp_path).runtime_paused
 
-    async def scenario() -> None:
-        await until(lambda: crew.part("engine").state == "running", "running")
-        await crew.parts.pause("engine", "The board is used.")
-        assert crew.part("engine").state == "paused"
-        assert marker.exists()
-        crew.parts.resume("engine")
-        await until(lambda: crew.part("engine").state == "waiting", "waiting")
-        assert not marker.exists()
-
-    with engine(tmp_path) as one:
-        run(crew, scenario)
-        assert one.wait(SECONDS) == -signal.SIGTERM
+    with engine(tmp_path) as database:
+        async with running(crew):
+            await until(lambda: crew.part("engine").state == "running", "running")
+            await crew.parts.pause("engine", "The board is used.")
+            assert crew.part("engine").state == "paused"
+            assert marker.exists()
+            crew.parts.resume("engine")
+            await until(lambda: crew.part("engine").state == "waiting", "waiting")
+            assert not marker.exists()
+        assert database.wait(SECONDS) == -signal.SIGTERM
 
 
-def test_where_it_cannot_be_paused_it_is_still_watched(tmp_path: Path) -> None:
+async def test_where_it_cannot_be_paused_it_is_still_watched(tmp_path: Path) -> None:
     """As on a card that has become read-only; here a folder lies where the file belongs."""
     crew = Crew(tmp_path, external())
 
-    async def scenario() -> None:
-        await until(lambda: crew.part("engine").state == "running", "running")
-        DataFolder(tmp_path).runtime_paused.mkdir()
-        with pytest.raises(RefusedError, match="cannot be written"):
-            await crew.parts.pause("engine", "The board is used.")
-        await until(lambda: crew.part("engine").state == "running", "running again")
-        one.kill()
-        one.wait()
-        await until(lambda: crew.part("engine").state == "failed", "failed")
-
-    with engine(tmp_path) as one:
-        run(crew, scenario)
+    with engine(tmp_path) as database:
+        async with running(crew):
+            await until(lambda: crew.part("engine").state == "running", "running")
+            DataFolder(tmp_path).runtime_paused.mkdir()
+            with pytest.raises(RefusedError, match="cannot be written"):
+                await crew.parts.pause("engine", "The board is used.")
+            await until(lambda: crew.part("engine").state == "running", "running again")
+            database.kill()
+            database.wait()
+            await until(lambda: crew.part("engine").state == "failed", "failed")
     assert [name for name, _ in crew.told] == ["engine"]
 
 
@@ -266,14 +249,14 @@ def test_systemd_is_fed_once_a_second_and_without_it_nothing_happens(
         manager.bind(str(path))
         manager.setblocking(False)
         monkeypatch.setenv("NOTIFY_SOCKET", str(path))
-        one = ServiceManager()
+        item = ServiceManager()
         for tick in range(21):
-            one.feed(tick / 10)
+            item.feed(tick / 10)
         assert [manager.recv(100) for _ in range(3)] == [b"WATCHDOG=1"] * 3
-        one.wait(1.5)
+        item.wait(1.5)
         assert manager.recv(100) == b"READY=1"
         with pytest.raises(BlockingIOError):
             manager.recv(100)
-    one.ready()  # to nobody
+    item.ready()  # to nobody
     monkeypatch.delenv("NOTIFY_SOCKET")
     ServiceManager().ready()

@@ -3,8 +3,8 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Awaitable, Callable
-from contextlib import suppress
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,15 +49,13 @@ def program(name: str, code: str, *needs: Path) -> ProcessCommand:
     return ProcessCommand(name, f"part {name}", (sys.executable, "-c", code), needs)
 
 
-def run(crew: Crew, scenario: Callable[[], Awaitable[None]]) -> None:
-    async def play() -> None:
-        crew.parts.start()
-        try:
-            await scenario()
-        finally:
-            await crew.parts.stop()
-
-    asyncio.run(play())
+@asynccontextmanager
+async def running(crew: Crew) -> AsyncIterator[None]:
+    crew.parts.start()
+    try:
+        yield
+    finally:
+        await crew.parts.stop()
 
 
 @pytest.fixture(autouse=True)
@@ -67,7 +65,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(backoff_module, "MAX", 0.04)
 
 
-def test_a_process_that_dies_is_reported_with_its_last_output_and_restarted(tmp_path: Path) -> None:
+async def test_a_process_that_dies_is_reported_with_its_last_output_and_restarted(tmp_path: Path) -> None:
     count = tmp_path / "count"
     code = (
         f"import pathlib, sys, time; p = pathlib.Path({str(count)!r})\n"
@@ -77,7 +75,7 @@ def test_a_process_that_dies_is_reported_with_its_last_output_and_restarted(tmp_
     )
     crew = Crew(tmp_path, program("engine", code))
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: count.exists() and count.read_text() == "xxx", "the third start")
         await until(lambda: crew.part("engine").state == "running", "running")
         assert [kind for kind, _ in crew.told] == ["engine", "engine"]
@@ -85,15 +83,13 @@ def test_a_process_that_dies_is_reported_with_its_last_output_and_restarted(tmp_
         assert "no oil / broken 0" in crew.told[0][1]
         assert "It is started again at once." in crew.told[0][1]
         assert "It is started again in 0.0 s." in crew.told[1][1]
-
-    run(crew, scenario)
     assert (tmp_path / "logs" / "engine.log").read_text() == "no oil\nbroken 0\nno oil\nbroken 1\n"
 
 
-def test_a_killed_process_is_reported_with_the_signal_and_replaced(tmp_path: Path) -> None:
+async def test_a_killed_process_is_reported_with_the_signal_and_replaced(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: crew.part("engine").pid, "the start")
         first = crew.process("engine")
         first.kill()
@@ -101,13 +97,11 @@ def test_a_killed_process_is_reported_with_the_signal_and_replaced(tmp_path: Pat
         await until(lambda: crew.part("engine").pid not in (None, first.pid), "the next start")
         assert "was ended by signal SIGKILL" in crew.told[0][1]
 
-    run(crew, scenario)
 
-
-def test_a_hung_process_is_killed_reported_and_restarted(tmp_path: Path) -> None:
+async def test_a_hung_process_is_killed_reported_and_restarted(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: crew.part("engine").pid, "the start")
         first = crew.process("engine")
         first.suspend()
@@ -120,15 +114,13 @@ def test_a_hung_process_is_killed_reported_and_restarted(tmp_path: Path) -> None
         await until(lambda: len(crew.told) > 1, "the news")
         assert "was ended by signal SIGKILL" in crew.told[1][1]
 
-    run(crew, scenario)
-
 
 @pytest.mark.parametrize(
-    ("killed", "wanted"),
+    ("killed", "expected"),
     [(False, [0, 0.01, 0.02, 0.04, 0.04, 0, 0.01]), (True, [0, 0.01, 0.02, 0.02, 0.02, 0, 0.01])],
 )
 def test_pauses_grow_to_a_limit_and_reset_after_a_steady_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, killed: bool, wanted: list[float]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, killed: bool, expected: list[float]
 ) -> None:
     pauses: list[float] = []
     lives = iter([0, 1, 2, 3, 4, 20, 0])
@@ -150,87 +142,78 @@ def test_pauses_grow_to_a_limit_and_reset_after_a_steady_run(
     monkeypatch.setattr(asyncio, "sleep", pause)
     with suppress(asyncio.CancelledError):
         asyncio.run(part.run())
-    assert pauses == wanted
+    assert pauses == expected
 
 
-def stop_when_up(folder: Path, code: str) -> str:
-    """Starts a program that says "up" and sleeps, and stops it; returns its log. Afterwards it is gone."""
+async def stop_when_up(folder: Path, code: str) -> str:
+    """Start a program that says "up" and sleeps, and stop it; return its log. Afterwards it is gone."""
     crew = Crew(folder, program("engine", f"import signal, sys, time\n{code}\nprint('up')\ntime.sleep(600)"))
     log = folder / "logs/engine.log"
-    processes: list[psutil.Process] = []
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: log.exists() and log.read_text() == "up\n", "it to be up")
-        processes.append(crew.process("engine"))
-
-    run(crew, scenario)
-    assert not processes[0].is_running()
+        process = crew.process("engine")
+    assert not process.is_running()
     assert crew.told == []
     return log.read_text()
 
 
-def test_a_process_is_terminated_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_process_is_terminated_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # It may take its time on a busy computer.
     monkeypatch.setattr(parts_module, "TERM_SECONDS", SECONDS)
     polite = "signal.signal(15, lambda *_: sys.exit(print('bye')))"
-    assert stop_when_up(tmp_path, polite) == "up\nbye\n"
+    assert await stop_when_up(tmp_path, polite) == "up\nbye\n"
 
 
-def test_a_process_that_does_not_end_when_terminated_is_killed(
+async def test_a_process_that_does_not_end_when_terminated_is_killed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
-    assert stop_when_up(tmp_path, "signal.signal(15, signal.SIG_IGN)") == "up\n"
+    assert await stop_when_up(tmp_path, "signal.signal(15, signal.SIG_IGN)") == "up\n"
 
 
-def test_children_of_a_process_end_with_it(tmp_path: Path) -> None:
+async def test_children_of_a_process_end_with_it(tmp_path: Path) -> None:
     code = "import subprocess, time; print(subprocess.Popen(['sleep', '600']).pid); time.sleep(600)"
     crew = Crew(tmp_path, program("parent", code))
     log = tmp_path / "logs" / "parent.log"
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: log.exists() and log.read_text().endswith("\n"), "the child")
         crew.process("parent").kill()
         await until(lambda: crew.told, "the news")
         first, *_ = map(int, log.read_text().split())
         await until(lambda: not alive(first), "the child's end")
         await until(lambda: len(log.read_text().split()) == 2, "the next child")
-
-    run(crew, scenario)
     children = [int(pid) for pid in log.read_text().split()]
     # They have been killed; the system may not have reaped them yet.
-    asyncio.run(until(lambda: not any(map(alive, children)), "the last child's end"))
+    await until(lambda: not any(map(alive, children)), "the last child's end")
 
 
-def test_a_process_starts_when_the_files_that_it_needs_exist(tmp_path: Path) -> None:
+async def test_a_process_starts_when_the_files_that_it_needs_exist(tmp_path: Path) -> None:
     socket = tmp_path / "board.sock"
     crew = Crew(tmp_path, program("water", "import time; time.sleep(600)", socket))
 
-    async def scenario() -> None:
+    async with running(crew):
         await asyncio.sleep(0.2)
         assert (crew.part("water").state, crew.part("water").pid) == ("waiting", None)
         socket.touch()
         await until(lambda: crew.part("water").state == "running", "the start")
 
-    run(crew, scenario)
 
-
-def test_a_missing_program_is_reported_and_the_others_run(tmp_path: Path) -> None:
+async def test_a_missing_program_is_reported_and_the_others_run(tmp_path: Path) -> None:
     missing = ProcessCommand("board", "board", (str(tmp_path / "no" / "board"),))
     crew = Crew(tmp_path, missing, program("other", "import time; time.sleep(600)"))
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: crew.told and crew.part("other").state == "running", "both")
         assert "No such file" in crew.told[0][1]
         assert crew.part("board").state in ("failed", "waiting")
 
-    run(crew, scenario)
 
-
-def test_a_paused_process_does_not_run_until_it_is_resumed(tmp_path: Path) -> None:
+async def test_a_paused_process_does_not_run_until_it_is_resumed(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: crew.part("engine").pid, "the start")
         before = crew.process("engine")
         await crew.parts.pause("engine", "It is lent.")
@@ -243,8 +226,6 @@ def test_a_paused_process_does_not_run_until_it_is_resumed(tmp_path: Path) -> No
         crew.parts.resume("engine")
         await until(lambda: crew.part("engine").pid, "the next start")
         assert crew.told == []
-
-    run(crew, scenario)
 
 
 class Left:
@@ -265,84 +246,76 @@ class Left:
         pid_file(data.run, command.name).write(self.process.pid, command.fingerprint())
 
 
-def test_a_process_of_a_killed_server_is_adopted(tmp_path: Path) -> None:
-    left = Left(tmp_path, program("engine", "import time; time.sleep(600)", tmp_path / "never"))
-    crew = Crew(tmp_path, left.command)
+async def test_a_process_of_a_killed_server_is_adopted(tmp_path: Path) -> None:
+    remaining = Left(tmp_path, program("engine", "import time; time.sleep(600)", tmp_path / "never"))
+    crew = Crew(tmp_path, remaining.command)
 
     started = crew.part("engine").since
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: crew.part("engine").state == "running", "the adoption")
-        assert crew.part("engine").pid == left.process.pid
+        assert crew.part("engine").pid == remaining.process.pid
         assert crew.part("engine").since == started
         (tmp_path / "never").touch()
-        left.process.kill()
+        remaining.process.kill()
         await until(lambda: crew.told, "the news")
         assert (
             "has ended; its exit status is not known, because an earlier server had started it"
             in crew.told[0][1]
         )
-        await until(lambda: crew.part("engine").pid not in (None, left.process.pid), "the next")
-
-    run(crew, scenario)
-    assert not alive(left.process.pid)
+        await until(lambda: crew.part("engine").pid not in (None, remaining.process.pid), "the next")
+    assert not alive(remaining.process.pid)
     assert not list((tmp_path / "run").iterdir())
 
 
-def test_an_adopted_process_is_terminated_first_and_then_killed(
+async def test_an_adopted_process_is_terminated_first_and_then_killed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
     up = tmp_path / "up"
     code = "import pathlib, signal, time; signal.signal(15, signal.SIG_IGN)\n"
-    left = Left(tmp_path, program("deaf", code + f"pathlib.Path({str(up)!r}).touch(); time.sleep(600)"))
-    crew = Crew(tmp_path, left.command)
+    remaining = Left(tmp_path, program("deaf", code + f"pathlib.Path({str(up)!r}).touch(); time.sleep(600)"))
+    crew = Crew(tmp_path, remaining.command)
 
-    async def scenario() -> None:
-        await until(lambda: crew.part("deaf").pid == left.process.pid, "the adoption")
+    async with running(crew):
+        await until(lambda: crew.part("deaf").pid == remaining.process.pid, "the adoption")
         await until(up.exists, "it to be deaf")
-
-    run(crew, scenario)
-    assert not alive(left.process.pid)
+    assert not alive(remaining.process.pid)
     assert crew.told == []
 
 
-def test_a_process_of_another_command_or_other_files_is_replaced(tmp_path: Path) -> None:
+async def test_a_process_of_another_command_or_other_files_is_replaced(tmp_path: Path) -> None:
     read = tmp_path / "read"
     read.write_text("old")
     commands = [
         program("argument", "import time; time.sleep(600)"),
         replace(program("file", "import time; time.sleep(600)"), made_of=(read,)),
     ]
-    left = [Left(tmp_path, command) for command in commands]
+    remaining = [Left(tmp_path, command) for command in commands]
     read.write_text("new")
     changed = program("argument", "import time; time.sleep(601)")
     crew = Crew(tmp_path, changed, commands[1])
 
-    async def scenario() -> None:
-        for one in left:
-            await until(lambda one=one: not alive(one.process.pid), "the end of the old")  # type: ignore[misc]
+    async with running(crew):
+        for server in remaining:
+            await until(lambda item=server: not alive(item.process.pid), "the end of the old")  # type: ignore[misc]
         await until(lambda: crew.part("argument").pid and crew.part("file").pid, "the new")
         assert crew.told == []
 
-    run(crew, scenario)
 
-
-def test_a_reused_process_number_is_not_adopted(tmp_path: Path) -> None:
+async def test_a_reused_process_number_is_not_adopted(tmp_path: Path) -> None:
     command = program("engine", "import time; time.sleep(600)")
-    left = Left(tmp_path, command)
+    remaining = Left(tmp_path, command)
     file = tmp_path / "run" / "engine.pid"
-    found = json.loads(file.read_text())
-    file.write_text(json.dumps(found | {"started": found["started"] - 1}))
+    text = json.loads(file.read_text())
+    file.write_text(json.dumps(text | {"started": text["started"] - 1}))
     crew = Crew(tmp_path, command)
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: crew.part("engine").pid, "the start")
-        assert crew.part("engine").pid != left.process.pid
-
-    run(crew, scenario)
-    assert left.process.is_running()
-    left.process.kill()
+        assert crew.part("engine").pid != remaining.process.pid
+    assert remaining.process.is_running()
+    remaining.process.kill()
 
 
 @pytest.mark.parametrize("text", ["", "nonsense", "[]", "{}", '{"pid": null}', '{"pid": 1, "started": 1}'])
@@ -352,44 +325,40 @@ def test_a_damaged_pid_file_is_ignored(tmp_path: Path, text: str) -> None:
     assert running_parts(tmp_path / "run") == {}
 
 
-def test_a_process_that_is_paused_at_the_start_is_not_adopted(tmp_path: Path) -> None:
-    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
-    crew = Crew(tmp_path, left.command)
+async def test_a_process_that_is_paused_at_the_start_is_not_adopted(tmp_path: Path) -> None:
+    remaining = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    crew = Crew(tmp_path, remaining.command)
 
-    async def scenario() -> None:
-        await crew.parts.pause("engine", "It is lent.")
-        assert not alive(left.process.pid)
-
-    asyncio.run(scenario())
+    await crew.parts.pause("engine", "It is lent.")
+    assert not alive(remaining.process.pid)
 
 
 def test_a_process_that_the_next_server_does_not_use_is_ended(tmp_path: Path) -> None:
-    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
-    crew = Crew(tmp_path, left.command)
+    remaining = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    crew = Crew(tmp_path, remaining.command)
     asyncio.run(crew.parts.end_others())
-    assert alive(left.process.pid)
+    assert alive(remaining.process.pid)
     asyncio.run(Crew(tmp_path, program("another", "")).parts.end_others())
-    assert not alive(left.process.pid)
-    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    assert not alive(remaining.process.pid)
+    remaining = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
     end_parts(tmp_path / "run")
-    assert not alive(left.process.pid)
+    assert not alive(remaining.process.pid)
     assert running_parts(tmp_path / "run") == {}
 
 
-def test_ctrl_c_reaches_the_server_alone(tmp_path: Path) -> None:
+async def test_ctrl_c_reaches_the_server_alone(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
-    async def scenario() -> None:
+    async with running(crew):
         await until(lambda: crew.part("engine").pid, "the start")
         pid = crew.part("engine").pid
         assert pid is not None
         assert os.getpgid(pid) == pid != os.getpgid(0)
 
-    run(crew, scenario)
-
 
 def test_a_real_robot_runs_only_the_runtime_and_an_emulated_one_all_processes(settings: Settings) -> None:
-    assert [command.name for command in plan(replace(settings, mode="robot"))] == ["runtime"]
+    real = replace(settings, robot=replace(settings.robot, mode="robot"))
+    assert [command.name for command in plan(real)] == ["runtime"]
     commands = {command.name: command for command in plan(settings)}
     assert list(commands) == ["board", "runtime", "simulator", "scene"]
     lock = ("--server-lock", str(settings.data.lock))
@@ -399,7 +368,7 @@ def test_a_real_robot_runs_only_the_runtime_and_an_emulated_one_all_processes(se
     assert str(settings.data.board_tty) in commands["runtime"].arguments
     board = plan(replace(settings, mistakes=("imu-strap", "backlash:0.1")))[0].arguments
     assert " ".join(board).endswith("--mistake imu-strap --mistake backlash:0.1")
-    alone = plan(replace(settings, mode="robot"))[0].arguments
+    alone = plan(replace(settings, robot=replace(settings.robot, mode="robot")))[0].arguments
     assert "--port" not in alone
     assert "--server-lock" not in alone
     assert "--heartbeat" in alone

@@ -4,7 +4,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -14,22 +14,16 @@ import pytest
 from server.platform.folder_lock import runner_of
 from server.platform.settings import DataFolder
 from tests.server.waiting import SECONDS, alive
+from tests.waiting import wait_for
 
 ROOT = Path(__file__).resolve().parents[3]
 NAMES = ("mucat-runner", "mucat-server")
 
 
-def wait(condition: Callable[[], object], what: str) -> None:
-    end = time.monotonic() + SECONDS
-    while not condition():
-        assert time.monotonic() < end, f"waited in vain for {what}"
-        time.sleep(0.02)
-
-
 def kill(process: psutil.Process) -> None:
     """Send SIGKILL, and wait for the end: on a busy computer a killed process stays for a moment."""
     process.kill()
-    wait(lambda: not alive(process.pid), "the end of what was killed")
+    wait_for(lambda: not alive(process.pid), "the end of what was killed")
 
 
 class Family:
@@ -38,8 +32,8 @@ class Family:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         command = [sys.executable, "-m", "tests.server.processes.small_servers", str(folder)]
-        self.words = (folder / "words").open("wb")
-        self.started = subprocess.Popen(command, cwd=ROOT, stderr=self.words, start_new_session=True)
+        self.errors = (folder / "words").open("wb")
+        self.started = subprocess.Popen(command, cwd=ROOT, stderr=self.errors, start_new_session=True)
 
     @property
     def servers(self) -> list[tuple[int, str]]:
@@ -49,18 +43,18 @@ class Family:
         return [(int(pid), ended) for pid, _, ended in (line.partition(" ") for line in lines)]
 
     def find(self, name: str) -> list[psutil.Process]:
-        found = []
+        results = []
         for pid in psutil.pids():
             # The group is asked first: it costs a hundredth of a process's name.
             with suppress(psutil.Error, ProcessLookupError):
                 if os.getpgid(pid) == self.started.pid and (process := psutil.Process(pid)).name() == name:
-                    found.append(process)
-        return [process for process in found if alive(process.pid)]
+                    results.append(process)
+        return [process for process in results if alive(process.pid)]
 
     def whole(self) -> bool:
         """Check that there is one runner and one server, and that it serves."""
         everybody = [self.find(name) for name in NAMES]
-        if [len(one) for one in everybody] != [1, 1]:
+        if [len(group) for group in everybody] != [1, 1]:
             return False
         return bool(self.servers) and self.servers[-1][0] == everybody[1][0].pid
 
@@ -81,24 +75,24 @@ def ending(family: Family) -> Iterator[Family]:
         with suppress(ProcessLookupError):
             os.killpg(family.started.pid, signal.SIGKILL)
         family.started.wait()
-        family.words.close()
+        family.errors.close()
 
 
 @contextmanager
 def running(folder: Path) -> Iterator[Family]:
     with ending(Family(folder)) as family:
-        wait(family.whole, "the server")
+        wait_for(family.whole, "the server")
         yield family
 
 
 def test_a_killed_server_is_replaced_and_the_next_one_gets_the_reason(tmp_path: Path) -> None:
     with running(tmp_path) as family:
         first = family.kill("mucat-server")
-        wait(lambda: family.whole() and len(family.servers) == 2, "the next server")
+        wait_for(lambda: family.whole() and len(family.servers) == 2, "the next server")
         assert family.servers[0] == (first, "")
         assert family.servers[1][1] == "The server was ended by signal SIGKILL."
         family.kill("mucat-server")
-        wait(lambda: family.whole() and len(family.servers) == 3, "the third server")
+        wait_for(lambda: family.whole() and len(family.servers) == 3, "the third server")
     assert "It is started again at once." in (tmp_path / "words").read_text()
     assert "It is started again in 0.1 s." in (tmp_path / "words").read_text()
 
@@ -137,8 +131,8 @@ def test_a_first_server_that_cannot_start_is_not_tried_again(tmp_path: Path) -> 
         assert family.started.wait(SECONDS) == 1
         assert (tmp_path / "broken").read_text() == "x"
         assert family.gone()
-    said = (tmp_path / "words").read_text()
-    assert "The server has ended with exit status 1 before it could serve" in said
+    output = (tmp_path / "words").read_text()
+    assert "The server has ended with exit status 1 before it could serve" in output
 
 
 @pytest.mark.parametrize(
@@ -154,9 +148,9 @@ def test_a_server_that_has_served_is_started_again_however_it_ended(
 ) -> None:
     (tmp_path / "exit").write_text(how)
     with ending(Family(tmp_path)) as family:
-        wait(lambda: family.started.poll() is not None or len(family.servers) == 2, "the next server")
+        wait_for(lambda: family.started.poll() is not None or len(family.servers) == 2, "the next server")
         assert family.started.poll() is None
-        wait(family.whole, "the next server")
+        wait_for(family.whole, "the next server")
         ended = family.servers[1][1]
         assert described in ended
         assert ended.endswith("Its last words: Memory allocation still failed, giving up.")
@@ -169,9 +163,9 @@ def test_a_later_one_that_cannot_start_is_tried_until_it_can(tmp_path: Path) -> 
     with running(tmp_path) as family:
         (tmp_path / "broken").touch()
         family.kill("mucat-server")
-        wait(lambda: len((tmp_path / "broken").read_text()) >= 3, "three tries")
+        wait_for(lambda: len((tmp_path / "broken").read_text()) >= 3, "three tries")
         (tmp_path / "broken").unlink()
-        wait(family.whole, "a server")
+        wait_for(family.whole, "a server")
         assert len(family.servers) == 2
 
 
@@ -181,7 +175,7 @@ def test_a_killed_runner_takes_its_server_with_it(tmp_path: Path) -> None:
         # With -9 the process is gone for its parent, this one, only when it was waited for.
         family.started.kill()
         assert family.started.wait(SECONDS) == -signal.SIGKILL
-        wait(family.gone, "the end of the server")
+        wait_for(family.gone, "the end of the server")
         assert runner_of(DataFolder(tmp_path)) is None
         # Killed, not ended in order: the robot is left as it is, for the next start to adopt.
         assert not (tmp_path / "bye").exists()
@@ -196,4 +190,4 @@ def test_a_server_killed_twenty_times_at_any_moment_is_there_again(tmp_path: Pat
             time.sleep(chance.uniform(0, 0.03))
             for server in family.find("mucat-server"):
                 kill(server)
-            wait(family.whole, "the next server")
+            wait_for(family.whole, "the next server")

@@ -20,7 +20,7 @@ class Browser:
     def __init__(self, served: Served, name: str) -> None:
         self.name = name
         self._served = served
-        self.origin = f"http://127.0.0.1:{served.settings.port}"
+        self.origin = f"http://127.0.0.1:{served.settings.server.port}"
         headers = {"origin": self.origin}
         self.api = httpx.AsyncClient(base_url=f"{self.origin}/api", headers=headers, timeout=SECONDS)
 
@@ -48,11 +48,11 @@ class Browser:
 @asynccontextmanager
 async def browser(served: Served, role: Role | None, name: str = "tablet") -> AsyncIterator[Browser]:
     """A browser, paired in this role by the shell; None: not paired."""
-    one = Browser(served, name)
-    async with one.api:
+    visitor = Browser(served, name)
+    async with visitor.api:
         if role is not None:
-            (await one.pair(await new_code(served, role))).raise_for_status()
-        yield one
+            (await visitor.pair(await new_code(served, role))).raise_for_status()
+        yield visitor
 
 
 async def new_code(served: Served, role: Role) -> str:

@@ -12,7 +12,7 @@ from server.http.sign_in.identity import SHELL, Identity
 from server.http.sign_in.pairing_codes import PairingCodes, WrongCodeError
 from server.platform.audit_file import read_entries
 from server.platform.settings import Settings
-from tests.server.serving import Served, play
+from tests.server.serving import Served
 from tests.server.sign_in.browsers import Browser, browser, new_code
 from tests.server.waiting import until
 
@@ -21,15 +21,15 @@ TABLET = Identity(1, "tablet", "operator", "browser")
 
 
 def confirmations(served: Served) -> SimulatedClock:
-    """The clock of a server whose browsers have all yet to confirm."""
+    """Return the clock of a server whose browsers have all yet to confirm."""
     clock = SimulatedClock(1000.0)
     served.get(Access).confirmations = Confirmations(clock)
     served.get(Access).codes = PairingCodes(clock)
     return clock
 
 
-async def confirm(one: Browser, code: str) -> httpx.Response:
-    return await one.api.post("/access/confirm", json={"code": code})
+async def confirm(visitor: Browser, code: str) -> httpx.Response:
+    return await visitor.api.post("/access/confirm", json={"code": code})
 
 
 def test_a_confirmation_holds_for_ten_minutes_and_only_for_its_browser() -> None:
@@ -81,82 +81,72 @@ ACTS: tuple[tuple[str, str, dict[str, str] | None], ...] = (
 )
 
 
-def test_ten_minutes_after_its_sign_in_a_browser_must_confirm_dangerous_acts(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        clock = confirmations(served)
-        async with browser(served, "operator") as one:
+async def test_ten_minutes_after_its_sign_in_a_browser_must_confirm_dangerous_acts(served: Served) -> None:
+    clock = confirmations(served)
+    async with browser(served, "operator") as visitor:
 
-            async def act() -> list[int]:
-                answers = [await one.api.request(method, path, json=body) for method, path, body in ACTS]
-                asked = [one.json().get("kind") for one in answers if one.status_code == 403]
-                assert asked == ["confirmation"] * len(asked)
-                return [one.status_code for one in answers]
+        async def act() -> list[int]:
+            answers = [await visitor.api.request(method, path, json=body) for method, path, body in ACTS]
+            asked = [answer.json().get("kind") for answer in answers if answer.status_code == 403]
+            assert asked == ["confirmation"] * len(asked)
+            return [answer.status_code for answer in answers]
 
-            assert await act() == [201, 201, 200, 404, 200]
-            clock.forward(CONFIRMED_SECONDS)
-            assert await act() == [403] * len(ACTS)
-            assert (await one.api.get("/access/devices")).status_code == 200
-            assert (await confirm(one, await new_code(served, "operator"))).status_code == 204
-            (await served.api.patch("/access/devices/2", json={"name": "second script"})).raise_for_status()
-            assert await act() == [201, 201, 200, 404, 200]
-
-    play(settings, scenario)
+        assert await act() == [201, 201, 200, 404, 200]
+        clock.forward(CONFIRMED_SECONDS)
+        assert await act() == [403] * len(ACTS)
+        assert (await visitor.api.get("/access/devices")).status_code == 200
+        assert (await confirm(visitor, await new_code(served, "operator"))).status_code == 204
+        (await served.api.patch("/access/devices/2", json={"name": "second script"})).raise_for_status()
+        assert await act() == [201, 201, 200, 404, 200]
 
 
-def test_a_viewer_who_becomes_an_operator_by_a_code_is_not_asked(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        clock = confirmations(served)
-        async with browser(served, "viewer") as one:
-            clock.forward(CONFIRMED_SECONDS)
-            (await one.pair(await new_code(served, "operator"))).raise_for_status()
-            assert (await one.api.post("/access/codes", json={})).status_code == 201
-
-    play(settings, scenario)
+async def test_a_viewer_who_becomes_an_operator_by_a_code_is_not_asked(served: Served) -> None:
+    clock = confirmations(served)
+    async with browser(served, "viewer") as visitor:
+        clock.forward(CONFIRMED_SECONDS)
+        (await visitor.pair(await new_code(served, "operator"))).raise_for_status()
+        assert (await visitor.api.post("/access/codes", json={})).status_code == 201
 
 
-def test_wrong_codes_of_a_confirmation_wait_as_those_of_a_sign_in(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        clock = confirmations(served)
-        async with browser(served, "operator") as one:
-            own = (await one.api.post("/access/codes", json={"role": "operator"})).json()["code"]
-            clock.forward(CONFIRMED_SECONDS - 1.0)
-            right = await new_code(served, "operator")
-            assert (await confirm(one, own)).status_code == 403
-            assert (await confirm(one, right)).status_code == 429
-            clock.forward(1.0)
-            assert (await one.api.post("/access/codes", json={})).status_code == 403
-            assert (await confirm(one, right)).status_code == 204
-            assert (await one.api.post("/access/codes", json={})).status_code == 201
-
-    play(settings, scenario)
+async def test_wrong_codes_of_a_confirmation_wait_as_those_of_a_sign_in(served: Served) -> None:
+    clock = confirmations(served)
+    async with browser(served, "operator") as visitor:
+        own = (await visitor.api.post("/access/codes", json={"role": "operator"})).json()["code"]
+        clock.forward(CONFIRMED_SECONDS - 1.0)
+        right = await new_code(served, "operator")
+        assert (await confirm(visitor, own)).status_code == 403
+        assert (await confirm(visitor, right)).status_code == 429
+        clock.forward(1.0)
+        assert (await visitor.api.post("/access/codes", json={})).status_code == 403
+        assert (await confirm(visitor, right)).status_code == 204
+        assert (await visitor.api.post("/access/codes", json={})).status_code == 201
 
 
-def test_the_audit_log_has_confirmations_and_refusals_without_codes(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        clock = confirmations(served)
-        async with browser(served, "operator") as one:
-            clock.forward(CONFIRMED_SECONDS)
-            await one.api.post("/access/tokens", json={"name": "script"})
-            code = await new_code(served, "operator")
-            await confirm(one, code)
+async def test_the_audit_log_has_confirmations_and_refusals_without_codes(
+    settings: Settings, served: Served
+) -> None:
+    clock = confirmations(served)
+    async with browser(served, "operator") as visitor:
+        clock.forward(CONFIRMED_SECONDS)
+        await visitor.api.post("/access/tokens", json={"name": "script"})
+        code = await new_code(served, "operator")
+        await confirm(visitor, code)
 
-            def written() -> list[tuple[str, str, str]]:
-                entries = read_entries(settings.data.audit)
-                return [(entry.action, entry.about, entry.outcome) for entry in entries if entry.device]
+        def written() -> list[tuple[str, str, str]]:
+            entries = read_entries(settings.data.audit)
+            return [(entry.action, entry.about, entry.outcome) for entry in entries if entry.device]
 
-            expected = {
-                (
-                    "Make a token for a program",
-                    'not confirmed: POST /api/access/tokens {"name": "script"}',
-                    "refused",
-                ),
-                (
-                    "Confirm who uses this browser, with a new operator's code",
-                    "POST /api/access/confirm",
-                    "done",
-                ),
-            }
-            await until(lambda: expected <= set(written()), "the entries")
-            assert code not in json.dumps(written())
-
-    play(settings, scenario)
+        expected = {
+            (
+                "Make a token for a program",
+                'not confirmed: POST /api/access/tokens {"name": "script"}',
+                "refused",
+            ),
+            (
+                "Confirm the user of this browser, with a new operator's code",
+                "POST /api/access/confirm",
+                "done",
+            ),
+        }
+        await until(lambda: expected <= set(written()), "the entries")
+        assert code not in json.dumps(written())

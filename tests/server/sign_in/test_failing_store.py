@@ -19,24 +19,21 @@ def begin(settings: Settings, store: Store, token: str = "token") -> Access:
     return access
 
 
-def test_a_demotion_that_could_not_be_stored_can_be_repeated(
+async def test_a_demotion_that_could_not_be_stored_can_be_repeated(
     settings: Settings, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def refuse(*_: object) -> None:
         raise StoreError("the disk is full")
 
-    async def scenario() -> None:
-        access = begin(settings, store)
-        tablet, _ = await access.devices.add_browser("tablet", "operator")
-        with monkeypatch.context() as full_disk:
-            full_disk.setattr(store, "write", refuse)
-            with pytest.raises(StoreError):
-                await access.set_role(tablet.id, "viewer", SHELL)
-        assert access.devices.get(tablet.id).role == "viewer"
-        await access.set_role(tablet.id, "viewer", SHELL)
-        assert begin(settings, store).devices.get(tablet.id).role == "viewer"
-
-    asyncio.run(scenario())
+    access = begin(settings, store)
+    tablet, _ = await access.devices.add_browser("tablet", "operator")
+    with monkeypatch.context() as full_disk:
+        full_disk.setattr(store, "write", refuse)
+        with pytest.raises(StoreError):
+            await access.set_role(tablet.id, "viewer", SHELL)
+    assert access.devices.get(tablet.id).role == "viewer"
+    await access.set_role(tablet.id, "viewer", SHELL)
+    assert begin(settings, store).devices.get(tablet.id).role == "viewer"
 
 
 def test_a_server_that_starts_on_a_full_disk_can_be_used_from_the_shell(
@@ -58,18 +55,15 @@ def test_a_server_without_a_token_file_starts_all_the_same(settings: Settings, s
     assert not settings.data.token.exists()
 
 
-def test_two_operators_cannot_revoke_each_other(settings: Settings, store: Store) -> None:
-    async def scenario() -> None:
-        access = begin(settings, store)
-        one, _ = await access.devices.add_browser("tablet", "operator")
-        other, _ = await access.devices.add_browser("laptop", "operator")
-        done, refused = await asyncio.gather(
-            access.revoke(one.id, other.identity),
-            access.revoke(other.id, one.identity),
-            return_exceptions=True,
-        )
-        assert done is None
-        assert isinstance(refused, RefusedError)
-        assert access.devices.operators == [other]
-
-    asyncio.run(scenario())
+async def test_two_operators_cannot_revoke_each_other(settings: Settings, store: Store) -> None:
+    access = begin(settings, store)
+    device, _ = await access.devices.add_browser("tablet", "operator")
+    other, _ = await access.devices.add_browser("laptop", "operator")
+    done, refused = await asyncio.gather(
+        access.revoke(device.id, other.identity),
+        access.revoke(other.id, device.identity),
+        return_exceptions=True,
+    )
+    assert done is None
+    assert isinstance(refused, RefusedError)
+    assert access.devices.operators == [other]

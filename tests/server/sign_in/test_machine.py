@@ -77,13 +77,13 @@ class SigningIn(RuleBasedStateMachine):
             self.store,
             self.clock,
             lambda *_: None,
-            lambda one, _: self.closed.append(one),
+            lambda identity, _: self.closed.append(identity),
             make_token(TOKEN_PREFIX),
         )
         self.access.open()
 
     def run(self, coroutine: Coroutine[Any, Any, T]) -> T:
-        """Run a coroutine; returns its result."""
+        """Run a coroutine; return its result."""
         return self.runner.run(coroutine)
 
     def end(self) -> None:
@@ -109,11 +109,11 @@ class SigningIn(RuleBasedStateMachine):
         self.clock.forward(seconds)
 
     def valid(self) -> list[Code]:
-        """The codes that are still valid."""
+        """Return the codes that are still valid."""
         return [code for code in self.made if not code.void and self.clock.now() < code.until]
 
     def waits(self) -> bool:
-        """True in the second after a wrong code."""
+        """Return True in the second after a wrong code."""
         return bool(self.wrong) and self.clock.now() - self.wrong[-1] < 1.0
 
     @precondition(lambda self: len(self.valid()) < CODES_MAX)
@@ -132,7 +132,7 @@ class SigningIn(RuleBasedStateMachine):
         return self.try_to_pair(code, member)
 
     def try_to_pair(self, code: Code, known: Member | None) -> Any:
-        """The member of a sign-in: a new one, or the one of a paired browser."""
+        """Return the member of a sign-in: a new one, or the one of a paired browser."""
         browser = known is not None and not known.out and known.identity.kind == "browser"
         asking = self.access.pair(
             code.text, "tablet", known.identity if known and not known.out else None, "here"
@@ -160,13 +160,13 @@ class SigningIn(RuleBasedStateMachine):
         return self.let_in(identity, secrets.cookie, secrets.page)
 
     def nobody(self) -> Any:
-        """A member with an invalid secret."""
+        """Return a member with an invalid secret."""
         return Member(Identity(10**6, "", "viewer", "browser"), "no secret", out=True)
 
     def let_in(self, identity: Identity, secret: str, page_secret: str = "") -> Member:
-        """Add a member; numbers and secrets are never reused."""
-        assert identity.device not in {one.identity.device for one in self.everybody if not one.out}
-        assert secret not in {one.secret for one in self.everybody}
+        """Add a member; number and secrets are never reused."""
+        assert identity.device not in {actor.identity.device for actor in self.everybody if not actor.out}
+        assert secret not in {actor.secret for actor in self.everybody}
         member = Member(identity, secret, page_secret)
         self.everybody.append(member)
         return member
@@ -193,9 +193,9 @@ class SigningIn(RuleBasedStateMachine):
     def operators(self) -> list[Member]:
         """Browsers of operators."""
         return [
-            one
-            for one in self.everybody
-            if not one.out and (one.identity.kind, one.identity.role) == ("browser", "operator")
+            actor
+            for actor in self.everybody
+            if not actor.out and (actor.identity.kind, actor.identity.role) == ("browser", "operator")
         ]
 
     @rule(member=members, by=members, role=ROLES, shell=st.booleans())
@@ -237,7 +237,7 @@ class SigningIn(RuleBasedStateMachine):
             assert self.closed == [member.identity.device]
 
     async def seen(self, kind: Kind, secret: str, page_secret: str) -> Identity | None:
-        """The identity that the server finds for a request with these secrets."""
+        """Return the identity that the server finds for a request with these secrets."""
         header = (b"authorization", f"Bearer {secret}".encode())
         if kind == "browser":
             header = (b"cookie", f"{self.access.cookie}={secret}".encode())
@@ -246,17 +246,17 @@ class SigningIn(RuleBasedStateMachine):
 
     @invariant()
     def everybody_is_who_they_are(self) -> None:
-        for one in self.everybody:
-            other: Kind = "program" if one.identity.kind == "browser" else "browser"
-            identity = self.run(self.seen(one.identity.kind, one.secret, one.page_secret))
-            assert identity == (None if one.out else one.identity)
-            assert self.run(self.seen(other, one.secret, one.page_secret)) is None
-            if one.page_secret and not one.out:
+        for actor in self.everybody:
+            other: Kind = "program" if actor.identity.kind == "browser" else "browser"
+            identity = self.run(self.seen(actor.identity.kind, actor.secret, actor.page_secret))
+            assert identity == (None if actor.out else actor.identity)
+            assert self.run(self.seen(other, actor.secret, actor.page_secret)) is None
+            if actor.page_secret and not actor.out:
                 with pytest.raises(SignInEndedError):
-                    self.run(self.seen("browser", one.secret, one.secret))
-            assert (self.access.refresh(one.identity) == one.identity) is not one.out
-        there = {one.identity for one in self.everybody if not one.out}
-        assert {one.identity for one in self.access.devices.all()} == there
+                    self.run(self.seen("browser", actor.secret, actor.secret))
+            assert (self.access.refresh(actor.identity) == actor.identity) is not actor.out
+        there = {actor.identity for actor in self.everybody if not actor.out}
+        assert {device.identity for device in self.access.devices.all()} == there
         assert self.access.codes.any_valid is bool(self.valid())
 
 

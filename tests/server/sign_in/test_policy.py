@@ -10,7 +10,7 @@ from fastapi.routing import iter_route_contexts
 from starlette.requests import HTTPConnection
 
 from server.app import create_app
-from server.features.lease.admission import admit
+from server.driving.admission import admit
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import IDENTITY, SHELL
 from server.http.sign_in.middleware import OPEN
@@ -20,7 +20,7 @@ from server.platform.settings import DataFolder, Settings
 
 
 def make_app() -> FastAPI:
-    return create_app(Settings(data=DataFolder(Path("data", every_feature=True)), config=Path("robot.toml")))
+    return create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml"), every_feature=True))
 
 
 def operations(app: FastAPI) -> dict[str, tuple[str, str]]:
@@ -53,7 +53,7 @@ def test_an_operation_without_a_need_is_refused_even_to_the_shell() -> None:
     app = FastAPI()
     app.include_router(router, dependencies=[Depends(admit)])
     app.state.services = {Access: SimpleNamespace(refresh=lambda identity: identity)}
-    routes = {one.path: one for one in iter_route_contexts(app.routes)}
+    routes = {context.path: context for context in iter_route_contexts(app.routes)}
 
     def ask(path: str) -> None:
         scope = {"type": "http", "app": app, "route": routes[path], IDENTITY: SHELL, "headers": []}

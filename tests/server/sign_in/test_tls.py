@@ -25,12 +25,12 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.fixture
 def encrypted(settings: Settings) -> Settings:
-    return replace(settings, tls=True)
+    return settings.with_section(replace(settings.server, tls=True))
 
 
-def test_pages_shell_and_sockets_use_tls_only(encrypted: Settings) -> None:
+async def test_pages_shell_and_sockets_use_tls_only(encrypted: Settings) -> None:
     async def scenario(served: Served) -> None:
-        port = served.settings.port
+        port = served.settings.server.port
         me = (await served.api.get("/access/me")).json()
         assert me["identity"]["name"] == "the shell of this computer"
         async with served.connect() as socket:
@@ -49,11 +49,8 @@ def test_pages_shell_and_sockets_use_tls_only(encrypted: Settings) -> None:
         foreign = await served.api.get("/access/me", headers={"origin": f"http://127.0.0.1:{port}"})
         assert foreign.status_code == 403
 
-    async def run() -> None:
-        async with serve(encrypted) as served:
-            await scenario(served)
-
-    asyncio.run(run())
+    async with serve(encrypted) as served:
+        await scenario(served)
 
 
 IN_1970 = """
@@ -117,7 +114,7 @@ def test_a_certificate_that_cannot_be_made_or_read_is_reported(
         patch.setenv("PATH", "/nowhere")
         with pytest.raises(SetupError, match="apt install openssl"):
             prepare_certificate(encrypted)
-    broken = replace(encrypted, allowed_hosts=("a,nonsense",))
+    broken = encrypted.with_section(replace(encrypted.server, allowed_hosts=["a,nonsense"]))
     with pytest.raises(SetupError, match="openssl refused"):
         prepare_certificate(broken)
     assert not encrypted.data.tls.exists()
@@ -135,7 +132,7 @@ def text_of(certificate: Path) -> str:
 def age(settings: Settings, days: int, *extensions: str) -> None:
     """Replace the certificate by one of the same key that is valid for so many days."""
     folder = settings.data.tls
-    make_certificate(folder / CERTIFICATE, folder / KEY, settings.robot, extensions, days=days)
+    make_certificate(folder / CERTIFICATE, folder / KEY, settings.robot.name, extensions, days=days)
 
 
 def test_the_certificate_signs_no_other_and_lasts_no_longer_than_browsers_accept(encrypted: Settings) -> None:
@@ -155,7 +152,7 @@ def test_the_certificate_signs_no_other_and_lasts_no_longer_than_browsers_accept
     assert (valid.ends - valid.begins) / 86_400 <= 825
     check = ["openssl", "verify", "-x509_strict", "-CAfile", str(authority), "-verify_hostname", "localhost"]
     subprocess.run([*check, str(made.file)], check=True, capture_output=True)
-    assert [one.name for one in authority.parent.iterdir() if "PRIVATE" in one.read_text()] == [KEY]
+    assert [file.name for file in authority.parent.iterdir() if "PRIVATE" in file.read_text()] == [KEY]
 
 
 @pytest.mark.parametrize(
@@ -177,7 +174,7 @@ def test_a_certificate_is_renewed_with_its_key(
     again = prepare_certificate(encrypted)
     assert again.renewed is renewed
     assert again.key.read_bytes() == key
-    assert {one.name for one in again.file.parent.iterdir()} == {AUTHORITY, CERTIFICATE, KEY}
+    assert {file.name for file in again.file.parent.iterdir()} == {AUTHORITY, CERTIFICATE, KEY}
     assert read_validity(again.file).is_leaf
     once_more = prepare_certificate(encrypted)
     assert (once_more.renewed, once_more.fingerprint) == (False, again.fingerprint)

@@ -18,7 +18,7 @@ from tests.server.blocks import depth_block, truth_block
 ANSWER = BacklogReply("0123456789abcdef", {}, [])
 
 
-class Process:
+class AnsweringProcess:
     """A process that drops the first requests, and takes `needs` s to answer one, in a time of its own."""
 
     def __init__(self, lost: int = 0, needs: float = 0.0) -> None:
@@ -40,7 +40,9 @@ class Process:
         return ANSWER
 
 
-def fetch(settings: Settings, monkeypatch: pytest.MonkeyPatch, process: Process) -> BacklogReply | None:
+def fetch(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch, process: AnsweringProcess
+) -> BacklogReply | None:
     async def scenario() -> BacklogReply | None:
         bridge = Bridge(settings, lambda _: None)
         monkeypatch.setattr(bridge, "_loop", process, raising=False)
@@ -51,14 +53,14 @@ def fetch(settings: Settings, monkeypatch: pytest.MonkeyPatch, process: Process)
 
 
 def test_a_lost_request_is_repeated_soon(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
-    process = Process(lost=1)
+    process = AnsweringProcess(lost=1)
     assert fetch(settings, monkeypatch, process) is ANSWER
     assert len(process.asked) == 2
     assert process.asked[0] < 0.5
 
 
 def test_a_slow_process_gets_the_whole_timeout(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
-    process = Process(needs=2.0)
+    process = AnsweringProcess(needs=2.0)
     assert fetch(settings, monkeypatch, process) is ANSWER
     assert process.asked[-1] == BACKLOG_SECONDS
 
@@ -88,13 +90,15 @@ def message(topic: str) -> bytes:
 
 def deliveries(settings: Settings, arrivals: list[tuple[float, str]]) -> list[tuple[float, list[str]]]:
     """ms and topics of each delivery, of messages that arrive so (ms, topic) at an otherwise idle server."""
-    found: list[tuple[float, list[str]]] = []
+    results: list[tuple[float, list[str]]] = []
 
     async def scenario() -> None:
         loop = asyncio.get_running_loop()
         bridge = Bridge(
             settings,
-            lambda blocks: found.append((1000 * (loop.time() - began), [one.topic.name for one in blocks])),
+            lambda blocks: results.append(
+                (1000 * (loop.time() - began), [block.topic.name for block in blocks])
+            ),
         )
         bridge._loop = loop
         bridge.begin_delivery({})
@@ -107,7 +111,7 @@ def deliveries(settings: Settings, arrivals: list[tuple[float, str]]) -> list[tu
 
     with asyncio.Runner(loop_factory=SimulatedLoop) as runner:
         runner.run(scenario())
-    return found
+    return results
 
 
 def test_a_robot_s_sample_is_delivered_at_once_though_the_simulator_has_just_spoken(
@@ -121,14 +125,14 @@ def test_a_robot_s_sample_is_delivered_at_once_though_the_simulator_has_just_spo
 
 
 def test_a_simulator_without_a_runtime_is_heard_with_its_next_message(settings: Settings) -> None:
-    found = deliveries(settings, [(0, "truth"), (50, "truth")])
-    assert [topics for _, topics in found] == [["truth", "truth"]]
+    result = deliveries(settings, [(0, "truth"), (50, "truth")])
+    assert [topics for _, topics in result] == [["truth", "truth"]]
 
 
 def test_messages_of_a_round_are_delivered_together(settings: Settings) -> None:
-    found = deliveries(settings, [(0, "depth"), (1, "imu"), (2, "truth"), (3, "motor")])
-    assert [topics for _, topics in found] == [["depth"], ["imu", "truth", "motor"]]
-    assert found[1][0] >= 1000 * ROUND_SECONDS
+    result = deliveries(settings, [(0, "depth"), (1, "imu"), (2, "truth"), (3, "motor")])
+    assert [topics for _, topics in result] == [["depth"], ["imu", "truth", "motor"]]
+    assert result[1][0] >= 1000 * ROUND_SECONDS
 
 
 @pytest.mark.parametrize(

@@ -22,8 +22,8 @@ def test_a_buffer_is_limited_in_bytes_but_keeps_the_newest_message_of_any_size()
     lane = BroadcastBuffer(messages_max=100, bytes_max=1000)
     for number in range(20):
         lane.append([depth_block(number, 10)])
-    kept = sum(len(lane.get(number).data) for number in range(lane.first, lane.end))
-    assert 0 < kept <= 1000
+    stored = sum(len(lane.get(number).data) for number in range(lane.first, lane.end))
+    assert 0 < stored <= 1000
     lane.append([depth_block(0, 500)])
     assert lane.end - lane.first == 1
 
@@ -66,7 +66,7 @@ def everything(history: TopicHistory) -> bytes:
 
 
 def filled(seconds: float, bytes_max: int = 10**7) -> TopicHistory:
-    """A history of 50 depths a second, sent in blocks of two, from 100 s on."""
+    """Return a history of 50 depths a second, sent in blocks of two, from 100 s on."""
     history = TopicHistory(seconds=600, bytes_max=bytes_max)
     for tick in range(int(seconds * 25)):
         history.add(depth_block(2 * tick, 2), tick, 100.0 + tick / 25)
@@ -75,11 +75,11 @@ def filled(seconds: float, bytes_max: int = 10**7) -> TopicHistory:
 
 def test_the_history_of_ten_minutes_takes_little_more_memory_than_its_rows() -> None:
     history = filled(700)
-    kept = everything(history)
-    wanted = list(range(numbers(kept)[0], 700 * 50))
-    assert numbers(kept) == wanted
-    assert 600 * 50 - CHUNK_SECONDS * 50 <= len(wanted) <= (600 + CHUNK_SECONDS) * 50
-    assert len(kept) < 1.02 * DEPTH.row_bytes * len(wanted)
+    stored = everything(history)
+    expected = list(range(numbers(stored)[0], 700 * 50))
+    assert numbers(stored) == expected
+    assert 600 * 50 - CHUNK_SECONDS * 50 <= len(expected) <= (600 + CHUNK_SECONDS) * 50
+    assert len(stored) < 1.02 * DEPTH.row_bytes * len(expected)
     assert sum(map(len, history.since(-1, 10**6))) < 600 / CHUNK_SECONDS + 3
 
 

@@ -1,6 +1,5 @@
 """The budget of a viewer's device."""
 
-import asyncio
 from types import SimpleNamespace
 
 import pytest
@@ -35,7 +34,7 @@ def test_an_amount_comes_back_with_time() -> None:
 
 
 def wait_of(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """The pauses that are taken; time stands still in them."""
+    """Return the pauses that are taken; time stands still in them."""
     pauses: list[float] = []
 
     async def sleep(seconds: float) -> None:
@@ -45,33 +44,27 @@ def wait_of(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     return pauses
 
 
-def test_a_viewer_s_messages_wait_and_an_operator_s_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_viewer_s_messages_wait_and_an_operator_s_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
     pauses, budgets = wait_of(monkeypatch), Budgets(SimulatedClock())
 
-    async def scenario() -> None:
-        for caller in (VIEWER, SHELL):
-            for _ in range(int(RECEIVED_BURST)):
-                await budgets.of(caller).wait_to_receive()
-        assert not pauses
-        # Another connection of the same device.
-        await Budgets.of(budgets, VIEWER).wait_to_receive()
-        await budgets.of(SHELL).wait_to_receive()
-        assert pauses == [pytest.approx(1 / RECEIVED_PER_SECOND)]
-
-    asyncio.run(scenario())
+    for caller in (VIEWER, SHELL):
+        for _ in range(int(RECEIVED_BURST)):
+            await budgets.of(caller).wait_to_receive()
+    assert not pauses
+    # Another connection of the same device.
+    await Budgets.of(budgets, VIEWER).wait_to_receive()
+    await budgets.of(SHELL).wait_to_receive()
+    assert pauses == [pytest.approx(1 / RECEIVED_PER_SECOND)]
 
 
-def test_a_large_message_counts_as_several(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_large_message_counts_as_several(monkeypatch: pytest.MonkeyPatch) -> None:
     pauses, budgets = wait_of(monkeypatch), Budgets(SimulatedClock())
 
-    async def scenario() -> None:
-        await budgets.of(VIEWER).wait_to_send(int(SENT_BURST - 1) * SENT_BYTES)
-        assert not pauses
-        await budgets.of(VIEWER).wait_to_send(SENT_BYTES)
-        await budgets.of(SHELL).wait_to_send(10**9)
-        assert pauses == [pytest.approx(2 / SENT_PER_SECOND)]
-
-    asyncio.run(scenario())
+    await budgets.of(VIEWER).wait_to_send(int(SENT_BURST - 1) * SENT_BYTES)
+    assert not pauses
+    await budgets.of(VIEWER).wait_to_send(SENT_BYTES)
+    await budgets.of(SHELL).wait_to_send(10**9)
+    assert pauses == [pytest.approx(2 / SENT_PER_SECOND)]
 
 
 def test_a_viewer_s_connections_share_their_bytes_and_an_operator_s_do_not() -> None:

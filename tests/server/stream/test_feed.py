@@ -52,6 +52,6 @@ def test_a_listener_that_fails_at_its_own_report_is_reported_once() -> None:
 
     feed.on_failure = report
     feed.listen(fail)
-    for place in range(3):
-        feed.deliver([depth_block(place, 1)])
+    for position in range(3):
+        feed.deliver([depth_block(position, 1)])
     assert reported == ["worn out"]

@@ -1,4 +1,4 @@
-// The battery's converter (A2) and the beacon detectors (D4, D5).
+// The battery's converter (A2), the beacon detectors (D4, D5) and the leak sensor (D2).
 #ifdef __AVR__
 #include <avr/io.h>
 
@@ -14,6 +14,8 @@ uint16_t take_battery() { return ADC; }
 bool beacon_right() { return PIND & _BV(PD4); }
 
 bool beacon_left() { return PIND & _BV(PD5); }
+
+bool leak() { return !(PIND & _BV(PD2)); }
 
 }  // namespace board
 }  // namespace mucat

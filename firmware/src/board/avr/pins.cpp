@@ -23,7 +23,8 @@ void start_pins() {
   set_motor_power(false);
   set_led(false);
   DDRC |= _BV(PC3) | _BV(PC1);
-  DDRD &= static_cast<uint8_t>(~(_BV(PD4) | _BV(PD5)));
+  DDRD &= static_cast<uint8_t>(~(_BV(PD2) | _BV(PD4) | _BV(PD5)));
+  PORTD |= _BV(PD2);  // the pull-up of the leak sensor
   ADMUX = _BV(REFS0) | 2;
   ADCSRA = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);
   DIDR0 = _BV(ADC2D);

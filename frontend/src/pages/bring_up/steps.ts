@@ -1,5 +1,5 @@
 /** A step of the bring-up: its kind, its place, its live readings. */
-import type { BringUpReadings, BringUpStep } from '../../api';
+import type { RawReadings, BringUpStep } from '../../api';
 import { fixed, MISSING } from '../../format';
 import { bringUp } from '../../texts/bring_up';
 
@@ -28,7 +28,7 @@ export interface Measured {
 }
 
 /** What the board measures now of the parts of a step. */
-export function readings(name: string, raw: BringUpReadings): Measured[] {
+export function readings(name: string, raw: RawReadings): Measured[] {
   const { kind, fin } = kindOf(name);
   const encoders = raw.encoders.map(({ counts, field }, index) => ({
     name: texts.encoder(bringUp.fins[index] ?? String(index)),
@@ -64,6 +64,8 @@ export function readings(name: string, raw: BringUpReadings): Measured[] {
         { name: texts.left, value: level(raw.beacons.left) },
       ];
     }
+    case 'leak':
+      return [{ name: texts.leak, value: raw.leak ? texts.wet : texts.dry }];
     default:
       return [];
   }

@@ -1,4 +1,4 @@
-import { api, type BringUpHandsOrder, type BringUpInputs, type BringUpState } from '../../api';
+import { api, type HandsOrder, type BringUpInputs, type BringUpState } from '../../api';
 import type { Answer } from '../../http';
 
 /** ms between two looks: of live readings, while something is being done, and while nothing is */
@@ -30,17 +30,17 @@ export class BringUpWatch {
     if ('value' in answer) this.state = answer.value;
   }
 
-  begin = (): Promise<string> => this.#change(api.beginBringUp());
-  end = (): Promise<string> => this.#change(api.endBringUp(this.#run));
-  useHands = (order: BringUpHandsOrder): Promise<string> => this.#change(api.useHandsInBringUp(order));
-  act = (step: string, action: string, inputs: BringUpInputs): Promise<string> => this.#change(api.actInBringUp(this.#run, step, action, inputs));
+  begin = (): Promise<string | null> => this.#change(api.beginBringUp());
+  end = (): Promise<string | null> => this.#change(api.endBringUp(this.#run));
+  useHands = (order: HandsOrder): Promise<string | null> => this.#change(api.useHandsInBringUp(order));
+  act = (step: string, action: string, inputs: BringUpInputs): Promise<string | null> => this.#change(api.actInBringUp(this.#run, step, action, inputs));
 
-  /** Answers why it was refused; '' where it was not. */
-  async #change(request: Promise<Answer<BringUpState>>): Promise<string> {
+  /** Answers why it was refused, in words; null where it was not. */
+  async #change(request: Promise<Answer<BringUpState>>): Promise<string | null> {
     const answer = await request;
     this.#turn += 1;
     if ('problem' in answer) return answer.problem;
     this.state = answer.value;
-    return '';
+    return null;
   }
 }

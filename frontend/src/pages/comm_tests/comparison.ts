@@ -66,8 +66,3 @@ const isNumber = (value: number | null | undefined): value is number => typeof v
 function mean(values: readonly number[]): number | null {
   return values.length > 0 ? values.reduce((sum, one) => sum + one, 0) / values.length : null;
 }
-
-/** `chosen` with `id` added at its end, or taken out of it. */
-export function toggle(chosen: readonly string[], id: string): string[] {
-  return chosen.includes(id) ? chosen.filter((one) => one !== id) : [...chosen, id];
-}

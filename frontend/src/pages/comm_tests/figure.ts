@@ -6,7 +6,7 @@
  */
 import type { Data, Layout } from 'plotly.js-basic-dist-min';
 import { facetColumns, gridOf, key, placeWords, type Grid, type Place } from './grid';
-import type { Paint } from './scale';
+import type { Paint } from '../../parts/table';
 import { commTests as texts } from '../../texts/comm_tests';
 
 export interface FigureCell {

@@ -1,5 +1,6 @@
+import type { Paint } from '../../parts/table';
 import { token } from '../../theme.svelte';
-import { differencePaint, type Paint } from './scale';
+import { differencePaint } from './scale';
 
 /** Colours of -1, 0 and 1 in the theme as it stands. */
 export function differenceColours(): [string, string, string] {

@@ -1,4 +1,5 @@
 /** Colours of cells. A rate has the same one on every chart and in both themes. */
+import type { Paint } from '../../parts/table';
 
 /** Viridis of matplotlib, 0 to 1: told apart by colour-blind eyes, and growing lighter all the way. */
 const VIRIDIS = [
@@ -6,11 +7,6 @@ const VIRIDIS = [
 ] as const;
 
 type Rgb = readonly [number, number, number];
-
-export interface Paint {
-  readonly fill: string;
-  readonly ink: string;
-}
 
 /** With black and white one of the two always reaches a contrast of 4.5:1. */
 const INK_DARK = '#000000';

@@ -102,11 +102,7 @@ export function changeAt(root: Card, path: Path, change: (card: Card) => Card): 
   return { ...root, steps: (root.steps ?? []).map((step, at) => (at === index ? changeAt(step, below, change) : step)) };
 }
 
-/** A field of a step changed; one that becomes undefined is left out. */
-export function setField(root: Card, path: Path, name: string, value: unknown): Card {
-  return changeAt(root, path, (card) => ({ ...card, fields: withEntry(card.fields, name, value) }));
-}
-
+/** The table with an entry changed; one that becomes undefined is left out. */
 export function withEntry(table: Table, name: string, value: unknown): Table {
   return Object.fromEntries(Object.entries({ ...table, [name]: value }).filter(([, one]) => one !== undefined));
 }

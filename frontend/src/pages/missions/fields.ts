@@ -4,7 +4,7 @@ import { readNumber } from '../../number';
 import type { Card, Table } from './cards';
 
 export type StepField = MissionNodeKind['fields'][number];
-export type FieldKind = StepField['kind'];
+type FieldKind = StepField['kind'];
 
 /** A value as it is typed; of a `value`, a text that would be read as something else is in quotes. */
 export function fieldText(kind: FieldKind, value: unknown): string {

@@ -9,7 +9,7 @@ export interface PlacedProblem {
 }
 
 /** by the place of the step, as "3.1.2"; `head` is of the document without its steps */
-export type PlacedProblems = ReadonlyMap<string, readonly PlacedProblem[]>;
+type PlacedProblems = ReadonlyMap<string, readonly PlacedProblem[]>;
 
 export const HEAD = 'head';
 

@@ -4,14 +4,14 @@ import type { MissionTrial, MissionTrialResult } from '../../api';
 export type Outcome = 'succeeded' | 'failed' | 'ended' | 'none';
 
 /** A step at which runs failed. `place` is empty where it is the mission itself. */
-export interface Failure {
+interface Failure {
   readonly place: string;
   readonly count: number;
   /** of the first of these runs */
   readonly text: string;
 }
 
-export interface TrialFigures {
+interface TrialFigures {
   readonly succeeded: number;
   /** least and most, s; of the runs that succeeded */
   readonly took: readonly [number, number] | null;

@@ -1,4 +1,4 @@
-import { OTHER_TOPICS, ROW_TOPICS } from '../../generated/topics';
+import { PICTURE_TOPICS, ROW_TOPICS } from '../../generated/topics';
 import { readBlocks, readDocuments, type Block } from '../../live/blocks';
 import type { Live } from '../../live/live.svelte';
 
@@ -104,5 +104,5 @@ export class Reel {
 function makeStrip(topic: number): Strip {
   const rowBytes = ROW_BYTES.get(topic);
   if (rowBytes !== undefined) return new RowStrip(rowBytes);
-  return topic === OTHER_TOPICS.picture ? new PictureStrip() : new DocumentStrip(topic);
+  return topic === PICTURE_TOPICS.picture ? new PictureStrip() : new DocumentStrip(topic);
 }

@@ -1,9 +1,4 @@
-/** Choices in lists, and tags as they are typed. */
-
-/** The list with `one` added, or taken out where it was in it. */
-export function toggle<T>(list: readonly T[], one: T): T[] {
-  return list.includes(one) ? list.filter((other) => other !== one) : [...list, one];
-}
+/** Tags as they are typed. */
 
 /** The tags with a new one; what is empty or there already adds nothing. A comma separates several. */
 export function withTags(tags: readonly string[], text: string): string[] {

@@ -28,6 +28,7 @@ const FAULTS: readonly (readonly [number, string])[] = [
   [DeviceFault.TRACKING_FRONT_LEFT, texts.sensors.tracking(texts.fins.frontLeft)],
   [DeviceFault.MAGNET, texts.sensors.magnet],
   [DeviceFault.SURFACE, texts.sensors.surface],
+  [DeviceFault.LEAK, texts.sensors.leak],
 ];
 
 const FLAGS: readonly (readonly [number, string])[] = [

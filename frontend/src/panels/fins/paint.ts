@@ -15,7 +15,7 @@ export interface Look {
 }
 
 /** State of one fin. */
-export interface FinState {
+interface FinState {
   /** rad */
   readonly angle: number;
   readonly wanted: number;

@@ -31,9 +31,9 @@ export class Handing {
   ) {}
 
   next(): Samples {
-    const { now, replayed, state, detection } = this.live;
+    const { now, replayed, state, documents } = this.live;
     const rows = Object.fromEntries(this.topics.map((topic) => [topic, this.#since(topic, now)]));
-    return { now, replayed, rows, state, detection };
+    return { now, replayed, rows, state, detection: documents.detection.value };
   }
 
   #since(topic: Topic, now: number): readonly Rows[Topic][] {

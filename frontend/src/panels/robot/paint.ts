@@ -49,7 +49,7 @@ export function paint(context: CanvasRenderingContext2D, width: number, height: 
   context.clearRect(0, 0, width, height);
   compass(pen, look);
   robot(pen, eye, pose, look);
-  if (pose.depth !== null) surface(pen, height, pose.depth, look);
+  if (pose.depth !== null) surface(pen, pose.depth, look);
 }
 
 class Pen {
@@ -136,11 +136,12 @@ function compass(pen: Pen, look: Look): void {
   }
 }
 
-function surface(pen: Pen, height: number, depth: number, look: Look): void {
+function surface(pen: Pen, depth: number, look: Look): void {
   const { context } = pen;
   const above = Math.min(Math.max(depth, -SURFACE_MOST), SURFACE_MOST);
   const far = depth > SURFACE_MOST;
-  pen.polygon(circle(SURFACE_RADIUS, -above));
+  const ring = circle(SURFACE_RADIUS, -above);
+  pen.polygon(ring);
   context.strokeStyle = look.water;
   context.lineWidth = 1.2;
   context.setLineDash(far ? [3, 5] : []);
@@ -154,9 +155,11 @@ function surface(pen: Pen, height: number, depth: number, look: Look): void {
   }
   context.fillStyle = look.text;
   context.font = look.words;
-  context.textAlign = 'left';
+  context.textAlign = 'center';
   context.textBaseline = 'bottom';
-  context.fillText(far ? texts.robot.surfaceAbove(depth.toFixed(2)) : texts.robot.surface, 0, height);
+  // At the far side of its circle.
+  const [x, y] = ring.map(pen.at).reduce((highest, one) => (one[1] < highest[1] ? one : highest));
+  context.fillText(far ? texts.robot.surfaceAbove(depth.toFixed(2)) : texts.robot.surface, x, Math.max(14, y - 4));
 }
 
 /** 0 to 1, of a face that looks this way in the world */

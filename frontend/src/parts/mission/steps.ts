@@ -1,4 +1,5 @@
 /** The steps of a mission as a tree, and what of a mission is to be shown. */
+import type { Session } from '../../api';
 import type { Mission, MissionStepState, State } from '../../generated/topics';
 
 export interface StepNode {
@@ -8,6 +9,8 @@ export interface StepNode {
 
 /** s for which a mission is shown after its end */
 export const ENDED_SHOWN = 120;
+/** s after which a page that comes back does not show it any more */
+const PAST = 3600;
 /** s from one document of a running mission to the next */
 const PERIOD = 1;
 /** s, mission's clock; shorter steps show no time */
@@ -51,10 +54,19 @@ export function isGoing(phase: ShownPhase): boolean {
   return phase === 'running' || phase === 'paused';
 }
 
-/** True where Operate shows a mission by itself: while it runs, and for a while after its end. */
-export function isCurrent(mission: Mission, state: State | null, now: number): boolean {
+/**
+ * True where Operate shows a mission by itself: while it runs, and for a while after its end. A dive that surfaced
+ * while nobody was connected is shown from `back` on, when this page came back (s, steady clock).
+ */
+export function isCurrent(mission: Mission, state: State | null, now: number, back: number | null): boolean {
   if (isGoing(phaseOf(mission, state))) return true;
-  return state?.armed !== true && now - mission.time < ENDED_SHOWN;
+  const missed = mission.surfaced !== null && back !== null && back - mission.time < PAST;
+  return state?.armed !== true && now - Math.max(mission.time, missed ? back : -Infinity) < ENDED_SHOWN;
+}
+
+/** The session of a dive that was at the surface then: the newest that had begun; they come newest first. */
+export function sessionOf(sessions: readonly Session[], surfaced: Date): Session | null {
+  return sessions.find(({ started }) => Date.parse(started) < surfaced.getTime()) ?? null;
 }
 
 /** s since the newest document, for what goes on between two of them. */

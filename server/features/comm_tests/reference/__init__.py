@@ -18,7 +18,7 @@ TABLE5_DELAYS = (0.0, 0.5, 1.0)
 
 
 def read_table(name: str) -> dict[GridPlace, float]:
-    """The success rates of one of TABLES, 0 to 1."""
+    """Return the success rates of one of TABLES, 0 to 1."""
     return dict(_table5() if name == "table5" else _table6())
 
 
@@ -30,8 +30,8 @@ def _table5() -> Iterator[tuple[GridPlace, float]]:
 
 def _table6() -> Iterator[tuple[GridPlace, float]]:
     for row in _rows("table6"):
-        place = (int(row["baud"]), float(row["arduino_delay_s"]), int(row["pi_delay_ms"]) / 1000)
-        yield place, float(row["success_rate"])
+        cell = (int(row["baud"]), float(row["arduino_delay_s"]), int(row["pi_delay_ms"]) / 1000)
+        yield cell, float(row["success_rate"])
 
 
 def _rows(name: str) -> Iterator[dict[str, str]]:

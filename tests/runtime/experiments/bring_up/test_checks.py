@@ -25,6 +25,7 @@ def readings(rate: Callable[[int], Three], pressure: int = 101_325) -> list[Raw]
             battery=780,
             identity=0x68,
             beacons=0,
+            leak=0,
         )
         for number in range(40)
     ]

@@ -16,7 +16,7 @@ Run = Callable[..., list[CellResult]]
 
 
 def make_test(**changes: Any) -> CommTest:
-    """A cell of the thesis's grid, with these changes."""
+    """Return a cell of the thesis's grid, with these changes."""
     values: dict[str, Any] = {
         "id": 1,
         "name": "tested",

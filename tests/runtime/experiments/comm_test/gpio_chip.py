@@ -26,10 +26,10 @@ class GpioChip:
         environment.setenv("MUCAT_GPIO_LINES", str(self._lines))
 
     def levels(self, line: int) -> list[Level]:
-        """The changes of a line, in order, with their times (s, steady clock)."""
+        """Return the changes of a line, in order, with their times (s, steady clock)."""
         file = self._lines / str(line)
-        words = [row.split() for row in file.read_text().splitlines()] if file.exists() else []
-        return [(what, int(time) / 1e9) for what, time in words]
+        parts = [row.split() for row in file.read_text().splitlines()] if file.exists() else []
+        return [(what, int(time) / 1e9) for what, time in parts]
 
     @contextmanager
     def hold(self, line: int) -> Iterator[None]:

@@ -40,25 +40,25 @@ def lab(document: bytes, *options: str) -> Iterator[subprocess.Popen[bytes]]:
                 process.kill()
 
 
-def read_until(output: IO[bytes] | None, **wanted: Any) -> list[Event]:
-    """The events up to the first with these values."""
+def read_until(output: IO[bytes] | None, **expected: Any) -> list[Event]:
+    """Return the events up to the first with these values."""
     assert output
     events: list[Event] = []
     for line in output:
         events.append(json.loads(line))
-        if wanted.items() <= events[-1].items():
+        if expected.items() <= events[-1].items():
             return events
-    raise AssertionError(f"{wanted} is not among {events}")
+    raise AssertionError(f"{expected} is not among {events}")
 
 
 def run_lab(document: bytes, *options: str) -> tuple[int, list[Event]]:
-    """The exit status and all events."""
+    """Return the exit status and all events."""
     with lab(document, *options) as process:
         return _rest(process)
 
 
 def cancel(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
-    """Send SIGTERM; returns the exit status and the events after it."""
+    """Send SIGTERM; return the exit status and the events after it."""
     # The end of a parent with threads sends several.
     for _ in range(20):
         process.send_signal(signal.SIGTERM)
@@ -66,7 +66,7 @@ def cancel(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
 
 
 def _rest(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
-    told, errors = process.communicate(timeout=LIMIT)
+    report, errors = process.communicate(timeout=LIMIT)
     # An upload in real time may have to be tried again where the computer is busy.
     assert [line for line in errors.splitlines() if not line.endswith(b"; trying again")] == []
-    return process.returncode, [json.loads(line) for line in told.splitlines()]
+    return process.returncode, [json.loads(line) for line in report.splitlines()]

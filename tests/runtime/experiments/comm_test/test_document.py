@@ -57,8 +57,8 @@ def test_the_sketch_s_own_path_framing_and_direction(path: str) -> None:
 
 
 def test_faults_are_parsed_and_stored_documents_can_be_parsed_again() -> None:
-    wanted = {"seed": 7, "bit_errors": 1e-3, "insert": 0.1, "burst": [1e-4, 20], "stall": [2, 0.25]}
-    (test,) = read_document(changed(faults=wanted))
+    request = {"seed": 7, "bit_errors": 1e-3, "insert": 0.1, "burst": [1e-4, 20], "stall": [2, 0.25]}
+    (test,) = read_document(changed(faults=request))
     assert test.faults == Faults(seed=7, bit_errors=1e-3, insert=0.1, burst=(1e-4, 20), stall=(2.0, 0.25))
     assert read_document(json.dumps([asdict(test)])) == [test]
     (clean,) = read_document(THESIS)
@@ -67,7 +67,7 @@ def test_faults_are_parsed_and_stored_documents_can_be_parsed_again() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "words"),
+    ("changes", "message"),
     [
         ({"bauds": [1]}, "'bauds' is not known here; known are id, name, ino_path"),
         ({"id": "1"}, "id is '1'; it must be a whole number"),
@@ -130,9 +130,9 @@ def test_faults_are_parsed_and_stored_documents_can_be_parsed_again() -> None:
         ),
     ],
 )
-def test_an_error_is_reported_with_its_place(changes: dict[str, Any], words: str) -> None:
+def test_an_error_is_reported_with_its_place(changes: dict[str, Any], message: str) -> None:
     (problem,) = problems(changed(**changes))
-    assert problem.startswith(f"test 1: {words}")
+    assert problem.startswith(f"test 1: {message}")
 
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf")])
@@ -142,7 +142,7 @@ def test_what_is_no_number_of_json_is_refused(number: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "path", "words"),
+    ("changes", "path", "message"),
     [
         ({"speed": 1}, (0, "speed"), "is not known here"),
         ({"name": " "}, (0, "name"), "must be a text"),
@@ -156,22 +156,22 @@ def test_what_is_no_number_of_json_is_refused(number: float) -> None:
     ],
 )
 def test_a_mistake_carries_the_path_to_it(
-    changes: dict[str, Any], path: tuple[str | int, ...], words: str
+    changes: dict[str, Any], path: tuple[str | int, ...], message: str
 ) -> None:
     with pytest.raises(ConfigError) as refused:
         read_document(changed(**changes))
     (problem,) = refused.value.problems
-    assert (problem.path, problem.words.startswith(words)) == (path, True)
+    assert (problem.path, problem.words.startswith(message)) == (path, True)
     assert problem.text.endswith(problem.words)
 
 
 def test_all_errors_are_reported_together() -> None:
-    found = problems('[{"id": 1, "delay": [-1]}, 3]')
-    assert "test 1: name is missing" in found
-    assert "test 1: delay[0] is -1; it must lie between 0 and 10" in found
-    assert found[-1] == "test 2: it must be an object in braces"
+    result = problems('[{"id": 1, "delay": [-1]}, 3]')
+    assert "test 1: name is missing" in result
+    assert "test 1: delay[0] is -1; it must lie between 0 and 10" in result
+    assert result[-1] == "test 2: it must be an object in braces"
     several = problems(changed(delay=[-1], baud_rate=[9600, 9600], faults={"drop": 1}, name=" ", expected=7))
-    assert [one.removeprefix("test 1: ").split(" is ")[0].split(" must ")[0] for one in several] == [
+    assert [problem.removeprefix("test 1: ").split(" is ")[0].split(" must ")[0] for problem in several] == [
         "delay[0]",
         "faults: drop",
         "name",
@@ -186,9 +186,9 @@ def test_a_document_that_is_no_list_is_refused(text: str) -> None:
 
 def test_500_cells_are_run_and_501_are_not() -> None:
     delays = [number / 1000 for number in range(501)]
-    one = {"baud_rate": [9600], "arduinodelay": [0]}
-    assert len(read_document(changed(delay=delays[:500], **one))[0].cells) == 500
-    assert "at most 500" in problems(changed(delay=delays, **one))[0]
+    test = {"baud_rate": [9600], "arduinodelay": [0]}
+    assert len(read_document(changed(delay=delays[:500], **test))[0].cells) == 500
+    assert "at most 500" in problems(changed(delay=delays, **test))[0]
     assert (
         "has 510 cells"
         in problems(changed(delay=delays[:102], arduinodelay=[0], baud_rate=[300, 600, 1200, 2400, 4800]))[0]

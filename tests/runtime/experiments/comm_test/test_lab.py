@@ -28,8 +28,8 @@ def test_every_step_and_the_cells_are_reported_in_order(builder: Builder, run: R
     assert [(cell["test"], cell["number"]) for cell in cells] == [(0, 0), (0, 1), (0, 2), (0, 3), (1, 0)]
     assert [cell["values"] for cell in cells[:4]] == [result.values for result in run(**changes)]
     for number in range(4):
-        told = [event for event in events if event["test"] == 0 and event.get("number") == number]
-        assert [event.get("phase", "done") for event in told] == ["compile", "upload", "run", "done"]
+        notices = [event for event in events if event["test"] == 0 and event.get("number") == number]
+        assert [event.get("phase", "done") for event in notices] == ["compile", "upload", "run", "done"]
 
 
 def test_a_bad_document_is_refused_with_every_problem() -> None:

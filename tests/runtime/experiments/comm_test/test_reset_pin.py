@@ -40,7 +40,7 @@ def chip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> GpioChip:
 
 
 def pull(spec: str) -> str:
-    """The error of a process that pulls the pin; empty without one."""
+    """Return the error of a process that pulls the pin; empty without one."""
     done = subprocess.run([sys.executable, "-c", PULL, spec], cwd=ROOT, capture_output=True, text=True)
     return done.stderr.strip()
 
@@ -56,20 +56,20 @@ def test_the_pin_is_low_for_the_pulse_then_high_and_free_again(chip: GpioChip) -
 
 def test_a_chip_that_is_not_there_is_named(chip: GpioChip) -> None:
     missing = chip.path.with_name("gpiochip9")
-    said = f"the reset pin, line 4 of {missing}, cannot be pulled: [Errno 2] No such file or directory"
-    assert pull(f"gpio:{missing}:{LINE}") == said
+    answer = f"the reset pin, line 4 of {missing}, cannot be pulled: [Errno 2] No such file or directory"
+    assert pull(f"gpio:{missing}:{LINE}") == answer
 
 
 def test_a_line_that_the_chip_lacks_is_named(chip: GpioChip) -> None:
-    said = pull(f"gpio:{chip.path}:8")
-    assert said.startswith(f"the reset pin, line 8 of {chip.path}, cannot be pulled: ")
-    assert "range" in said
+    answer = pull(f"gpio:{chip.path}:8")
+    assert answer.startswith(f"the reset pin, line 8 of {chip.path}, cannot be pulled: ")
+    assert "range" in answer
 
 
 def test_a_line_that_another_program_holds_is_not_pulled(chip: GpioChip) -> None:
     with chip.hold(LINE):
-        said = pull(f"gpio:{chip.path}:{LINE}")
-    assert said == (
+        answer = pull(f"gpio:{chip.path}:{LINE}")
+    assert answer == (
         f"the reset pin, line 4 of {chip.path}, cannot be pulled: [Errno 16] Device or resource busy"
     )
     assert chip.levels(LINE) == []

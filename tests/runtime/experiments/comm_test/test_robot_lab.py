@@ -49,13 +49,13 @@ def start_board(program: Path, folder: Path, *options: str) -> EmulatorProcess:
     )
 
 
-def place(arduino: EmulatorProcess, reset: str = "dtr") -> tuple[str, ...]:
+def board_arguments(arduino: EmulatorProcess, reset: str = "dtr") -> tuple[str, ...]:
     return ("--port", str(arduino.tty), "--reset", reset)
 
 
 def check_restored(arduino: EmulatorProcess, reset: str = "dtr") -> None:
     """Restore the robot's firmware, and check that it answers a greeting after the boot loader's wait."""
-    assert run_lab(b"", "--restore", str(ROBOT), *place(arduino, reset)) == (0, [])
+    assert run_lab(b"", "--restore", str(ROBOT), *board_arguments(arduino, reset)) == (0, [])
     session = LinkSession(1, BAUD)
     with Port(str(arduino.tty), BAUD) as port:
         while session.stage is not SessionStage.ESTABLISHED:
@@ -68,7 +68,7 @@ def check_restored(arduino: EmulatorProcess, reset: str = "dtr") -> None:
 @pytest.mark.stack
 def test_cells_run_and_the_firmware_comes_back(arduino: EmulatorProcess) -> None:
     faulty = make_test(framing="plain", to_val=21, expected=20, faults=Faults(drop=0.1))
-    status, events = run_lab(write_document(SHORT, faulty), "--where", "robot", *place(arduino))
+    status, events = run_lab(write_document(SHORT, faulty), "--where", "robot", *board_arguments(arduino))
     assert (status, [event["state"] for event in events if event["event"] == "ended"]) == (
         0,
         ["complete"] * 2,
@@ -84,7 +84,9 @@ def test_cells_run_and_the_firmware_comes_back(arduino: EmulatorProcess) -> None
 def test_a_board_whose_reset_pin_is_pulled(bare_arduino: EmulatorProcess) -> None:
     reset = f"board:{bare_arduino.socket}"
     linked = make_test(framing="robot", direction="both", to_val=21, expected=20)
-    status, events = run_lab(write_document(linked), "--where", "robot", *place(bare_arduino, reset))
+    status, events = run_lab(
+        write_document(linked), "--where", "robot", *board_arguments(bare_arduino, reset)
+    )
     assert (status, [event["values"]["rate"] for event in events if event["event"] == "cell"]) == (0, [1.0])
     check_restored(bare_arduino, reset)
 
@@ -92,7 +94,7 @@ def test_a_board_whose_reset_pin_is_pulled(bare_arduino: EmulatorProcess) -> Non
 @pytest.mark.stack
 def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: EmulatorProcess) -> None:
     slow = make_test(delay=(10.0,))
-    with lab(write_document(slow), "--where", "robot", *place(arduino)) as process:
+    with lab(write_document(slow), "--where", "robot", *board_arguments(arduino)) as process:
         read_until(process.stdout, event="phase", phase="run")
         status, events = cancel(process)
     assert (status, events[-1]["state"]) == (1, "cancelled")
@@ -101,7 +103,7 @@ def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: EmulatorProces
 
 @pytest.mark.stack
 def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino: EmulatorProcess) -> None:
-    with lab(write_document(SHORT), "--where", "robot", *place(arduino)) as process:
+    with lab(write_document(SHORT), "--where", "robot", *board_arguments(arduino)) as process:
         read_until(process.stdout, event="phase", phase="upload")
         with arduino.connect() as board:
             wait_for(lambda: board.stats()["bytes_to_board"] > 600, "the first pages")

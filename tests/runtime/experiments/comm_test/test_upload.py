@@ -70,7 +70,7 @@ def test_the_boot_loader_waits_for_a_slow_host(
 
 
 def replace_avrdude(script: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Puts a shell script before the real avrdude."""
+    """Put a shell script before the real avrdude."""
     avrdude = folder / "bin/avrdude"
     avrdude.parent.mkdir()
     avrdude.write_text(f"#!/bin/sh\n{script}")
@@ -115,10 +115,12 @@ def test_a_missing_boot_loader_is_reported_with_avrdude_s_text(
     with (
         EmulatorProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
         process.connect() as board,
-        pytest.raises(UploadError, match=r"could not upload comm_test.hex through .*: .*not in sync") as told,
+        pytest.raises(
+            UploadError, match=r"could not upload comm_test.hex through .*: .*not in sync"
+        ) as report,
     ):
         upload_paused(product.hex, process.tty, board, Cancellation())
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(report.value)
 
 
 def test_an_upload_can_be_cancelled(builder: Builder, empty: Empty) -> None:

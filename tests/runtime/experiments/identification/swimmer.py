@@ -46,7 +46,7 @@ ALL_WAYS: tuple[Motion, ...] = (
 def swim(
     craft: Craft, seed: int, seconds: float, motions: tuple[Motion, ...] = ALL_WAYS, name: str = ""
 ) -> SessionStreams:
-    """The streams of a swim in deep, still water; the same seed gives the same."""
+    """Return the streams of a swim in deep, still water; the same seed gives the same."""
     random, noise = Random(seed), Random(f"{seed} encoders")
     simulator = Simulator(SimulationParameters.of(craft), seed)
     simulator.set_basin(Basin(30.0))
@@ -68,8 +68,8 @@ def swim(
         amplitude += max(min(motion[1] - amplitude, _GROWTH * _PERIOD), -_GROWTH * _PERIOD)
         swing = amplitude / 2 * sin(2 * pi * 1.3 * time)
         speeds = [
-            speed + ((one + swing - angle) / _LAG - 2 * speed) * _PERIOD / _LAG
-            for one, angle, speed in zip(directions, angles, speeds, strict=True)
+            speed + ((direction + swing - angle) / _LAG - 2 * speed) * _PERIOD / _LAG
+            for direction, angle, speed in zip(directions, angles, speeds, strict=True)
         ]
         angles = [angle + speed * _PERIOD for angle, speed in zip(angles, speeds, strict=True)]
         fins = [*angles, *speeds, 20.0, 20.0, 20.0, 20.0, 1.0]
@@ -95,10 +95,12 @@ def swim(
             )
         else:
             seen = [
-                one + zero + noise.gauss(0, craft.encoder.noise)
-                for one, zero in zip(angles, zeros, strict=True)
+                angle + zero + noise.gauss(0, craft.encoder.noise)
+                for angle, zero in zip(angles, zeros, strict=True)
             ]
-            motor.append((time, *_rounded([remainder(one, 2 * pi) for one in _rounded(seen, _TICK)], 0.001)))
+            motor.append(
+                (time, *_rounded([remainder(angle, 2 * pi) for angle in _rounded(seen, _TICK)], 0.001))
+            )
     motors, inertial, depths = np.array(motor), np.array(imu), np.array(depth)
     return SessionStreams(
         name=name or f"swim {seed}",
@@ -115,18 +117,18 @@ def swim(
 
 
 def random_craft(seed: int, most: float = 0.4) -> Craft:
-    """A craft whose every number that can be fitted differs from the default's by up to this share."""
+    """Return a craft whose every number that can be fitted differs from the default's by up to this share."""
     random, craft = Random(f"craft {seed}"), Craft()
-    for one in QUANTITIES:
+    for quantity in QUANTITIES:
         factor = 1 + random.uniform(-most, most)
-        if one.name == "buoyancy":
-            craft = one.replaced(craft, 1 + (craft.buoyancy - 1) * factor)
-        elif one.name in ("trim_forward", "trim_right"):
-            craft = one.replaced(craft, random.choice((-1, 1)) * random.uniform(0.0005, 0.002))
-        elif one.name == "fin_delay":
-            craft = one.replaced(craft, random.uniform(0.01, 0.05))
+        if quantity.name == "buoyancy":
+            craft = quantity.replaced(craft, 1 + (craft.buoyancy - 1) * factor)
+        elif quantity.name in ("trim_forward", "trim_right"):
+            craft = quantity.replaced(craft, random.choice((-1, 1)) * random.uniform(0.0005, 0.002))
+        elif quantity.name == "fin_delay":
+            craft = quantity.replaced(craft, random.uniform(0.01, 0.05))
         else:
-            craft = one.replaced(craft, one.value(craft) * factor)
+            craft = quantity.replaced(craft, quantity.value(craft) * factor)
     return replace(craft, gyroscope_offset=(0.01, -0.02, 0.015), accelerometer_offset=(0.05, -0.03, 0.1))
 
 

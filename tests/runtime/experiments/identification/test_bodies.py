@@ -48,7 +48,7 @@ def test_a_window_moves_as_the_simulator_s_body_does(craft: Craft) -> None:
     roll, pitch = 0.3, -0.2
     start = [2.0, 0.2, -0.1, 0.15, roll, pitch, 0.4, -0.3, 0.5]
     motion = FinMotions(angles[:, :, None], speeds[:, :, None])
-    found = Bodies([craft], [motion], [0]).simulate(np.array(start)[:, None, None], STEP, 1)[:, :, 0, 0]
+    result = Bodies([craft], [motion], [0]).simulate(np.array(start)[:, None, None], STEP, 1)[:, :, 0, 0]
 
     parameters = SimulationParameters.of(craft)
     body = Body(parameters, HalfSteps(parameters, angles, speeds), World(parameters))
@@ -56,7 +56,7 @@ def test_a_window_moves_as_the_simulator_s_body_does(craft: Craft) -> None:
     attitude = (float(cr * cp), float(sr * cp), float(cr * sp), float(-sr * sp))
     body.state = BodyState((0.0, 0.0, 2.0), attitude, (0.2, -0.1, 0.15), (0.4, -0.3, 0.5))
     for index in range(STEPS + 1):
-        assert found[:, index] == pytest.approx(measured(body, parameters), abs=1e-9)
+        assert result[:, index] == pytest.approx(measured(body, parameters), abs=1e-9)
         body.step(STEP, (0.0,) * 4, (0.0,) * 4)
 
 
@@ -76,7 +76,7 @@ class HalfSteps(Fins):
 
 
 def measured(body: Body, parameters: SimulationParameters) -> list[float]:
-    """The channels from the body's own derivative."""
+    """Return the channels from the body's own derivative."""
     fins = body._fins
     assert isinstance(fins, HalfSteps)
     half = fins.half

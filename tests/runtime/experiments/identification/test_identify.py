@@ -46,37 +46,37 @@ pytestmark = pytest.mark.timeout(900)
 
 
 @pytest.fixture(scope="module")
-def found() -> Identification:
+def result() -> Identification:
     fitted = [swim(OTHER, seed, 50) for seed in (1, 2)]
     return identify(fitted, swim(OTHER, 3, 18), START)
 
 
-def test_numbers_that_differ_by_up_to_40_percent_are_found_within_5(found: Identification) -> None:
+def test_numbers_that_differ_by_up_to_40_percent_are_found_within_5(result: Identification) -> None:
     """10 % where they are weakly seen."""
     judged = 0
-    for one in found.results:
-        true = one.quantity.value(OTHER)
+    for item in result.results:
+        true = item.quantity.value(OTHER)
         # Of the buoyancy the surplus over the weight counts.
-        least = 1.0 if one.quantity.name == "buoyancy" else 0.0
-        if one.quantity.entry == "damping_linear":
+        least = 1.0 if item.quantity.name == "buoyancy" else 0.0
+        if item.quantity.entry == "damping_linear":
             continue
-        error = abs(one.value - true) / abs(true - least)
-        assert one.seen != "no", one.quantity.name
-        assert error < {"well": 0.05, "weakly": 0.10}[one.seen], (one.quantity.name, one.value, true)
+        error = abs(item.value - true) / abs(true - least)
+        assert item.seen != "no", item.quantity.name
+        assert error < {"well": 0.05, "weakly": 0.10}[item.seen], (item.quantity.name, item.value, true)
         judged += 1
     assert judged == len(QUANTITIES) - 6
 
 
-def test_confidence_holds_what_is_true(found: Identification) -> None:
+def test_confidence_holds_what_is_true(result: Identification) -> None:
     """Within three and a half standard deviations, as far as 24 of them may be."""
-    for one in found.results:
-        if one.deviation is not None:
-            distance = abs(one.value - one.quantity.value(OTHER)) / one.deviation
-            assert distance < 3.5, (one.quantity.name, one.value, one.deviation)
+    for item in result.results:
+        if item.deviation is not None:
+            distance = abs(item.value - item.quantity.value(OTHER)) / item.deviation
+            assert distance < 3.5, (item.quantity.name, item.value, item.deviation)
 
 
-def test_the_session_that_was_left_out_is_predicted_five_times_better(found: Identification) -> None:
-    check = found.prediction
+def test_the_session_that_was_left_out_is_predicted_five_times_better(result: Identification) -> None:
+    check = result.prediction
     assert check is not None
     assert check.session == "swim 3"
     assert check.improvement > 5
@@ -85,18 +85,18 @@ def test_the_session_that_was_left_out_is_predicted_five_times_better(found: Ide
     assert check.measured.shape[1] == CHANNELS
 
 
-def test_noise_and_offsets_of_the_sensors_are_found(found: Identification) -> None:
-    assert found.noise == pytest.approx({"pressure": 42, "gyroscope": 2e-4, "accelerometer": 0.03}, rel=0.1)
+def test_noise_and_offsets_of_the_sensors_are_found(result: Identification) -> None:
+    assert result.noise == pytest.approx({"pressure": 42, "gyroscope": 2e-4, "accelerometer": 0.03}, rel=0.1)
     # A session draws an offset of its own beside the fixed one.
-    assert found.craft.gyroscope_offset == pytest.approx(OTHER.gyroscope_offset, abs=6e-3)
-    assert found.craft.accelerometer_offset == pytest.approx(OTHER.accelerometer_offset, abs=0.06)
+    assert result.craft.gyroscope_offset == pytest.approx(OTHER.gyroscope_offset, abs=6e-3)
+    assert result.craft.accelerometer_offset == pytest.approx(OTHER.accelerometer_offset, abs=0.06)
 
 
 def test_what_diving_alone_does_not_show_is_named() -> None:
     windows = cut([swim(START, 4, 26, HEAVING)], START)
     fit = Fit(windows, START)
     numbers = np.zeros(len(QUANTITIES) + OF_A_SESSION)
-    weak = {QUANTITIES[one].name for one in fit._find_unseen(QUANTITIES, numbers)}
+    weak = {QUANTITIES[index].name for index in fit._find_unseen(QUANTITIES, numbers)}
     assert {"damping_quadratic_sway", "damping_quadratic_surge", "damping_linear_yaw"} <= weak
     assert weak.isdisjoint({"thrust", "damping_quadratic_heave", "buoyancy", "fin_delay"})
 
@@ -113,7 +113,9 @@ def test_the_true_craft_predicts_to_the_noise() -> None:
 
 def test_windows_leave_out_gaps_and_the_surface() -> None:
     whole = swim(START, 6, 40)
-    assert cut([whole], START).starts == pytest.approx([0.33 + WINDOW * one for one in range(4)], abs=0.01)
+    assert cut([whole], START).starts == pytest.approx(
+        [0.33 + WINDOW * index for index in range(4)], abs=0.01
+    )
     missing = (whole.depth_times < 10) | (whole.depth_times > 10.2)
     broken = replace(
         whole,
@@ -159,20 +161,20 @@ def test_residuals_of_a_filtered_noise_are_made_white() -> None:
     errors = noise.copy()
     for moment in range(1, 2000):
         errors[:, 0, moment] += share * errors[:, 0, moment - 1]
-    found = Whitening.of(errors, np.zeros((40, 2000)))
-    assert found.coefficients == pytest.approx(np.array([[share, 0, 0, 0], [0, 0, 0, 0]]), abs=0.02)
-    assert found.sigma == pytest.approx(np.full((40, 2, 1996), 0.3), rel=0.02)
-    assert found.apply(errors) == pytest.approx(noise[:, :, 4:] / 0.3, abs=0.3)
+    result = Whitening.of(errors, np.zeros((40, 2000)))
+    assert result.coefficients == pytest.approx(np.array([[share, 0, 0, 0], [0, 0, 0, 0]]), abs=0.02)
+    assert result.sigma == pytest.approx(np.full((40, 2, 1996), 0.3), rel=0.02)
+    assert result.apply(errors) == pytest.approx(noise[:, :, 4:] / 0.3, abs=0.3)
     slopes = np.stack((errors, 2 * errors), axis=3)
-    assert found.apply(slopes)[..., 1] == pytest.approx(2 * found.apply(errors))
+    assert result.apply(slopes)[..., 1] == pytest.approx(2 * result.apply(errors))
 
 
 def test_residuals_count_less_where_the_fins_move() -> None:
     random = np.random.default_rng(1)
     activity = np.repeat([[0.0, 30.0, 60.0, 0.0]], 250, axis=1) * np.ones((20, 1))
     true = np.sqrt(0.01**2 + 0.1**2 * activity)
-    found = Whitening.of(random.normal(0, 1, (20, 1, 1000)) * true[:, None], activity)
-    assert found.sigma[:, 0] == pytest.approx(true[:, 4:], rel=0.1)
+    result = Whitening.of(random.normal(0, 1, (20, 1, 1000)) * true[:, None], activity)
+    assert result.sigma[:, 0] == pytest.approx(true[:, 4:], rel=0.1)
 
 
 def test_a_channel_without_residuals_is_no_fault() -> None:

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
@@ -26,6 +26,7 @@ from robot_runtime.experiments.line_faults.faults import (
 from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, execute
 from robot_runtime.link.link_driver import PortError
 from tests.runtime.board_end import DEADLINE, BoardEnd
+from tests.waiting import wait_for
 
 DATA = random.Random(5).randbytes(20_000)
 LOOK = 0.05
@@ -33,7 +34,7 @@ LOOK = 0.05
 
 
 def is_part(part: bytes, whole: bytes) -> bool:
-    """True where `part` is `whole` with some bytes left out."""
+    """Return True where `part` is `whole` with some bytes left out."""
     rest = iter(whole)
     return all(byte in rest for byte in part)
 
@@ -164,7 +165,7 @@ def test_an_invalid_rate_is_refused(rate: float) -> None:
         Recurrence(rate, random.Random(1))
 
 
-class Ends:
+class PtyEnds:
     """A proxy, the host's end of it, and the far end of the port behind it."""
 
     def __init__(self, folder: Path) -> None:
@@ -190,28 +191,21 @@ class Ends:
 
 
 @pytest.fixture
-def ends(tmp_path: Path) -> Iterator[Ends]:
-    ends = Ends(tmp_path)
+def ends(tmp_path: Path) -> Iterator[PtyEnds]:
+    ends = PtyEnds(tmp_path)
     yield ends
     ends.close()
 
 
-def wait_for(condition: Callable[[], bool], what: str) -> None:
-    end = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < end, f"waited in vain for {what}"
-        time.sleep(0.001)
-
-
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_the_proxy_passes_every_byte_unchanged(ends: Ends, direction: Direction) -> None:
+def test_the_proxy_passes_every_byte_unchanged(ends: PtyEnds, direction: Direction) -> None:
     every = bytes(range(256))
     ends.send(direction, every)
     assert ends.receive(direction, 256) == every
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_the_proxy_disturbs_one_direction_as_its_channel_does(ends: Ends, direction: Direction) -> None:
+def test_the_proxy_disturbs_one_direction_as_its_channel_does(ends: PtyEnds, direction: Direction) -> None:
     ends.line.channels[direction].set_rate("bit_errors", 0.01)
     twin = FaultyChannel(direction, seed=1)
     twin.set_rate("bit_errors", 0.01)
@@ -224,7 +218,7 @@ def test_the_proxy_disturbs_one_direction_as_its_channel_does(ends: Ends, direct
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_a_stall_delays_bytes_and_loses_none(ends: Ends, direction: Direction) -> None:
+def test_a_stall_delays_bytes_and_loses_none(ends: PtyEnds, direction: Direction) -> None:
     ends.line.stall(direction, 3600)
     ends.send(direction, b"late")
     assert ends.receive(direction, 4, limit=LOOK) == b""
@@ -233,7 +227,7 @@ def test_a_stall_delays_bytes_and_loses_none(ends: Ends, direction: Direction) -
     assert ends.line.channels[direction].counts["stalls"] == 1
 
 
-def test_a_stall_ends_by_itself(ends: Ends) -> None:
+def test_a_stall_ends_by_itself(ends: PtyEnds) -> None:
     begin = time.monotonic()
     ends.line.stall("to_board", 0.1)
     ends.send("to_board", b"late")
@@ -241,7 +235,7 @@ def test_a_stall_ends_by_itself(ends: Ends) -> None:
     assert time.monotonic() - begin >= 0.1
 
 
-def test_a_host_that_does_not_read_loses_bytes_and_blocks_nothing(ends: Ends) -> None:
+def test_a_host_that_does_not_read_loses_bytes_and_blocks_nothing(ends: PtyEnds) -> None:
     sent = 0
     while not ends.line.channels["from_board"].counts["lost"]:
         assert sent < 1_000_000, "the operating system keeps everything"
@@ -251,14 +245,14 @@ def test_a_host_that_does_not_read_loses_bytes_and_blocks_nothing(ends: Ends) ->
     assert ends.receive("to_board", 10) == b"still here"
 
 
-def test_it_ends_when_the_port_goes_away(ends: Ends) -> None:
+def test_it_ends_when_the_port_goes_away(ends: PtyEnds) -> None:
     ends.far.vanish()
     wait_for(lambda: not ends.line.running(), "the end of the line")
     assert "went away" in ends.line.failure
 
 
 def test_the_symbolic_link_is_removed_at_the_end(tmp_path: Path) -> None:
-    ends = Ends(tmp_path)
+    ends = PtyEnds(tmp_path)
     ends.close()
     assert not ends.link.is_symlink()
 
@@ -277,7 +271,7 @@ def test_a_path_that_is_no_port_is_refused(tmp_path: Path) -> None:
         PtyProxy("/nowhere", 250_000, tmp_path / "link")
 
 
-def test_commands_work_as_the_emulated_board_s(ends: Ends) -> None:
+def test_commands_work_as_the_emulated_board_s(ends: PtyEnds) -> None:
     assert execute(ends.line, "seed 4") == "ok"
     assert execute(ends.line, "line to_board drop 1.0") == "ok"
     ends.send("to_board", b"gone")
@@ -306,7 +300,7 @@ def test_commands_work_as_the_emulated_board_s(ends: Ends) -> None:
         "quit",
     ],
 )
-def test_invalid_commands_are_refused(ends: Ends, command: str) -> None:
+def test_invalid_commands_are_refused(ends: PtyEnds, command: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):
         execute(ends.line, command)
 
@@ -361,9 +355,9 @@ def test_the_program_ends_with_its_port(tmp_path: Path) -> None:
     end = BoardEnd(tmp_path / "port")
     with run(tmp_path) as program:
         end.vanish()
-        _, said = program.communicate(timeout=DEADLINE)
+        _, output = program.communicate(timeout=DEADLINE)
         assert program.returncode == 1
-    assert said.startswith(f"fault line: {tmp_path / 'port'} went away")
+    assert output.startswith(f"fault line: {tmp_path / 'port'} went away")
     assert not (tmp_path / "link").is_symlink()
 
 

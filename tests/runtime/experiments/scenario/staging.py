@@ -16,7 +16,7 @@ POOL = 'kind = "pool"\ndepth = 3.0\nlength = 10.0\nwidth = 5.0'
 
 
 def document(seconds: float, *events: str, seed: int = 7, scene: str = POOL, more: str = "") -> str:
-    """A scenario of this duration in s; each event is the content of an inline table."""
+    """Return a scenario of this duration in s; each event is the content of an inline table."""
     happens = "".join(f"\n[[events]]\n{event.replace('; ', chr(10))}\n" for event in events)
     head = f'name = "test"\ntitle = "Test"\nduration = {seconds}\nseed = {seed}\n'
     control = '[control]\ncontroller = "pid"\nset_point = 0.6\n'
@@ -48,17 +48,19 @@ class Told:
         self.on_event(self.events[-1])
 
     def texts(self, topic: str) -> list[str]:
-        """The texts of all the topic's documents."""
+        """Return the texts of all the topic's documents."""
         return [document["text"] for document in self.documents.get(topic, [])]
 
-    def time_of(self, topic: str, words: str) -> float:
+    def time_of(self, topic: str, message: str) -> float:
         """Time of the first document of this topic with these words, s."""
-        return float(next(one["time"] for one in self.documents[topic] if words in one["text"]))
+        return float(
+            next(document["time"] for document in self.documents[topic] if message in document["text"])
+        )
 
     @property
     def markers(self) -> list[tuple[float, str]]:
         """Times and texts of the bookmarks."""
-        return [(one["time"], one["text"]) for one in self.events if one["event"] == "marker"]
+        return [(event["time"], event["text"]) for event in self.events if event["event"] == "marker"]
 
     @property
     def ended(self) -> dict[str, Any]:
@@ -67,13 +69,13 @@ class Told:
         return self.events[-1]
 
     def between(self, topic: str, start: float, end: float) -> list[Any]:
-        """The topic's records in this range of time."""
+        """Return the topic's records in this range of time."""
         return [record for time, record in self.rows[topic] if start <= time < end]
 
 
-def perform(scenario: str | Scenario, board: str = "host", told: Told | None = None) -> Told:
+def perform(scenario: str | Scenario, board: str = "host", report: Told | None = None) -> Told:
     """Run a scenario to its end."""
-    told = told or Told()
+    report = report or Told()
     read = read_scenario(scenario) if isinstance(scenario, str) else scenario
-    ScenarioRun(read, boards()[board], told).perform(lambda firmware: {"firmware": str(len(firmware))})
-    return told
+    ScenarioRun(read, boards()[board], report).perform(lambda firmware: {"firmware": str(len(firmware))})
+    return report

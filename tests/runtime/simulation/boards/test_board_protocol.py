@@ -58,13 +58,13 @@ def test_a_sense_line_holds_the_reading() -> None:
 
 @given(st.lists(st.integers(1, 40)))
 def test_lines_are_reassembled_from_any_pieces(cuts: list[int]) -> None:
-    wanted = [FINS, "error no", "", "ok 2"]
-    data = "".join(line + "\n" for line in wanted).encode()
+    expected = [FINS, "error no", "", "ok 2"]
+    data = "".join(line + "\n" for line in expected).encode()
     lines, got, at = LineBuffer(), list[str](), 0
     for cut in [*cuts, len(data)]:
         got += lines.feed(data[at : at + cut])
         at += cut
-    assert got == wanted
+    assert got == expected
 
 
 def test_a_line_without_end_is_refused() -> None:

@@ -43,13 +43,13 @@ def test_without_a_compiler_an_existing_build_is_used_or_the_remedy_named(
 def place_make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
     """Places a `make` of these words of the shell before the computer's own."""
 
-    def place(words: str) -> None:
+    def write(message: str) -> None:
         make = tmp_path / "make"
-        make.write_text(f"#!/bin/sh\n{words}\n")
+        make.write_text(f"#!/bin/sh\n{message}\n")
         make.chmod(0o755)
         monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
 
-    return place
+    return write
 
 
 def test_two_builds_at_once_wait_for_each_other(tmp_path: Path, place_make: Callable[[str], None]) -> None:

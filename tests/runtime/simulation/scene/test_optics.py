@@ -19,8 +19,8 @@ def test_the_colour_of_a_wall_follows_the_formula(distance: float) -> None:
     wall = np.full((HEIGHT, WIDTH), distance, np.float32)
     look = UnderwaterOptics(WIDTH, HEIGHT, 1.0)
     result = look.apply(picture, wall, seen, (0.0, 0.0, 5.0), LEVEL, 0.0, noise=0.0)
-    kept = np.exp(-np.array(seen.attenuation) * distance)
-    expected = np.array(paint) * kept + np.array(seen.glow) * (1 - kept)
+    stored = np.exp(-np.array(seen.attenuation) * distance)
+    expected = np.array(paint) * stored + np.array(seen.glow) * (1 - stored)
     assert result.reshape(-1, 3).mean(axis=0) == pytest.approx(expected, abs=1.0)
 
 

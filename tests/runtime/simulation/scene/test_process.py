@@ -35,6 +35,7 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.interface import VisionOutputs
 from robot_runtime.vision.node import VisionNode
 from tests.runtime.simulation.scene.harness import truth
+from tests.waiting import wait_for
 
 rendered = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 SIZE = (160, 120)
@@ -148,18 +149,18 @@ def test_targets_and_water_change_what_is_seen() -> None:
 def test_the_contents_are_reported_as_the_requests_that_create_them() -> None:
     with link() as ends:
         target = {"colour": "red", "position": [0.8, 0.0, 1.0], "size": 0.2, "shape": "box"}
-        wanted: dict[str, dict[str, Any]] = {
+        request: dict[str, dict[str, Any]] = {
             "world": {"kind": "pool", "turbidity": 0.5},
             "targets": {"targets": [target]},
         }
-        for name, question in wanted.items():
+        for name, question in request.items():
             ends.ask(name, question)
-        told = ends.ask("contents", {})
-        assert {name: told[name] for name in wanted} == wanted
+        report = ends.ask("contents", {})
+        assert {name: report[name] for name in request} == request
 
 
 @pytest.mark.parametrize(
-    ("name", "question", "words"),
+    ("name", "question", "message"),
     [
         ("world", {"kind": "lake"}, "must be one of 'pool', 'natural'"),
         ("world", {"turbidity": 2}, "must lie between 0 and 1"),
@@ -172,13 +173,13 @@ def test_the_contents_are_reported_as_the_requests_that_create_them() -> None:
         ("view", {"elevation": 100}, "must lie between -60 and 89"),
     ],
 )
-def test_bad_requests_are_refused_with_the_reason(name: str, question: dict[str, Any], words: str) -> None:
-    with link() as ends, pytest.raises(RefusedError, match=words):
+def test_bad_requests_are_refused_with_the_reason(name: str, question: dict[str, Any], message: str) -> None:
+    with link() as ends, pytest.raises(RefusedError, match=message):
         ends.ask(name, question)
 
 
 @pytest.mark.parametrize(
-    ("question", "words"),
+    ("question", "message"),
     [
         (b'{"width": 5000, "height": 100}', "must lie between 16 and 1280"),
         (b'{"width": 100, "height": 100, "card": [0, 0, 300]}', "must be 0 to 255"),
@@ -187,8 +188,8 @@ def test_bad_requests_are_refused_with_the_reason(name: str, question: dict[str,
         (b"\xff", "must be JSON"),
     ],
 )
-def test_bad_requests_for_pictures_are_refused_with_the_reason(question: bytes, words: str) -> None:
-    with pytest.raises(ConfigError, match=words):
+def test_bad_requests_for_pictures_are_refused_with_the_reason(question: bytes, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         read_request(question)
 
 
@@ -219,11 +220,11 @@ def test_the_bystander_view_is_rendered_only_for_subscribers() -> None:
         ends.picture()
         assert ends.process._observer_number == 0
         subscription = ends.other.subscribe("observer", lambda _, data: seen.extend(read_blocks(data)))
-        wait_until(lambda: len(seen) == 1)
+        wait_for(lambda: len(seen) == 1)
         ends.ask("view", {"name": "side", "azimuth": 90, "elevation": 0, "distance": 1})
-        wait_until(lambda: len(seen) == 2)
+        wait_for(lambda: len(seen) == 2)
         subscription.close()
-        wait_until(lambda: ends.process._observed is None)
+        wait_for(lambda: ends.process._observed is None)
         ends.tell(6.0, truth((0.0, 0.0, 1.5)))
         assert len(seen) == ends.process._observer_number == 2
     assert all(block.topic.kind is Kind.PICTURE for block in seen)
@@ -243,23 +244,16 @@ def test_a_bystanders_picture_that_fails_does_not_end_the_scene(
             patch.setattr("robot_runtime.simulation.scene.model.build", lambda *_: 1 / 0)
             ends.ask("targets", {"targets": []})
             subscription = ends.other.subscribe("observer", lambda *_: None)
-            wait_until(lambda: "no picture for the observer" in caplog.text)
+            wait_for(lambda: "no picture for the observer" in caplog.text)
             subscription.close()
         assert ends.picture().time == 5.0
 
 
-def wait_until(condition: Callable[[], bool]) -> None:
-    end = time.monotonic() + SLOW
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
-
-
 def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: VisionConfig) -> list[Event]:
-    """Run a vision node on the camera "scene" until the condition holds; returns its events."""
+    """Run a vision node on the camera "scene" until the condition holds; return its events."""
     events: list[Event] = []
-    found: list[Detection] = []
-    outputs = VisionOutputs(detection=found.append, event=events.append)
+    results: list[Detection] = []
+    outputs = VisionOutputs(detection=results.append, event=events.append)
     vision = VisionNode(config, SteadyClock(), outputs, connect=lambda: messages)
     vision.show_card("yellow")
     try:
@@ -269,7 +263,7 @@ def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: 
             vision.process_picture()
     finally:
         vision.close()
-    assert found[-1].colour == "yellow"
+    assert results[-1].colour == "yellow"
     return events
 
 

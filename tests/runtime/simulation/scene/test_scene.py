@@ -96,11 +96,13 @@ def test_colours_are_lost_with_distance(
     scene: Make, kind: Kind, expected: dict[tuple[str, float], str | None]
 ) -> None:
     depths = {colour: 5.0 * number for number, colour in enumerate(PAINTS, 1)}
-    targets = [Target(colour=one, position=(0.0, 0.0, depth), size=0.4) for one, depth in depths.items()]
-    one = scene(open_water(*targets, kind=kind))
+    targets = [
+        Target(colour=colour, position=(0.0, 0.0, depth), size=0.4) for colour, depth in depths.items()
+    ]
+    renderer = scene(open_water(*targets, kind=kind))
     for (colour, distance), seen in expected.items():
         pose = truth((-NOSE - distance - 0.2, 0.0, depths[colour]))
-        patch = find(one.render_camera(1.0, pose, *SIZE), colour, 0.002)
+        patch = find(renderer.render_camera(1.0, pose, *SIZE), colour, 0.002)
         assert (patch and patch.colour) == seen, (colour, distance)
 
 
@@ -108,9 +110,9 @@ def test_colours_are_lost_with_distance(
     "contents", [Contents(), Contents(basin=Basin(2.0, 6.0, 4.0))], ids=["natural", "pool"]
 )
 def test_a_card_is_detected_as_its_own_colour(scene: Make, contents: Contents) -> None:
-    one = scene(contents)
+    renderer = scene(contents)
     for colour, (time, depth) in product(PAINTS, ((1.0, 0.3), (7.0, 1.5))):
-        picture = one.render_camera(time, truth((0.0, 0.0, depth)), *SIZE, PAINTS[colour])
+        picture = renderer.render_camera(time, truth((0.0, 0.0, depth)), *SIZE, PAINTS[colour])
         patch = find(picture, colour)
         assert patch is not None
         assert patch.colour == colour
@@ -121,10 +123,10 @@ def test_a_card_is_detected_as_its_own_colour(scene: Make, contents: Contents) -
 
 @pytest.mark.parametrize("target", START_TARGETS, ids=lambda target: f"{target.colour} {target.shape}")
 def test_from_the_start_each_target_is_called_by_its_own_colour(scene: Make, target: Target) -> None:
-    one = scene(Contents(targets=(target,)))
+    renderer = scene(Contents(targets=(target,)))
     for depth in (0.05, 0.5, 1.0):
-        found = find(one.render_camera(1.0, truth((0.0, 0.0, depth)), *SIZE), "yellow")
-        assert found is None or found.colour == target.colour
+        result = find(renderer.render_camera(1.0, truth((0.0, 0.0, depth)), *SIZE), "yellow")
+        assert result is None or result.colour == target.colour
 
 
 @pytest.mark.parametrize("size", [(320, 240), (640, 480)])
@@ -146,13 +148,13 @@ def test_the_marker_card_is_decoded(scene: Make, size: tuple[int, int]) -> None:
     ids=["natural", "pool"],
 )
 def test_the_surroundings_have_none_of_the_colours(scene: Make, contents: Contents) -> None:
-    one = scene(contents)
+    renderer = scene(contents)
     for number in range(20):
         rng = np.random.default_rng(number)
         north, east, depth = rng.uniform((-2.0, -2.0, 0.05), (2.0, 2.0, 2.4)).tolist()
         roll, pitch, yaw = rng.uniform((-20.0, -40.0, 0.0), (20.0, 40.0, 360.0)).tolist()
         pose = truth((north, east, depth), roll, pitch, yaw)
-        assert find(one.render_camera(float(number), pose, *SIZE), "yellow") is None
+        assert find(renderer.render_camera(float(number), pose, *SIZE), "yellow") is None
 
 
 def test_turbid_water_hides_everything(scene: Make) -> None:
@@ -164,13 +166,13 @@ def test_turbid_water_hides_everything(scene: Make) -> None:
 
 def test_the_same_truth_gives_the_same_bytes(scene: Make) -> None:
     pose = truth((1.0, -0.5, 1.2), 5.0, -3.0, 20.0)
-    one, other = scene(Contents()), scene(Contents())
-    first = one.render_camera(3.0, pose, *SIZE)
-    one.render_camera(4.0, truth((0.0, 0.0, 0.6)), *SIZE, PAINTS["red"])
-    one.fill(Contents(place=SceneWater(kind="pool"), basin=Basin(2.0, 8.0, 5.0)))
-    one.render_observer(4.0, pose, ObserverView(), *SIZE)
-    one.fill(Contents())
-    assert one.render_camera(3.0, pose, *SIZE).tobytes() == first.tobytes()
+    item, other = scene(Contents()), scene(Contents())
+    first = item.render_camera(3.0, pose, *SIZE)
+    item.render_camera(4.0, truth((0.0, 0.0, 0.6)), *SIZE, PAINTS["red"])
+    item.fill(Contents(water=SceneWater(kind="pool"), basin=Basin(2.0, 8.0, 5.0)))
+    item.render_observer(4.0, pose, ObserverView(), *SIZE)
+    item.fill(Contents())
+    assert item.render_camera(3.0, pose, *SIZE).tobytes() == first.tobytes()
     assert other.render_camera(3.0, pose, *SIZE).tobytes() == first.tobytes()
     assert other.render_camera(3.05, pose, *SIZE).tobytes() != first.tobytes()
 
@@ -185,14 +187,14 @@ def test_the_same_truth_gives_the_same_bytes(scene: Make) -> None:
     ids=lambda view: view.name,
 )
 def test_a_bystander_sees_the_robot_and_its_camera_does_not(scene: Make, view: ObserverView) -> None:
-    one = scene(open_water())
+    renderer = scene(open_water())
     pose = truth(yaw=50.0)
-    patch = find(one.render_observer(1.0, pose, view, 640, 360), "yellow", 0.001)
+    patch = find(renderer.render_observer(1.0, pose, view, 640, 360), "yellow", 0.001)
     assert patch is not None
     assert patch.colour == "yellow"
     across, down = patch.box.x + patch.box.width / 2, patch.box.y + patch.box.height / 2
     assert (across, down) == pytest.approx((0.5, 0.5), abs=0.06)
-    assert find(one.render_camera(1.0, pose, *SIZE), "yellow", 0.001) is None
+    assert find(renderer.render_camera(1.0, pose, *SIZE), "yellow", 0.001) is None
 
 
 def test_from_above_north_is_up_and_east_to_the_right(scene: Make) -> None:
@@ -208,11 +210,11 @@ def test_from_above_north_is_up_and_east_to_the_right(scene: Make) -> None:
 
 
 def test_fins_move(scene: Make) -> None:
-    one = scene(open_water())
+    renderer = scene(open_water())
     view = ObserverView(name="side", azimuth=90.0, elevation=10.0, distance=0.6)
     turned = Truth(**{**asdict(truth()), "fins": (0.0, 0.0, 0.0, 1.0)})
-    before = one.render_observer(1.0, truth(), view, 640, 360)
-    after = one.render_observer(1.0, turned, view, 640, 360)
+    before = renderer.render_observer(1.0, truth(), view, 640, 360)
+    after = renderer.render_observer(1.0, turned, view, 640, 360)
     down, right = np.nonzero(changed(after, before))
     assert len(down) > 50
     # The front left fin of a robot that looks north is, seen from the west, to the left.
@@ -221,9 +223,9 @@ def test_fins_move(scene: Make) -> None:
 
 def test_two_beacons_may_have_one_place(scene: Make) -> None:
     made = scene(replace(open_water(), beacons=((2.0, 0.0, 5.0), (2.0, 0.0, 5.0))))
-    one = made.render_camera(0.0, truth(), *SIZE)
+    picture = made.render_camera(0.0, truth(), *SIZE)
     made.fill(replace(open_water(), beacons=((2.0, 0.0, 5.0),)))
-    assert (made.render_camera(0.0, truth(), *SIZE) == one).all()
+    assert (made.render_camera(0.0, truth(), *SIZE) == picture).all()
 
 
 def test_contents_that_cannot_be_built_leave_the_scene_as_it_is(

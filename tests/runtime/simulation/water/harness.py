@@ -38,21 +38,21 @@ class SteadyPush(Fins):
 
 
 def pushed(parameters: SimulationParameters, wrench: Six = (0.0,) * 6, depth: float = 100.0) -> Body:
-    """A body at rest under a steady push."""
+    """Return a body at rest under a steady push."""
     body = Body(parameters, SteadyPush(wrench), World(parameters))
     body.state = at_rest(depth)
     return body
 
 
 def finned(parameters: SimulationParameters = NEUTRAL, depth: float = 100.0) -> Body:
-    """A body at rest with its fins."""
+    """Return a body at rest with its fins."""
     body = Body(parameters, Fins(parameters), World(parameters))
     body.state = at_rest(depth)
     return body
 
 
 def drift(body: Body, seconds: float, duration: float = 0.002) -> BodyState:
-    """The state after this time with fins at rest."""
+    """Return the state after this time with fins at rest."""
     for _ in range(round(seconds / duration)):
         body.step(duration, STILL, STILL)
     return body.state
@@ -91,7 +91,7 @@ class Flapping:
         return a, b, c, d
 
     def swim(self, body: Body, seconds: float, duration: float = 0.002, start: float = 0.0) -> BodyState:
-        """Move the body through the water; returns the state after it."""
+        """Move the body through the water; return the state after it."""
         for index in range(round(seconds / duration)):
             before, after = self.at(start + index * duration), self.at(start + (index + 1) * duration)
             a, b, c, d = ((late - early) / duration for early, late in zip(before, after, strict=True))

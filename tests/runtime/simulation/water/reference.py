@@ -16,7 +16,7 @@ def skew(a: Array) -> Array:
 
 
 def rotation(attitude: Array) -> Array:
-    """By Rodrigues' formula, from scalar w and vector e: (w² - e·e) I + 2 e eᵀ + 2 w S(e)."""
+    """Return Rodrigues' matrix, from scalar w and vector e: (w² - e·e) I + 2 e eᵀ + 2 w S(e)."""
     w, e = attitude[0], attitude[1:]
     out: Array = (w * w - e @ e) * np.eye(3) + 2 * np.outer(e, e) + 2 * w * skew(e)
     return out

@@ -122,12 +122,12 @@ def test_leaves_the_floor_when_it_is_pushed_up() -> None:
 def test_comes_back_with_its_share_of_the_speed(axis: int, side: int) -> None:
     body = pushed(UNDAMPED)
     body.world.set_basin(POOL)
-    place, speed = [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]
+    position, speed = [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]
     limit = (POOL.length or 0) / 2, (POOL.width or 0) / 2, POOL.depth
-    place[axis] = side * (limit[axis] - HALF[axis] - 0.0001)
+    position[axis] = side * (limit[axis] - HALF[axis] - 0.0001)
     speed[axis] = side * 0.3
     body.state = body.state._replace(
-        position=(place[0], place[1], place[2]), velocity=(speed[0], speed[1], speed[2])
+        position=(position[0], position[1], position[2]), velocity=(speed[0], speed[1], speed[2])
     )
     body.step(0.002, STILL, STILL)
     assert body.state.velocity[axis] == pytest.approx(-side * 0.2 * 0.3)

@@ -3,7 +3,6 @@
 import json
 import tempfile
 import threading
-import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import pairwise
@@ -20,24 +19,25 @@ from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 from robot_runtime.transport.blocks import Block, read_blocks, read_rows, row
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
+from tests.waiting import wait_for
 
 DEADLINE = 30.0
 """s until what must come is given up, on a busy computer."""
 PERIOD = 0.02
 
 
-class Robot:
+class FinSender:
     """The runtime's end: sends fins, receives readings."""
 
     def __init__(self, messages: ZenohTransport) -> None:
         self.water: ZenohTransport
-        self.words: list[Sense] = []
+        self.senses: list[Sense] = []
         self._messages = messages
         self._number = 0
-        messages.subscribe("sense", lambda _, data: self.words.append(Sense.from_bytes(data)))
+        messages.subscribe("sense", lambda _, data: self.senses.append(Sense.from_bytes(data)))
 
     def subscribe(self, topic: str, hear: Callable[[str, bytes], None]) -> None:
-        """Has everything heard that the water sends of a topic; returns once the water knows it."""
+        """Have everything heard that the water sends of a topic; return once the water knows it."""
         self._messages.subscribe(topic, hear)
         wait_for(lambda: self.water.watched(topic), "the water's knowledge of it")
 
@@ -48,16 +48,9 @@ class Robot:
         self._messages.publish("motor", block.data)
 
     def hear(self, count: int) -> Sense:
-        """Wait for this number of readings; returns the last."""
-        wait_for(lambda: len(self.words) >= count, f"{count} words")
-        return self.words[-1]
-
-
-def wait_for(condition: Callable[[], object], what: str) -> None:
-    end = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < end, f"waited in vain for {what}"
-        time.sleep(0.002)
+        """Wait for this number of readings; return the last."""
+        wait_for(lambda: len(self.senses) >= count, f"{count} words")
+        return self.senses[-1]
 
 
 def motor(angle: float, drive: int = 0) -> Motor:
@@ -70,12 +63,12 @@ def simulator() -> Simulator:
 
 
 @pytest.fixture
-def robot(simulator: Simulator) -> Iterator[Robot]:
+def robot(simulator: Simulator) -> Iterator[FinSender]:
     with (
         tempfile.TemporaryDirectory() as folder,
         ZenohTransport("turtle", [f"unixsock-stream/{folder}/z"]) as here,
     ):
-        robot = Robot(here)
+        robot = FinSender(here)
         with join("turtle", [f"unixsock-stream/{folder}/z"]) as there:
             robot.water = there
             loop = HilSimulator(simulator, there)
@@ -105,7 +98,7 @@ def test_it_says_whose_fins_swim_here_and_when_they_are_lost(
         try:
             wait_for(lambda: "nothing comes from a robot “turtle”" in caplog.text, "its first words")
             wait_for(lambda: here.watched("motor"), "the water's ears")
-            Robot(here).move((100.0, motor(0.0)), (100.02, motor(0.0)))
+            FinSender(here).move((100.0, motor(0.0)), (100.02, motor(0.0)))
             wait_for(lambda: "joined the robot “turtle”" in caplog.text, "the words of its arrival")
             wait_for(lambda: "the robot “turtle” is lost" in caplog.text, "the words of its loss")
         finally:
@@ -114,7 +107,7 @@ def test_it_says_whose_fins_swim_here_and_when_they_are_lost(
     assert f"connected to unixsock-stream/{folder}/z" in caplog.text
 
 
-def test_the_water_advances_by_the_board_s_clock_only(robot: Robot) -> None:
+def test_the_water_advances_by_the_board_s_clock_only(robot: FinSender) -> None:
     swing = [(100 + n * PERIOD, motor(round(1.2 * sin(n / 6), 3), drive=40)) for n in range(200)]
     for batch in range(4):
         robot.move(*swing[50 * batch : 50 * (batch + 1)])
@@ -128,7 +121,7 @@ def test_the_water_advances_by_the_board_s_clock_only(robot: Robot) -> None:
     assert last.battery == pytest.approx(reading.battery, abs=0.01)
 
 
-def test_fins_without_data_for_a_while_count_as_resting(robot: Robot, simulator: Simulator) -> None:
+def test_fins_without_data_for_a_while_count_as_resting(robot: FinSender, simulator: Simulator) -> None:
     robot.move((100.0, motor(0.0)), (100.02, motor(0.0)))
     robot.hear(1)
     before = simulator.truth()
@@ -139,7 +132,7 @@ def test_fins_without_data_for_a_while_count_as_resting(robot: Robot, simulator:
     assert after.position[0] == pytest.approx(before.position[0], abs=0.01)
 
 
-def test_a_clock_that_stands_or_runs_back_advances_nothing(robot: Robot, simulator: Simulator) -> None:
+def test_a_clock_that_stands_or_runs_back_advances_nothing(robot: FinSender, simulator: Simulator) -> None:
     robot.move((100.0, motor(0.0)), (100.02, motor(0.0)))
     robot.hear(1)
     before = simulator.truth()
@@ -150,7 +143,7 @@ def test_a_clock_that_stands_or_runs_back_advances_nothing(robot: Robot, simulat
     assert moved < 0.001
 
 
-def test_truth_and_craft_go_on_after_a_reboot_of_the_robot(robot: Robot) -> None:
+def test_truth_and_craft_go_on_after_a_reboot_of_the_robot(robot: FinSender) -> None:
     """Its clock then begins near 0 again, and the water goes on."""
     times: dict[str, list[float]] = {"truth": [], "craft": []}
 

@@ -5,7 +5,7 @@ from math import isnan, pi
 
 import pytest
 
-from robot_runtime.simulation.water.faults import DEVICES, SENSORS
+from robot_runtime.simulation.water.faults import DEVICES, LEAK, SENSORS
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.requests import Question, changes
 from robot_runtime.simulation.water.sensors import Reading
@@ -98,7 +98,7 @@ def test_beacons_are_placed_moved_and_removed(simulator: Simulator, ask: Ask) ->
     assert seen() == (False, False)
 
 
-@pytest.mark.parametrize("sensor", SENSORS)
+@pytest.mark.parametrize("sensor", [sensor for sensor in SENSORS if sensor != LEAK])
 @pytest.mark.parametrize(
     "numbers",
     [
@@ -165,11 +165,22 @@ def test_a_stuck_encoder_holds(simulator: Simulator, ask: Ask) -> None:
 def test_bus_errors_name_the_boards_devices(simulator: Simulator, ask: Ask) -> None:
     for sensor in DEVICES:
         ask("fault", sensor=sensor, kind="bus")
-    assert simulator.broken_devices == set(DEVICES.values())
+    assert simulator.device_faults == dict.fromkeys(DEVICES.values(), "absent")
     ask("fault", sensor="gyroscope", kind="none")
-    assert "imu" in simulator.broken_devices
+    assert "imu" in simulator.device_faults
     ask("fault", sensor="accelerometer", kind="stuck")
-    assert "imu" not in simulator.broken_devices
+    assert "imu" not in simulator.device_faults
+
+
+def test_a_leak_is_wet_until_it_is_mended(simulator: Simulator, ask: Ask) -> None:
+    ask("fault", sensor="leak", kind="wet")
+    ask("reset")
+    assert simulator.device_faults == {"leak": "wet"}
+    ask("fault", sensor="leak", kind="none")
+    assert simulator.device_faults == {}
+    for sensor, kind in (("leak", "stuck"), ("leak", "bus"), ("pressure", "wet")):
+        with pytest.raises(ValueError, match="the leak sensor has the fault wet, and no other"):
+            ask("fault", sensor=sensor, kind=kind)
 
 
 def test_a_reset_repeats_the_same_bytes() -> None:
@@ -196,7 +207,7 @@ def test_a_reset_repeats_the_same_bytes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "question", "words"),
+    ("name", "question", "message"),
     [
         ("reset", {"depth": 1}, "'depth' is not known here; known are north, east, down, heading, seed"),
         ("waves", {"amplitude": 0.1, "period": 2}, "direction is missing"),
@@ -246,9 +257,9 @@ def test_a_reset_repeats_the_same_bytes() -> None:
     ],
 )
 def test_invalid_requests_are_refused_with_the_reason_and_change_nothing(
-    simulator: Simulator, name: str, question: Question, words: str
+    simulator: Simulator, name: str, question: Question, message: str
 ) -> None:
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises(ValueError, match=message):
         changes(simulator)[name](question)
     assert rest(simulator, 1) == rest(Simulator(QUIET, seed=1), 1)
 
@@ -261,11 +272,11 @@ def test_a_reset_elsewhere(simulator: Simulator, ask: Ask) -> None:
 
 
 @pytest.mark.parametrize(
-    ("start", "words"), [({"down": 2.98}, "in the floor"), ({"north": 1.9}, "1.9 m north is in a wall")]
+    ("start", "message"), [({"down": 2.98}, "in the floor"), ({"north": 1.9}, "1.9 m north is in a wall")]
 )
-def test_a_reset_into_floor_or_wall_is_refused(ask: Ask, start: dict[str, float], words: str) -> None:
+def test_a_reset_into_floor_or_wall_is_refused(ask: Ask, start: dict[str, float], message: str) -> None:
     ask("world", depth=3, length=4, width=4)
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises(ValueError, match=message):
         ask("reset", **start)
 
 
@@ -282,17 +293,17 @@ def test_a_reset_may_choose_the_noise(ask: Ask) -> None:
 
 def test_the_surroundings_are_reported_as_the_requests_that_create_them(simulator: Simulator) -> None:
     known = changes(simulator)
-    wanted: dict[str, Question] = {
+    request: dict[str, Question] = {
         **SET,
         "world": {"depth": 2.0, "length": 5.0, "width": 4.0},
         "trim": {"buoyancy": 1.01, "forward": 0.0, "right": 0.001, "above": 0.02},
         "beacons": {"positions": [[1.0, 2.0, 0.5]]},
     }
-    for name, question in wanted.items():
+    for name, question in request.items():
         known[name](question)
     fault = {"sensor": "battery", "kind": "drift", "speed": 0.1}
     known["fault"](fault)
-    told = known["surroundings"]({}) or {}
-    assert {name: told[name] for name in wanted} == wanted
-    assert fault in told["faults"]
-    assert len(told["faults"]) == len(SENSORS)
+    report = known["surroundings"]({}) or {}
+    assert {name: report[name] for name in request} == request
+    assert fault in report["faults"]
+    assert len(report["faults"]) == len(SENSORS)

@@ -107,7 +107,7 @@ def test_a_craft_s_fixed_offsets_are_added() -> None:
 
 
 def test_larger_and_blunter_fins_load_their_motors_more() -> None:
-    """By strips: with the area, the coefficient, and the cube of the length."""
+    """Strips give this: with the area, the coefficient, and the cube of the length."""
     assert read(at_rest(1.0)).fin_load == 1
     larger = replace(QUIET, fin_area=2 * QUIET.fin_area, fin_centre=2 * QUIET.fin_centre, fin_normal=1.0)
     assert read(at_rest(1.0), parameters=larger).fin_load == pytest.approx(2 * 8 / 2)

@@ -24,11 +24,11 @@ def waving(waves: Waves, depth: float = 1000.0) -> World:
     return world
 
 
-def slope(world: World, what: str, axis: int, place: Vector, time: float) -> float:
+def slope(world: World, what: str, axis: int, position: Vector, time: float) -> float:
     """Central difference of pressure or of a velocity (north, down) along an axis; axis 3 is time."""
     values = []
     for side in (SMALL, -SMALL):
-        at = [*place, time]
+        at = [*position, time]
         at[axis] += side
         here: Vector = (at[0], at[1], at[2])
         velocity = world.flow(at[3], here).velocity
@@ -59,12 +59,12 @@ def test_length_follows_from_period_and_depth(period: float, depth: float) -> No
 def test_flow_solves_the_linear_equations(depth: float, down: float, time: float) -> None:
     """Continuity, and Newton's law of the water: acceleration from pressure gradient and gravity."""
     world = waving(replace(DEEP, amplitude=1e-4), depth)
-    place = (0.7, -0.4, down)
-    flow = world.flow(time, place)
-    assert slope(world, "north", 0, place, time) == pytest.approx(-slope(world, "down", 2, place, time))
+    position = (0.7, -0.4, down)
+    flow = world.flow(time, position)
+    assert slope(world, "north", 0, position, time) == pytest.approx(-slope(world, "down", 2, position, time))
     ahead, _, under = flow.acceleration
-    assert ahead == pytest.approx(-slope(world, "pressure", 0, place, time) / 1000, abs=1e-6)
-    assert under == pytest.approx(9.81 - slope(world, "pressure", 2, place, time) / 1000, abs=1e-6)
+    assert ahead == pytest.approx(-slope(world, "pressure", 0, position, time) / 1000, abs=1e-6)
+    assert under == pytest.approx(9.81 - slope(world, "pressure", 2, position, time) / 1000, abs=1e-6)
 
 
 @pytest.mark.parametrize("depth", [1000.0, 3.0, 1.0])
@@ -73,11 +73,11 @@ def test_flow_solves_the_linear_equations(depth: float, down: float, time: float
 def test_acceleration_is_that_of_the_water_on_its_way(depth: float, time: float, direction: float) -> None:
     world = waving(replace(DEEP, direction=direction), depth)
     world.set_current(Current(0.3, -0.1, 0.05, turning=0.2))
-    place = (0.7, -0.4, 0.3)
-    flow = world.flow(time, place)
+    position = (0.7, -0.4, 0.3)
+    flow = world.flow(time, position)
     sides = []
     for step in (SMALL, -SMALL):
-        x, y, z = (at + speed * step for at, speed in zip(place, flow.velocity, strict=True))
+        x, y, z = (at + speed * step for at, speed in zip(position, flow.velocity, strict=True))
         sides.append(world.flow(time + step, (x, y, z)).velocity)
     expected = [(late - early) / (2 * SMALL) for late, early in zip(*sides, strict=True)]
     assert flow.acceleration == pytest.approx(expected, rel=1e-6, abs=1e-9)
@@ -97,11 +97,11 @@ def test_surface_moves_with_the_water_and_the_floor_lets_none_through() -> None:
 def test_deep_waves_decay_exponentially(depth: float) -> None:
     world = waving(DEEP)
     decay = exp(-DEEP_NUMBER * depth)
-    place = (0.0, 0.0, depth)
-    assert world.flow(0.0, place).velocity[0] == pytest.approx(0.1 * pi * decay, rel=1e-6)
-    assert world.flow(0.5, place).velocity[2] == pytest.approx(0.1 * pi * decay, rel=1e-6)
+    position = (0.0, 0.0, depth)
+    assert world.flow(0.0, position).velocity[0] == pytest.approx(0.1 * pi * decay, rel=1e-6)
+    assert world.flow(0.5, position).velocity[2] == pytest.approx(0.1 * pi * decay, rel=1e-6)
     still = 101325 + 9810 * depth
-    assert world.pressure(0.0, place) - still == pytest.approx(9810 * 0.1 * decay, rel=1e-6)
+    assert world.pressure(0.0, position) - still == pytest.approx(9810 * 0.1 * decay, rel=1e-6)
 
 
 def test_pressure_under_a_crest_is_that_of_the_water_above_and_in_the_air_none() -> None:
@@ -133,10 +133,10 @@ def test_current_and_waves_add_up() -> None:
 def test_a_current_that_turns_from_north_to_east_reports_its_acceleration() -> None:
     world = World(SimulationParameters())
     world.set_current(Current(0.3, 0.0, 0.0, turning=0.1), time=7.0)
-    place = (0.0, 0.0, 1.0)
-    assert world.flow(7.0, place).velocity == pytest.approx((0.3, 0, 0))
-    assert world.flow(7.0 + 5 * pi, place).velocity == pytest.approx((0, 0.3, 0), abs=1e-12)
-    assert world.flow(7.0, place).acceleration == pytest.approx((0, 0.03, 0))
+    position = (0.0, 0.0, 1.0)
+    assert world.flow(7.0, position).velocity == pytest.approx((0.3, 0, 0))
+    assert world.flow(7.0 + 5 * pi, position).velocity == pytest.approx((0, 0.3, 0), abs=1e-12)
+    assert world.flow(7.0, position).acceleration == pytest.approx((0, 0.03, 0))
 
 
 def floating_in(body: Body, waves: Waves, seconds: float) -> list[Vector]:

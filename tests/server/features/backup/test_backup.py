@@ -18,7 +18,7 @@ import pytest
 from migrations import HEAD
 from server.cli import main
 from server.features.backup import command as backup_command
-from server.features.sessions.listing import Listing
+from server.library.listing import Listing
 from server.platform import database_copies
 from server.platform.schema import prepare, read_revision
 from server.platform.settings import DataFolder, Settings
@@ -56,7 +56,7 @@ def test_a_backup_is_complete_private_and_has_a_checksum(
     assert f"2 sessions, SHA-256 {checksum}" in capsys.readouterr().out
     assert path.with_name("copy.db.sha256").read_text() == f"{checksum}  copy.db\n"
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
-    assert sorted(one.name for one in tmp_path.iterdir()) == ["copy.db", "copy.db.sha256"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["copy.db", "copy.db.sha256"]
     assert names(path) == ["two", "one"]
     assert run(settings, "backup", str(path)) == 1
     assert "exists already" in capsys.readouterr().err
@@ -81,12 +81,12 @@ def test_a_backup_of_a_database_in_use_is_consistent(settings: Settings, tmp_pat
                 path = tmp_path / f"{number}.db"
                 database_copies.copy_database(settings.data.database, path)
                 with closing(sqlite3.connect(path)) as copy:
-                    found = copy.execute(
+                    rows = copy.execute(
                         "SELECT session.samples, coalesce(sum(count), 0) FROM session "
                         "LEFT JOIN chunk ON session_id = session.id GROUP BY session.id"
                     ).fetchall()
-                assert found
-                assert all(said == stored for said, stored in found)
+                assert rows
+                assert all(answer == stored for answer, stored in rows)
         finally:
             ended.set()
             writing.join()
@@ -120,8 +120,8 @@ def test_a_restore_replaces_a_damaged_database_and_its_journal_files(
     assert run(settings, "restore", str(path)) == 0
     assert not log.exists()
     assert names(settings.data.database) == ["one"]
-    (kept,) = settings.data.backups.glob("mucat-replaced-*.db-wal")
-    assert kept.read_bytes() == b"its log"
+    (stored,) = settings.data.backups.glob("mucat-replaced-*.db-wal")
+    assert stored.read_bytes() == b"its log"
 
 
 def test_a_backup_of_an_older_version_is_restored_and_then_upgraded(
@@ -250,8 +250,12 @@ def test_the_next_copy_removes_what_killed_ones_have_left(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fill(settings, "one")
-    left = [tmp_path / "old.db.part", tmp_path / "old.db.part-journal", tmp_path / "lone.db.part-journal"]
-    for path in left:
+    remaining = [
+        tmp_path / "old.db.part",
+        tmp_path / "old.db.part-journal",
+        tmp_path / "lone.db.part-journal",
+    ]
+    for path in remaining:
         path.write_bytes(b"half")
     copied = tmp_path / "copied.db.part"
     with copied.open("wb") as held:
@@ -268,7 +272,7 @@ def test_the_next_copy_removes_what_killed_ones_have_left(
 
 
 @pytest.mark.parametrize(
-    ("spoil", "words"),
+    ("spoil", "message"),
     [
         ("missing", "There is no file"),
         ("changed", "checksum"),
@@ -278,7 +282,7 @@ def test_the_next_copy_removes_what_killed_ones_have_left(
     ],
 )
 def test_a_failed_restore_changes_nothing(
-    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: str, words: str
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: str, message: str
 ) -> None:
     fill(settings, "one")
     path = tmp_path / "copy.db"
@@ -288,7 +292,7 @@ def test_a_failed_restore_changes_nothing(
     SPOILS[spoil](path)
     before = settings.data.database.read_bytes()
     assert run(settings, "restore", str(path)) == 1
-    assert re.search(words, capsys.readouterr().err)
+    assert re.search(message, capsys.readouterr().err)
     assert settings.data.database.read_bytes() == before
     assert not settings.data.backups.exists()
 
@@ -341,8 +345,8 @@ def test_only_the_newest_backups_stay(settings: Settings, monkeypatch: pytest.Mo
     monkeypatch.setattr(time, "strftime", lambda *_: next(moments))
     for _ in range(database_copies.COPIES_MOST + 2):
         backup_command.back_up(settings.data, settings.config, None)
-    kept = sorted(path.name for path in settings.data.backups.glob("*.db"))
-    assert kept == [f"mucat-backup-2026-01-0{day}_00-00-00.db" for day in range(3, 8)]
+    stored = sorted(path.name for path in settings.data.backups.glob("*.db"))
+    assert stored == [f"mucat-backup-2026-01-0{day}_00-00-00.db" for day in range(3, 8)]
     assert len(list(settings.data.backups.iterdir())) == 2 * database_copies.COPIES_MOST
 
 
@@ -374,12 +378,12 @@ def test_older_copies_that_cannot_be_deleted_are_a_remark_beside_what_was_done(
         for day in range(1, 1 + database_copies.COPIES_MOST):
             (settings.data.backups / f"mucat-{kind}-2026-01-0{day}_00-00-00.db").mkdir(parents=True)
     assert run(settings, "backup") == 0
-    said = capsys.readouterr().out
-    assert "Older copies cannot be deleted: Is a directory" in said
-    assert run(settings, "restore", said.partition(": ")[0]) == 0
-    said = capsys.readouterr().out
-    assert "was restored from" in said
-    assert "Older copies cannot be deleted" in said
+    output = capsys.readouterr().out
+    assert "Older copies cannot be deleted: Is a directory" in output
+    assert run(settings, "restore", output.partition(": ")[0]) == 0
+    output = capsys.readouterr().out
+    assert "was restored from" in output
+    assert "Older copies cannot be deleted" in output
 
 
 def test_a_second_writer_is_refused(settings: Settings) -> None:

@@ -13,7 +13,7 @@ from server.features.backup import download
 from server.features.backup.download import DatabaseDownloads
 from server.http import listener
 from server.platform.settings import Settings
-from tests.server.serving import Served, play
+from tests.server.serving import Served, serve
 from tests.server.waiting import until
 
 
@@ -23,12 +23,12 @@ def names(database: Path) -> list[str]:
         return [name for (name,) in connection.execute("SELECT name FROM session ORDER BY id")]
 
 
-def test_a_downloaded_backup_is_complete_and_can_be_restored(
+async def test_a_downloaded_backup_is_complete_and_can_be_restored(
     settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     copy = tmp_path / "copy.db"
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         for name in ("one", "two"):
             session = (await served.api.post("/sessions", json={"name": name, "note": ""})).json()["id"]
             if name == "one":
@@ -39,20 +39,18 @@ def test_a_downloaded_backup_is_complete_and_can_be_restored(
         assert int(answer.headers["content-length"]) == len(answer.content)
         copy.write_bytes(answer.content)
         assert [*served.settings.data.backups.iterdir()] == []
-
-    play(settings, scenario)
     assert names(copy) == ["one", "two"]
     options = ["--data", str(settings.data.path), "--config", str(settings.config)]
     assert main(["restore", str(copy), *options]) == 0
     capsys.readouterr()
 
 
-def test_one_download_at_a_time_and_an_aborted_one_frees_its_place(
+async def test_one_download_at_a_time_and_an_aborted_one_frees_its_place(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(download, "PIECE_BYTES", 16)
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         downloads = served.get(DatabaseDownloads)
         async with served.api.stream("GET", "/backup") as first:
             assert first.status_code == 200
@@ -61,15 +59,13 @@ def test_one_download_at_a_time_and_an_aborted_one_frees_its_place(
         await until(lambda: not downloads._busy, "the end of the first")
         assert (await served.api.get("/storage")).status_code == 200
 
-    play(settings, scenario)
 
-
-def test_a_client_that_does_not_read_is_disconnected(
+async def test_a_client_that_does_not_read_is_disconnected(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(listener, "USER_TIMEOUT_MS", 500)
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         # More than all buffers between the two ends can hold.
         with closing(sqlite3.connect(served.settings.data.database)) as database:
             database.execute("CREATE TABLE filler AS SELECT zeroblob(16000000)")
@@ -80,39 +76,32 @@ def test_a_client_that_does_not_read_is_disconnected(
             await until(lambda: not downloads._busy, "the end of the download")
         assert [*served.settings.data.backups.iterdir()] == []
 
-    play(settings, scenario)
 
-
-def test_a_full_disk_is_reported_and_no_file_is_left_behind(
-    settings: Settings, monkeypatch: pytest.MonkeyPatch
+async def test_a_full_disk_is_reported_and_no_file_is_left_behind(
+    monkeypatch: pytest.MonkeyPatch, served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        with monkeypatch.context() as full:
-            full.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1_000_000, total=10**9))
-            answer = await served.api.get("/backup")
-            assert (answer.status_code, answer.json()["detail"][:26]) == (507, "There is no room for a cop")
-        with monkeypatch.context() as broken:
-            broken.setattr(sqlite3, "connect", fail)
-            answer = await served.api.get("/backup")
-            assert answer.status_code == 507
-        assert (await served.api.get("/backup")).status_code == 200
-        assert [*served.settings.data.backups.iterdir()] == []
-
-    play(settings, scenario)
+    with monkeypatch.context() as full:
+        full.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1_000_000, total=10**9))
+        answer = await served.api.get("/backup")
+        assert (answer.status_code, answer.json()["detail"][:26]) == (507, "There is no room for a cop")
+    with monkeypatch.context() as broken:
+        broken.setattr(sqlite3, "connect", fail)
+        answer = await served.api.get("/backup")
+        assert answer.status_code == 507
+    assert (await served.api.get("/backup")).status_code == 200
+    assert [*served.settings.data.backups.iterdir()] == []
 
 
 def fail(*_: object, **__: object) -> None:
     raise sqlite3.OperationalError("disk I/O error")
 
 
-def test_files_left_by_a_killed_server_are_deleted_at_the_next_start(settings: Settings) -> None:
+async def test_files_left_by_a_killed_server_are_deleted_at_the_next_start(settings: Settings) -> None:
     settings.data.backups.mkdir()
-    left = settings.data.backups / "download.db.part"
-    left.write_bytes(b"half")
-    kept = settings.data.backups / "mucat-backup-2026-01-01_00-00-00.db"
-    kept.write_bytes(b"whole")
+    remaining = settings.data.backups / "download.db.part"
+    remaining.write_bytes(b"half")
+    stored = settings.data.backups / "mucat-backup-2026-01-01_00-00-00.db"
+    stored.write_bytes(b"whole")
 
-    async def scenario(served: Served) -> None:
-        assert [*served.settings.data.backups.iterdir()] == [kept]
-
-    play(settings, scenario)
+    async with serve(settings) as served:
+        assert [*served.settings.data.backups.iterdir()] == [stored]

@@ -2,8 +2,8 @@
 
 import asyncio
 import sys
-from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,14 +17,18 @@ from tests.server.serving import Served, serve
 from tests.server.waiting import until
 
 
-class Robot:
+class UploadedRobot:
     """A real robot's settings, with an existing port and a stand-in for the upload."""
 
     def __init__(self, settings: Settings, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.uploads, self.started = folder / "uploads", folder / "started"
         port = folder / "port"
         port.touch()
-        self.settings = replace(settings, mode="robot", link=LinkConfig(port=str(port), reset="dtr"))
+        self.settings = replace(
+            settings,
+            robot=replace(settings.robot, mode="robot"),
+            link=LinkConfig(port=str(port), reset="dtr"),
+        )
         code = f"import pathlib, time; p = pathlib.Path({str(self.started)!r})\n"
         code += f"p.write_text(str(pathlib.Path({str(self.uploads)!r}).exists()))\ntime.sleep(600)"
         self.runtime = ProcessCommand("runtime", "robot's runtime", (sys.executable, "-c", code))
@@ -42,13 +46,10 @@ class Robot:
     def marker(self) -> Path:
         return self.settings.data.firmware_away
 
-    def play(self, scenario: Callable[[Served], Awaitable[None]]) -> None:
-        async def run() -> None:
-            commands = [self.runtime] if self.settings.mode == "robot" else [self.runtime, self.simulator]
-            async with serve(self.settings, commands) as served:
-                await scenario(served)
-
-        asyncio.run(run())
+    def serve(self) -> AbstractAsyncContextManager[Served]:
+        """Return the server of the robot's settings, with its processes."""
+        simulated = [] if self.settings.robot.mode == "robot" else [self.simulator]
+        return serve(self.settings, [self.runtime, *simulated])
 
 
 @asynccontextmanager

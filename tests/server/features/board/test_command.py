@@ -8,15 +8,15 @@ from robot_runtime.places import FIRMWARE_REMEDY
 from robot_runtime.simulation.boards import firmware
 from server.cli import main
 from server.platform.settings import Settings
-from tests.server.features.board.real_board import Robot
+from tests.server.features.board.real_board import UploadedRobot
 
 
 @pytest.fixture
-def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Robot:
-    return Robot(settings, tmp_path, monkeypatch)
+def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> UploadedRobot:
+    return UploadedRobot(settings, tmp_path, monkeypatch)
 
 
-def run(robot: Robot, command: str) -> int:
+def run(robot: UploadedRobot, command: str) -> int:
     link = robot.settings.link
     robot.settings.config.write_text(
         f'[robot]\nmode = "robot"\n[link]\nport = "{link.port}"\nreset = "{link.reset}"\n'
@@ -25,25 +25,27 @@ def run(robot: Robot, command: str) -> int:
 
 
 def test_an_upload_that_is_cut_off_is_noted_for_the_next_server(
-    robot: Robot, capsys: pytest.CaptureFixture[str]
+    robot: UploadedRobot, capsys: pytest.CaptureFixture[str]
 ) -> None:
     robot.upload_does(f"if [ -e {robot.marker} ]; then echo noted >> {robot.uploads}; fi")
     assert run(robot, "upload") == 0
-    said = robot.uploads.read_text().splitlines()
-    assert [line.split()[2] for line in said if "--" in line] == ["--read-out", "--restore"]
-    assert said.count("noted") == 2
+    output = robot.uploads.read_text().splitlines()
+    assert [line.split()[2] for line in output if "--" in line] == ["--read-out", "--restore"]
+    assert output.count("noted") == 2
     assert not robot.marker.exists()
     assert f"to {robot.settings.link.port}" in capsys.readouterr().out
 
 
-def test_a_failed_upload_says_why_and_stays_noted(robot: Robot, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_failed_upload_says_why_and_stays_noted(
+    robot: UploadedRobot, capsys: pytest.CaptureFixture[str]
+) -> None:
     robot.upload_does("echo avrdude: not in sync; exit 1")
     assert run(robot, "upload") == 1
     assert "not on its board: avrdude: not in sync" in capsys.readouterr().err
     assert robot.marker.exists()
 
 
-def test_without_a_note_there_is_no_upload(robot: Robot, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_note_there_is_no_upload(robot: UploadedRobot, capsys: pytest.CaptureFixture[str]) -> None:
     robot.marker.mkdir()
     assert run(robot, "upload") == 1
     assert "firmware-away cannot be written" in capsys.readouterr().err
@@ -51,7 +53,7 @@ def test_without_a_note_there_is_no_upload(robot: Robot, capsys: pytest.CaptureF
 
 
 def test_a_bring_up_without_its_sketch_says_what_makes_it(
-    robot: Robot, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    robot: UploadedRobot, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(firmware, "bring_up_path", lambda *_: Path("/nowhere/bring_up.hex"))
     assert run(robot, "bring-up") == 1

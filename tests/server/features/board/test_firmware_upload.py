@@ -29,7 +29,7 @@ def upload(stack: Stack, firmware: str) -> tuple[dict[str, Any], set[str]]:
         return bool(state["phase"] == "idle")
 
     wait(idle, "the end of the upload", SECONDS)
-    assert any(0 < one < 1 for one in seen["uploading"])
+    assert any(0 < share < 1 for share in seen["uploading"])
     assert seen["uploading"] == sorted(seen["uploading"])
     return state, set(seen)
 

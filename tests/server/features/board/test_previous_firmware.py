@@ -58,7 +58,7 @@ def test_a_damaged_file_is_refused_with_its_line(tmp_path: Path, built: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("said", "verified", "share"),
+    ("answer", "verified", "share"),
     [
         ("", True, 0.0),
         ("avrdude: writing\n\nWriting | " + 25 * "#", True, 0.25),
@@ -67,5 +67,5 @@ def test_a_damaged_file_is_refused_with_its_line(tmp_path: Path, built: Path) ->
         ("Reading | " + 50 * "#" + " | 100%", False, 1.0),
     ],
 )
-def test_the_progress_is_that_of_avrdude(said: str, verified: bool, share: float) -> None:
-    assert read_progress(said, verified=verified) == pytest.approx(share)
+def test_the_progress_is_that_of_avrdude(answer: str, verified: bool, share: float) -> None:
+    assert read_progress(answer, verified=verified) == pytest.approx(share)

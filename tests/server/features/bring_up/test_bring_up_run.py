@@ -12,18 +12,17 @@ from robot_runtime.errors import RefusedError
 from server.features.bring_up.bring_up_run import BringUpRun
 from server.platform.settings import Settings
 from server.processes.supervisor import SIMULATION_ELSEWHERE, ProcessSupervisor
-from tests.server.features.board.real_board import Robot, disarming
-from tests.server.serving import Served
+from tests.server.features.board.real_board import UploadedRobot, disarming
 from tests.server.waiting import until
 
 
 @pytest.fixture
-def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Robot:
-    return Robot(settings, tmp_path, monkeypatch)
+def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> UploadedRobot:
+    return UploadedRobot(settings, tmp_path, monkeypatch)
 
 
-def test_it_says_at_its_end_that_the_firmware_is_not_on_the_board(robot: Robot) -> None:
-    async def scenario(served: Served) -> None:
+async def test_it_says_at_its_end_that_the_firmware_is_not_on_the_board(robot: UploadedRobot) -> None:
+    async with robot.serve() as served:
         robot.upload_does("echo avrdude: not in sync; exit 1")
         bring_up = served.get(BringUpRun)
         async with disarming(served):
@@ -39,27 +38,25 @@ def test_it_says_at_its_end_that_the_firmware_is_not_on_the_board(robot: Robot) 
         assert "The sketch is not on the board: avrdude: not in sync" in state.problem
         assert "The robot's firmware is not on its board: avrdude: not in sync" in state.problem
 
-    robot.play(scenario)
 
-
-def test_one_that_is_refused_says_nothing_about_the_board(robot: Robot) -> None:
-    async def scenario(served: Served) -> None:
+async def test_one_that_is_refused_says_nothing_about_the_board(robot: UploadedRobot) -> None:
+    async with robot.serve() as served:
         assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
         with pytest.raises(RefusedError, match="“dive” is being recorded"):
             await served.get(BringUpRun).begin()
         state = served.get(BringUpRun).state()
         assert (state.phase, state.words, state.problem) == ("idle", "", "")
 
-    robot.play(scenario)
 
-
-def test_an_error_of_the_software_is_said(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_an_error_of_the_software_is_said(
+    robot: UploadedRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def fail(*_: object) -> None:
         raise ValueError("no such thing")
 
     monkeypatch.setattr(bring_up_run, "SerialBench", fail)
 
-    async def scenario(served: Served) -> None:
+    async with robot.serve() as served:
         bring_up = served.get(BringUpRun)
         async with disarming(served):
             await bring_up.begin()
@@ -67,27 +64,27 @@ def test_an_error_of_the_software_is_said(robot: Robot, monkeypatch: pytest.Monk
         state = bring_up.state()
         assert (state.words, "Internal error (ValueError('no such thing'))" in state.problem) == ("", True)
 
-    robot.play(scenario)
 
-
-@pytest.mark.parametrize("place", ["here", "elsewhere"])
-def test_in_the_loop_the_simulator_is_where_it_was_before(
-    robot: Robot, place: Literal["here", "elsewhere"]
+@pytest.mark.parametrize("position", ["here", "elsewhere"])
+async def test_in_the_loop_the_simulator_is_where_it_was_before(
+    robot: UploadedRobot, position: Literal["here", "elsewhere"]
 ) -> None:
     """The emulated board is gone, so that the bring-up ends once it has taken it out of the water."""
-    robot.settings = replace(robot.settings, mode="hil", hil=HilConfig(simulator=place))
+    robot.settings = replace(
+        robot.settings,
+        robot=replace(robot.settings.robot, mode="hil"),
+        hil=HilConfig(simulator=position),
+    )
     robot.settings.data.board_tty.touch()
 
-    async def scenario(served: Served) -> None:
+    async with robot.serve() as served:
         bring_up, simulator = served.get(BringUpRun), served.get(ProcessSupervisor).get("simulator")
         assert simulator is not None
-        at_first = "running" if place == "here" else "paused"
+        at_first = "running" if position == "here" else "paused"
         await until(lambda: simulator.state == at_first, "the simulator")
         async with disarming(served):
             await bring_up.begin()
         await until(lambda: bring_up.state().phase == "idle", "its end")
         assert "no emulated board" in bring_up.state().problem
         await until(lambda: simulator.state == at_first, "the simulator again")
-        assert (simulator.problem == SIMULATION_ELSEWHERE) == (place == "elsewhere")
-
-    robot.play(scenario)
+        assert (simulator.problem == SIMULATION_ELSEWHERE) == (position == "elsewhere")

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,21 +14,15 @@ import pytest
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from tests.board.rig import OPTIBOOT, PROGRAM, ROOT
 from tests.stack import Stack
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.stack
 SECONDS = 60.0
 
 
-def wait(condition: Callable[[], object], what: str) -> None:
-    end = time.monotonic() + SECONDS
-    while not condition():
-        assert time.monotonic() < end, f"waited in vain for {what}"
-        time.sleep(0.1)
-
-
 def state(stack: Stack) -> dict[str, Any]:
-    found: dict[str, Any] = stack.api.get("/bring-up").json()
-    return found
+    answer: dict[str, Any] = stack.api.get("/bring-up").json()
+    return answer
 
 
 def act(stack: Stack, step: str, action: str, **inputs: float | str) -> dict[str, Any]:
@@ -36,21 +30,21 @@ def act(stack: Stack, step: str, action: str, **inputs: float | str) -> dict[str
     body = {"step": step, "action": action, "inputs": inputs}
     answer = stack.api.post("/bring-up/actions", json=body, timeout=SECONDS)
     assert answer.status_code == 200, answer.text
-    found: dict[str, Any] = next(one for one in answer.json()["steps"] if one["name"] == step)
-    return found
+    result: dict[str, Any] = next(entry for entry in answer.json()["steps"] if entry["name"] == step)
+    return result
 
 
 @pytest.mark.timeout(200)
 def test_a_bring_up_by_http_and_the_robot_is_back_afterwards(shared_stack: Stack) -> None:
     stack = shared_stack
-    wait(lambda: stack.api.get("/robot").json().get("connected"), "the robot")
+    wait_for(lambda: stack.api.get("/robot").json().get("connected"), "the robot")
     assert stack.api.get("/bring-up/report").status_code == 404
     answer = stack.api.post("/bring-up", timeout=SECONDS)
     assert answer.status_code == 200, answer.text
     assert stack.api.post("/bring-up", timeout=SECONDS).status_code == 409
-    wait(lambda: state(stack)["phase"] == "ready", "the sketch")
+    wait_for(lambda: state(stack)["phase"] == "ready", "the sketch")
     assert stack.api.post("/robot/commands/arm").status_code == 409
-    wait(lambda: state(stack)["raw"], "a reading")
+    wait_for(lambda: state(stack)["raw"], "a reading")
     assert act(stack, "devices", "scan")["state"] == "done"
     assert act(stack, "sensors", "look")["state"] == "done"
     for _ in range(6):
@@ -67,17 +61,17 @@ def test_a_bring_up_by_http_and_the_robot_is_back_afterwards(shared_stack: Stack
     refused = stack.api.post("/bring-up/actions", json=held)
     assert (refused.status_code, "STOP was pressed" in refused.json()["detail"]) == (409, True)
     assert stack.api.delete("/bring-up").status_code == 200
-    wait(lambda: state(stack)["phase"] == "idle", "the firmware")
+    wait_for(lambda: state(stack)["phase"] == "idle", "the firmware")
     assert state(stack)["problem"] == ""
     report = stack.api.get("/bring-up/report").text
     assert "<h1>Bring-up of" in report
     assert "H-bridge of the back left fin at 0x61" in report
-    wait(lambda: stack.api.get("/robot").json().get("connected"), "the robot")
+    wait_for(lambda: stack.api.get("/robot").json().get("connected"), "the robot")
     assert not (stack.data / "firmware-away").exists()
 
 
 def awaits_input(process: int) -> bool:
-    """True while it is blocked in a call whose first argument is file 0.
+    """Return True while it is blocked in a call whose first argument is file 0.
 
     Python would notice a signal just before such a call only after it.
     """
@@ -129,12 +123,12 @@ def test_ctrl_c_at_a_prompt_ends_a_bring_up_and_the_firmware_comes_back(
         bring_up, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
     ) as process:
         assert process.stdout is not None
-        said = b""
-        while b"q: end" not in said:
+        answer = b""
+        while b"q: end" not in answer:
             more = os.read(process.stdout.fileno(), 4096)
-            assert more, said
-            said += more
-        wait(lambda: awaits_input(process.pid), "the prompt")
+            assert more, answer
+            answer += more
+        wait_for(lambda: awaits_input(process.pid), "the prompt")
         process.send_signal(signal.SIGINT)
         # Its input stays open, and nothing comes from it.
         assert process.wait(SECONDS) == 130

@@ -64,7 +64,7 @@ def test_run_show_compare_and_export(
 
     assert main(["commtest", "show", "1", *options]) == 0
     shown = capsys.readouterr().out
-    for words in (
+    for text in (
         "avr-g++",
         "emulated board",
         "place         emulated",
@@ -72,7 +72,7 @@ def test_run_show_compare_and_export(
         "/micro_cat_test/",
         "ring overrun: the sketch read too slowly",
     ):
-        assert words in shown
+        assert text in shown
 
     assert main(["commtest", "compare", "1", "2", "table6", "table5", *options]) == 0
     compared = capsys.readouterr().out.splitlines()
@@ -102,7 +102,7 @@ def test_an_impossible_request_is_refused_with_the_reason(
     options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     document = write(tmp_path, ENTRY | {"delay": [-1], "speed": 3})
-    for arguments, words in (
+    for arguments, text in (
         (["run", document], "test 1: 'speed' is not known here"),
         (["run", document], "test 1: delay[0] is -1; it must lie between 0 and 10"),
         (["run", str(tmp_path / "none.json")], "none.json cannot be read"),
@@ -111,7 +111,7 @@ def test_an_impossible_request_is_refused_with_the_reason(
         (["compare", "table6", "table7"], "'table7' is neither the number of a run"),
     ):
         assert main(["commtest", *arguments, *options]) == 1
-        assert words in capsys.readouterr().err
+        assert text in capsys.readouterr().err
     assert main(["commtest", "list", *options]) == 0
     assert len(capsys.readouterr().out.splitlines()) == 1
 
@@ -161,15 +161,12 @@ def test_the_cells_of_an_interrupted_run_stay_stored(
     assert [cell.number for cell in cells] == list(range(len(cells)))
 
 
-def test_a_killed_run_is_not_listed_as_running(store: Store) -> None:
+async def test_a_killed_run_is_not_listed_as_running(store: Store) -> None:
     runs = CommTestStore(store)
 
-    async def scenario() -> tuple[int, int]:
-        killed = await begin(runs)
-        await runs.mark_interrupted()
-        return killed, await begin(runs)
-
-    killed, other = asyncio.run(scenario())
+    killed = await begin(runs)
+    await runs.mark_interrupted()
+    other = await begin(runs)
     newest, oldest = runs.summaries()
     assert [(newest.id, newest.state), (oldest.id, oldest.state)] == [
         (other, "running"),
@@ -178,46 +175,36 @@ def test_a_killed_run_is_not_listed_as_running(store: Store) -> None:
     assert oldest.problem
 
 
-def test_the_newest_runs_are_listed(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_newest_runs_are_listed(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("server.features.comm_tests.runs.LISTED_MOST", 2)
     runs = CommTestStore(store)
 
-    async def run_three() -> None:
-        for _ in range(3):
-            await runs.add(await begin(runs), 0, LOST.values)
-
-    asyncio.run(run_three())
-    assert [(one.id, one.cells_done) for one in runs.summaries()] == [(3, 1), (2, 1)]
+    for _ in range(3):
+        await runs.add(await begin(runs), 0, LOST.values)
+    assert [(summary.id, summary.cells_done) for summary in runs.summaries()] == [(3, 1), (2, 1)]
 
 
-def test_a_lost_result_is_stored_as_lost(store: Store) -> None:
+async def test_a_lost_result_is_stored_as_lost(store: Store) -> None:
     runs = CommTestStore(store)
 
-    async def scenario() -> int:
-        number = await begin(runs)
-        await runs.add(number, 0, LOST.values)
-        return number
-
-    number = asyncio.run(scenario())
-    (kept,) = runs.cells(number)
-    assert (kept.rate, kept.answered, kept.line_errors) == (0.0, False, 7)
-    assert kept.causes == "lost result, line"
+    number = await begin(runs)
+    await runs.add(number, 0, LOST.values)
+    (stored,) = runs.cells(number)
+    assert (stored.rate, stored.answered, stored.line_errors) == (0.0, False, 7)
+    assert stored.causes == "lost result, line"
     run = runs.find(number)
-    assert "9600 baud, Arduino 0.5 s, Pi 1 s: lost result" in tables.show_run(run, [kept])
+    assert "9600 baud, Arduino 0.5 s, Pi 1 s: lost result" in tables.show_run(run, [stored])
     whole = runs.whole(run)
     assert (whole.cells_done, whole.rate_mean, whole.rate_min) == (1, 0.0, 0.0)
     assert whole.results[0].causes == ["lost result", "line"]
 
 
-def test_an_invalid_cell_is_not_stored(store: Store) -> None:
+async def test_an_invalid_cell_is_not_stored(store: Store) -> None:
     runs = CommTestStore(store)
 
-    async def scenario() -> None:
-        number = await begin(runs)
-        with pytest.raises(ValueError, match="rate"):
-            await runs.add(number, 0, {"baud": 9600, "rate": "all"})
-
-    asyncio.run(scenario())
+    number = await begin(runs)
+    with pytest.raises(ValueError, match="rate"):
+        await runs.add(number, 0, {"baud": 9600, "rate": "all"})
     assert runs.cells(1) == []
 
 
@@ -286,4 +273,4 @@ def test_the_tables_of_the_thesis_are_complete() -> None:
     assert len(table6) == 75
     assert table5[115200, 0.0, 0.0] == 0.94
     assert table6[4800, 1.0, 0.5] == 0.57
-    assert {place for place in table6 if place[1] == 0} == set(table5)
+    assert {position for position in table6 if position[1] == 0} == set(table5)

@@ -1,14 +1,13 @@
 """The whole stack: a test on the robot's own board, here emulated, interrupted and completed."""
 
 import json
-import time
-from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from tests.server.waiting import alive
 from tests.stack import Stack
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.stack
 
@@ -29,13 +28,6 @@ LONG = TEST | {"delay": [0.0, 10.0]}
 SECONDS = 90.0
 
 
-def wait(condition: Callable[[], object], what: str) -> None:
-    end = time.monotonic() + SECONDS
-    while not condition():
-        assert time.monotonic() < end, f"waited in vain for {what}"
-        time.sleep(0.1)
-
-
 def run(stack: Stack, *tests: dict[str, Any]) -> int:
     body = {"text": json.dumps(tests), "place": "robot"}
     answer = stack.api.post("/comm-tests/runs", json=body, timeout=SECONDS)
@@ -45,12 +37,12 @@ def run(stack: Stack, *tests: dict[str, Any]) -> int:
 
 
 def get(stack: Stack, number: int) -> dict[str, Any]:
-    found: dict[str, Any] = stack.api.get(f"/comm-tests/runs/{number}").json()
-    return found
+    answer: dict[str, Any] = stack.api.get(f"/comm-tests/runs/{number}").json()
+    return answer
 
 
 def is_back(stack: Stack) -> bool:
-    """The robot's firmware answers the runtime, and is disarmed."""
+    """Check that the robot's firmware answers the runtime, and is disarmed."""
     answer = stack.api.get("/robot")
     processes = {part["name"]: part["state"] for part in stack.api.get("/health").json()["parts"]}
     if (
@@ -67,7 +59,7 @@ def test_after_a_kill_during_a_test_the_next_server_restores_the_firmware(shared
     stack = shared_stack
     away = stack.data / "firmware-away"
     number = run(stack, LONG)
-    wait(lambda: get(stack, number)["cells_done"] == 1, "the first cell")
+    wait_for(lambda: get(stack, number)["cells_done"] == 1, "the first cell")
     assert away.exists()
     link = next(part for part in stack.api.get("/health").json()["parts"] if part["name"] == "link")
     assert (link["state"], "“on the robot”" in link["text"]) == ("absent", True)
@@ -76,17 +68,17 @@ def test_after_a_kill_during_a_test_the_next_server_restores_the_firmware(shared
     comm_tests = stack.child("robot_runtime.experiments.comm_test")
     board = stack.part("board")
     stack.kill()
-    wait(lambda: not alive(comm_tests.pid), "the test's process to end with its server")
+    wait_for(lambda: not alive(comm_tests.pid), "the test's process to end with its server")
     stack.wait_ready()
     assert alive(board.pid)
-    wait(lambda: is_back(stack), "the robot")
+    wait_for(lambda: is_back(stack), "the robot")
     assert not away.exists()
     interrupted = get(stack, number)
     assert (interrupted["state"], interrupted["cells_done"]) == ("interrupted", 1)
     assert [cell["rate"] for cell in interrupted["results"]] == [1.0]
 
     number = run(stack, TEST)
-    wait(lambda: get(stack, number)["state"] != "running", "the end")
+    wait_for(lambda: get(stack, number)["state"] != "running", "the end")
     done = get(stack, number)
     assert (done["state"], done["problem"], done["place"]) == ("complete", "", "robot")
-    wait(lambda: is_back(stack) and not away.exists(), "the robot")
+    wait_for(lambda: is_back(stack) and not away.exists(), "the robot")

@@ -20,7 +20,7 @@ from server.features.comm_tests.runner import CommTestRunner, Progress
 from server.features.events.config import EventsConfig
 from server.platform.settings import Settings
 from tests.board.rig import ROOT, build
-from tests.server.features.events.rig import Listener, broker
+from tests.server.features.events.rig import MqttListener, broker
 from tests.server.ports import reserved_port
 from tests.server.serving import Served, next_text, serve
 from tests.server.waiting import until
@@ -72,14 +72,14 @@ async def start(served: Served, *tests: dict[str, Any]) -> int:
 
 async def news_until(socket: ClientConnection, *, cell: int | None = None) -> list[dict[str, Any]]:
     """Messages about the tests up to this cell, or until nothing runs any longer."""
-    told: list[dict[str, Any]] = []
+    notices: list[dict[str, Any]] = []
     async with asyncio.timeout(200):
         while True:
-            told.append(await next_text(socket, "comm_test"))
-            if cell is None and len(told) > 1 and told[-1]["active"] is None:
-                return told
-            if cell is not None and (told[-1]["cell"] or {}).get("number") == cell:
-                return told
+            notices.append(await next_text(socket, "comm_test"))
+            if cell is None and len(notices) > 1 and notices[-1]["active"] is None:
+                return notices
+            if cell is not None and (notices[-1]["cell"] or {}).get("number") == cell:
+                return notices
 
 
 async def get(served: Served, path: str) -> Any:
@@ -100,102 +100,93 @@ def test_the_remaining_time_is_that_of_cells_and_not_of_the_start() -> None:
     assert progress.describe(66.0)["remaining"] == 0
 
 
-def test_a_document_is_run_test_by_test_and_every_page_sees_it(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served, watching(served) as socket:
-            first = await start(served, QUICK, QUICK | {"direction": "both", "framing": "robot"})
-            told = await news_until(socket, cell=1)
-            active = told[-1]["active"]
-            assert (active["run"], active["name"], active["place"]) == (first, "two delays", "emulated")
-            assert (active["test"], active["tests"], active["cells"], active["done"]) == (0, 2, 2, 2)
-            assert active["remaining"] > 0
-            assert told[-1]["cell"]["run"] == first
-            await until(lambda: not served.get(CommTestRunner).busy, "the end", 200)
+async def test_a_document_is_run_test_by_test_and_every_page_sees_it(settings: Settings) -> None:
+    async with serve(settings) as served, watching(served) as socket:
+        first = await start(served, QUICK, QUICK | {"direction": "both", "framing": "robot"})
+        report = await news_until(socket, cell=1)
+        active = report[-1]["active"]
+        assert (active["run"], active["name"], active["place"]) == (first, "two delays", "emulated")
+        assert (active["test"], active["tests"], active["cells"], active["done"]) == (0, 2, 2, 2)
+        assert active["remaining"] > 0
+        assert report[-1]["cell"]["run"] == first
+        await until(lambda: not served.get(CommTestRunner).busy, "the end", 200)
 
-            second, one = [run for run in await get(served, "runs") if not run["sample"]]
-            assert (one["id"], one["state"], one["cells"], one["cells_done"]) == (first, "complete", 2, 2)
-            assert (one["framing"], one["place"], one["rate_mean"], one["rate_min"]) == (
-                "plain",
-                "emulated",
-                1,
-                1,
-            )
-            assert (second["framing"], second["direction"], second["state"]) == ("robot", "both", "complete")
-            run = await get(served, f"runs/{first}")
-            assert run["document"]["delay"] == [0.0, 0.01]
-            assert run["tools"]["emulated board"]
-            assert [cell["pi_delay"] for cell in run["results"]] == [0.0, 0.01]
-            assert run["results"][1] == {
-                name: value for name, value in told[-1]["cell"].items() if name != "run"
-            }
-            table = await served.api.get(f"/comm-tests/runs/{first}/csv")
-            assert "attachment" in table.headers["content-disposition"]
-            assert [row["rate"] for row in csv.DictReader(io.StringIO(table.text))] == ["1.0", "1.0"]
-            whole = (await served.api.get(f"/comm-tests/runs/{first}/json")).json()
-            assert (whole["place"], len(whole["cells"])) == ("emulated", 2)
-        async with serve(settings) as served, watching(served) as socket:
-            assert (await get(served, "runs"))[0] == second
-
-    asyncio.run(scenario())
+        second, item = [run for run in await get(served, "runs") if not run["sample"]]
+        assert (item["id"], item["state"], item["cells"], item["cells_done"]) == (first, "complete", 2, 2)
+        assert (item["framing"], item["place"], item["rate_mean"], item["rate_min"]) == (
+            "plain",
+            "emulated",
+            1,
+            1,
+        )
+        assert (second["framing"], second["direction"], second["state"]) == ("robot", "both", "complete")
+        run = await get(served, f"runs/{first}")
+        assert run["document"]["delay"] == [0.0, 0.01]
+        assert run["tools"]["emulated board"]
+        assert [cell["pi_delay"] for cell in run["results"]] == [0.0, 0.01]
+        assert run["results"][1] == {
+            name: value for name, value in report[-1]["cell"].items() if name != "run"
+        }
+        table = await served.api.get(f"/comm-tests/runs/{first}/csv")
+        assert "attachment" in table.headers["content-disposition"]
+        assert [row["rate"] for row in csv.DictReader(io.StringIO(table.text))] == ["1.0", "1.0"]
+        whole = (await served.api.get(f"/comm-tests/runs/{first}/json")).json()
+        assert (whole["place"], len(whole["cells"])) == ("emulated", 2)
+    async with serve(settings) as served, watching(served) as socket:
+        assert (await get(served, "runs"))[0] == second
 
 
-def test_a_run_cancelled_within_a_cell_keeps_the_finished_cells(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served, watching(served) as socket:
-            assert (await served.api.post("/comm-tests/cancel")).status_code == 204
-            number = await start(served, ENDLESS, QUICK)
-            busy = await served.api.post("/comm-tests/runs", json={"text": text(QUICK), "place": "emulated"})
-            assert (busy.status_code, "A communication test is running" in busy.json()["detail"]) == (
-                409,
-                True,
-            )
-            await news_until(socket, cell=0)
-            stale = await served.api.post(f"/comm-tests/cancel?run={number - 1}")
-            assert (stale.status_code, "This communication test is over" in stale.text) == (409, True)
-            assert (await served.api.post(f"/comm-tests/cancel?run={number}")).status_code == 204
-            await until(lambda: not served.get(CommTestRunner).busy, "the end")
-            async with watching(served) as late:
-                assert (await next_text(late, "comm_test"))["active"] is None
-            run, *others = [run for run in await get(served, "runs") if not run["sample"]]
-            assert (run["id"], run["state"], run["problem"], run["cells_done"]) == (
-                number,
-                "cancelled",
-                "",
-                1,
-            )
-            assert run["ended"]
-            assert others == []
-
-    asyncio.run(scenario())
+async def test_a_run_cancelled_within_a_cell_keeps_the_finished_cells(served: Served) -> None:
+    async with watching(served) as socket:
+        assert (await served.api.post("/comm-tests/cancel")).status_code == 204
+        number = await start(served, ENDLESS, QUICK)
+        busy = await served.api.post("/comm-tests/runs", json={"text": text(QUICK), "place": "emulated"})
+        assert (busy.status_code, "A communication test is running" in busy.json()["detail"]) == (
+            409,
+            True,
+        )
+        await news_until(socket, cell=0)
+        stale = await served.api.post(f"/comm-tests/cancel?run={number - 1}")
+        assert (stale.status_code, "This communication test is over" in stale.text) == (409, True)
+        assert (await served.api.post(f"/comm-tests/cancel?run={number}")).status_code == 204
+        await until(lambda: not served.get(CommTestRunner).busy, "the end")
+        async with watching(served) as late:
+            assert (await next_text(late, "comm_test"))["active"] is None
+        run, *others = [run for run in await get(served, "runs") if not run["sample"]]
+        assert (run["id"], run["state"], run["problem"], run["cells_done"]) == (
+            number,
+            "cancelled",
+            "",
+            1,
+        )
+        assert run["ended"]
+        assert others == []
 
 
-def test_a_killed_lab_process_fails_its_run_only(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served, watching(served) as socket:
-            number = await start(served, ENDLESS)
-            await news_until(socket, cell=0)
-            (comm_tests,) = [
-                child
-                for child in psutil.Process().children()
-                if "robot_runtime.experiments.comm_test" in " ".join(child.cmdline())
-            ]
-            boards = comm_tests.children(recursive=True)
-            comm_tests.send_signal(signal.SIGKILL)
-            await until(lambda: not served.get(CommTestRunner).busy, "the end")
-            run = await get(served, f"runs/{number}")
-            assert (run["state"], run["cells_done"]) == ("failed", 1)
-            assert "was ended by signal SIGKILL" in run["problem"]
-            assert boards
-            await until(lambda: not any(board.is_running() for board in boards), "the boards' end")
-            await start(served, QUICK)
-            await until(lambda: not served.get(CommTestRunner).busy, "the next run's end", 60)
-            assert (await get(served, "runs"))[0]["state"] == "complete"
-
-    asyncio.run(scenario())
+async def test_a_killed_lab_process_fails_its_run_only(served: Served) -> None:
+    async with watching(served) as socket:
+        number = await start(served, ENDLESS)
+        await news_until(socket, cell=0)
+        (comm_tests,) = [
+            child
+            for child in psutil.Process().children()
+            if "robot_runtime.experiments.comm_test" in " ".join(child.cmdline())
+        ]
+        boards = comm_tests.children(recursive=True)
+        comm_tests.send_signal(signal.SIGKILL)
+        await until(lambda: not served.get(CommTestRunner).busy, "the end")
+        run = await get(served, f"runs/{number}")
+        assert (run["state"], run["cells_done"]) == ("failed", 1)
+        assert "was ended by signal SIGKILL" in run["problem"]
+        assert boards
+        await until(lambda: not any(board.is_running() for board in boards), "the boards' end")
+        await start(served, QUICK)
+        await until(lambda: not served.get(CommTestRunner).busy, "the next run's end", 60)
+        assert (await get(served, "runs"))[0]["state"] == "complete"
 
 
-def test_the_end_of_the_server_cancels_the_run(settings: Settings, tmp_path: Path) -> None:
-    async def scenario(port: int, listener: Listener) -> None:
+async def test_the_end_of_the_server_cancels_the_run(settings: Settings, tmp_path: Path) -> None:
+    with reserved_port() as port, broker(tmp_path, port), closing(MqttListener(port)) as listener:
         telling = settings.with_section(EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}"))
         async with serve(telling) as served, watching(served) as socket:
             number = await start(served, ENDLESS)
@@ -206,12 +197,9 @@ def test_the_end_of_the_server_cancels_the_run(settings: Settings, tmp_path: Pat
         event = await asyncio.to_thread(listener.next, "mucat/tested/event/comm_test_ended")
         assert (event["id"], event["state"]) == (number, "cancelled")
 
-    with reserved_port() as port, broker(tmp_path, port), closing(Listener(port)) as listener:
-        asyncio.run(scenario(port, listener))
-
 
 @pytest.mark.parametrize(
-    ("program", "words"),
+    ("program", "message"),
     [
         ("echo out of oil >&2; exit 3", "has ended with exit status 3"),
         ("""echo '{"event": "phase", "test": 0}'""", "that is not valid"),
@@ -220,8 +208,8 @@ def test_the_end_of_the_server_cancels_the_run(settings: Settings, tmp_path: Pat
         ("head -c 300000 /dev/zero; exit 0", "It broke off"),
     ],
 )
-def test_the_output_of_a_broken_lab_is_reported_up_to_a_limit(
-    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str, words: str
+async def test_the_output_of_a_broken_lab_is_reported_up_to_a_limit(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str, message: str
 ) -> None:
     started = '{"event": "started", "test": 0, "firmware": "f", "tools": {}, "host": "h"}'
     script = tmp_path / "lab"
@@ -229,32 +217,26 @@ def test_the_output_of_a_broken_lab_is_reported_up_to_a_limit(
     script.chmod(0o755)
     monkeypatch.setattr(sys, "executable", str(script))
 
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            number = await start(served, QUICK)
-            await until(lambda: not served.get(CommTestRunner).busy, "the end")
-            run = await get(served, f"runs/{number}")
-            assert run["state"] == "failed"
-            assert words in run["problem"]
-            assert len(run["problem"]) < 200_000
-
-    asyncio.run(scenario())
+    async with serve(settings) as served:
+        number = await start(served, QUICK)
+        await until(lambda: not served.get(CommTestRunner).busy, "the end")
+        run = await get(served, f"runs/{number}")
+        assert run["state"] == "failed"
+        assert message in run["problem"]
+        assert len(run["problem"]) < 200_000
 
 
-def test_a_lab_that_cannot_start_reports_the_reason(
+async def test_a_lab_that_cannot_start_reports_the_reason(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys, "executable", "/bin/false")
 
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            body = {"text": text(QUICK), "place": "emulated"}
-            answer = await served.api.post("/comm-tests/runs", json=body)
-            assert answer.status_code == 409
-            assert "could not begin. It has ended with exit status 1" in answer.json()["detail"]
-            assert not any(not run["sample"] for run in await get(served, "runs"))
-
-    asyncio.run(scenario())
+    async with serve(settings) as served:
+        body = {"text": text(QUICK), "place": "emulated"}
+        answer = await served.api.post("/comm-tests/runs", json=body)
+        assert answer.status_code == 409
+        assert "could not begin. It has ended with exit status 1" in answer.json()["detail"]
+        assert not any(not run["sample"] for run in await get(served, "runs"))
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
@@ -276,67 +258,55 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-def test_a_document_is_checked_field_by_field(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served:
+async def test_a_document_is_checked_field_by_field(served: Served) -> None:
 
-            async def check(content: str) -> Any:
-                answer = await served.api.post("/comm-tests/check", json={"text": content})
-                assert answer.status_code == 200
-                return answer.json()
+    async def check(content: str) -> Any:
+        answer = await served.api.post("/comm-tests/check", json={"text": content})
+        assert answer.status_code == 200
+        return answer.json()
 
-            for changes, words in REFUSED:
-                found = await check(text(QUICK | changes))
-                assert found["tests"] == []
-                assert any(words in problem["text"] for problem in found["problems"]), (changes, found)
-                body = {"text": text(QUICK | changes), "place": "emulated"}
-                answer = await served.api.post("/comm-tests/runs", json=body)
-                assert (answer.status_code, words in answer.json()["detail"]) == (422, True)
-                assert answer.json()["problems"] == found["problems"]
-            for content in ("", "nonsense", "{}", "[]", "[3]", "[" * 50_000):
-                assert (await check(content))["problems"]
-            (good,) = (await check(text(QUICK)))["tests"]
-            assert (good["cells"], good["bauds"], good["pi_delays"]) == (2, [115200], [0.0, 0.01])
-            assert 0 < good["seconds"] < 5
-
-    asyncio.run(scenario())
+    for changes, message in REFUSED:
+        result = await check(text(QUICK | changes))
+        assert result["tests"] == []
+        assert any(message in problem["text"] for problem in result["problems"]), (changes, result)
+        body = {"text": text(QUICK | changes), "place": "emulated"}
+        answer = await served.api.post("/comm-tests/runs", json=body)
+        assert (answer.status_code, message in answer.json()["detail"]) == (422, True)
+        assert answer.json()["problems"] == result["problems"]
+    for content in ("", "nonsense", "{}", "[]", "[3]", "[" * 50_000):
+        assert (await check(content))["problems"]
+    (good,) = (await check(text(QUICK)))["tests"]
+    assert (good["cells"], good["bauds"], good["pi_delays"]) == (2, [115200], [0.0, 0.01])
+    assert 0 < good["seconds"] < 5
 
 
-def test_an_invalid_request_is_refused(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            api = served.api
-            for body in (
-                {"text": text(QUICK)},
-                {"text": text(QUICK), "place": "moon"},
-                {"text": text(QUICK), "place": "emulated", "speed": 3},
-                {"text": 3, "place": "emulated"},
-                {"text": " " * 61_000, "place": "emulated"},
-            ):
-                assert (await api.post("/comm-tests/runs", json=body)).status_code == 422
-            number = await api.post("/comm-tests/check", json={"text": 3})
-            (problem,) = number.json()["problems"]
-            assert problem["path"] == ["body", "text"]
-            assert number.json()["detail"] == f"The request is not valid. {problem['text']}"
-            large = await api.post("/comm-tests/check", json={"text": " " * 70_000})
-            assert large.status_code == 413
-            for path in ("runs/99", "runs/99/csv", "runs/99/json"):
-                answer = await api.get(f"/comm-tests/{path}")
-                assert (answer.status_code, "There is no run 99" in answer.json()["detail"]) == (404, True)
-            for path in ("runs/0", "runs/x", f"runs/{2**63}"):
-                assert (await api.get(f"/comm-tests/{path}")).status_code == 422
-
-    asyncio.run(scenario())
+async def test_an_invalid_request_is_refused(served: Served) -> None:
+    api = served.api
+    for body in (
+        {"text": text(QUICK)},
+        {"text": text(QUICK), "place": "moon"},
+        {"text": text(QUICK), "place": "emulated", "speed": 3},
+        {"text": 3, "place": "emulated"},
+        {"text": " " * 61_000, "place": "emulated"},
+    ):
+        assert (await api.post("/comm-tests/runs", json=body)).status_code == 422
+    number = await api.post("/comm-tests/check", json={"text": 3})
+    (problem,) = number.json()["problems"]
+    assert problem["path"] == ["body", "text"]
+    assert number.json()["detail"] == f"The request is not valid. {problem['text']}"
+    large = await api.post("/comm-tests/check", json={"text": " " * 70_000})
+    assert large.status_code == 413
+    for path in ("runs/99", "runs/99/csv", "runs/99/json"):
+        answer = await api.get(f"/comm-tests/{path}")
+        assert (answer.status_code, "There is no run 99" in answer.json()["detail"]) == (404, True)
+    for path in ("runs/0", "runs/x", f"runs/{2**63}"):
+        assert (await api.get(f"/comm-tests/{path}")).status_code == 422
 
 
-def test_documents_and_the_thesis_s_tables_are_shown(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            documents = await get(served, "documents")
-            assert documents[0]["name"] == "figure10"
-            assert all(document["title"] and document["text"] for document in documents)
-            table5, table6 = await get(served, "tables")
-            assert (table5["name"], table5["framing"], len(table5["cells"])) == ("table5", "plain", 15)
-            assert (table6["name"], table6["framing"], len(table6["cells"])) == ("table6", "thesis", 75)
-
-    asyncio.run(scenario())
+async def test_documents_and_the_thesis_s_tables_are_shown(served: Served) -> None:
+    documents = await get(served, "documents")
+    assert documents[0]["name"] == "figure10"
+    assert all(document["title"] and document["text"] for document in documents)
+    table5, table6 = await get(served, "tables")
+    assert (table5["name"], table5["framing"], len(table5["cells"])) == ("table5", "plain", 15)
+    assert (table6["name"], table6["framing"], len(table6["cells"])) == ("table6", "thesis", 75)

@@ -56,4 +56,6 @@ def test_the_table_in_the_docs_equals_the_samples() -> None:
         for pi_delay, entry in zip(PI_DELAYS, entries.split("|"), strict=True):
             _, ours, plainly = map(float, entry.split("/"))
             printed[int(baud), float(arduino_delay), pi_delay] = ours, plainly
-    assert printed == {place: (round(thesis[place], 2), round(plain[place], 2)) for place in thesis}
+    assert printed == {
+        position: (round(thesis[position], 2), round(plain[position], 2)) for position in thesis
+    }

@@ -13,15 +13,16 @@ from typing import Any
 import httpx
 import pytest
 
-from server.features.comparison import report, worker
-from server.features.comparison.comparer import Comparer
-from server.features.comparison.schemas import ComparisonQuery, LinesQuery
+from server.analysis import report
+from server.analysis.comparer import Comparer
+from server.analysis.schemas import ComparisonQuery, LinesQuery
+from server.features.comparison import worker
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Reader, Store
-from tests.server.features.comparison.dives import dive, record
-from tests.server.serving import Served, play
+from tests.server.analysis.dives import dive, record
+from tests.server.serving import Served, serve
 from tests.server.waiting import SECONDS, alive, until
 
 Python = Callable[[str], SimpleNamespace]
@@ -71,13 +72,13 @@ async def compare(served: Served, session: int, path: str = "/compare") -> httpx
 
 
 def process_of(served: Served) -> int:
-    """The process that compares for this server."""
+    """Return the process that compares for this server."""
     process = served.get(ComparisonWorker)._process
     assert process is not None
     return process.pid
 
 
-def test_nothing_is_compared_in_the_server_s_process(
+async def test_nothing_is_compared_in_the_server_s_process(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     reader = Reader(settings.data.database)
@@ -88,7 +89,7 @@ def test_nothing_is_compared_in_the_server_s_process(
     monkeypatch.setattr(Comparer, "__init__", lambda *_: here.append("compares"))
     monkeypatch.setattr(report, "write_report", lambda *_: here.append("writes"))
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         answer = await ask(served, session, view_start=0, view_end=2)
         assert answer.status_code == 200
         assert answer.headers["content-disposition"] == f'attachment; filename="comparison_{session}.html"'
@@ -97,15 +98,13 @@ def test_nothing_is_compared_in_the_server_s_process(
         assert (await compare(served, session)).json() == expected
         process = process_of(served)
         assert (await compare(served, session, "/compare/lines")).json() == lines.model_dump(mode="json")
-        names = [one["name"] for one in (await served.api.get(f"/sessions/{session}/signals")).json()]
+        names = [signal["name"] for signal in (await served.api.get(f"/sessions/{session}/signals")).json()]
         assert "depth.depth" in names
         assert process_of(served) == process
         for missing in (await ask(served, 99), await compare(served, 99)):
             detail = missing.json()["detail"]
             assert (missing.status_code, detail.startswith("There is no session 99")) == (404, True)
         assert here == []
-
-    play(settings, scenario)
 
 
 FAILURES = [
@@ -117,8 +116,7 @@ FAILURES = [
 
 
 @pytest.mark.parametrize(("work", "seconds", "status", "why"), FAILURES)
-def test_what_fails_or_exceeds_its_limits_is_an_error_in_words_and_the_next_is_answered(
-    settings: Settings,
+async def test_what_fails_or_exceeds_its_limits_is_an_error_in_words_and_the_next_is_answered(
     session: int,
     python: Python,
     monkeypatch: pytest.MonkeyPatch,
@@ -126,91 +124,77 @@ def test_what_fails_or_exceeds_its_limits_is_an_error_in_words_and_the_next_is_a
     seconds: float,
     status: int,
     why: str,
+    served: Served,
 ) -> None:
-    async def scenario(served: Served) -> None:
-        monkeypatch.setattr(worker, "sys", python(work))
-        monkeypatch.setattr(worker, "SECONDS_MAX", seconds)
-        monkeypatch.setattr(worker, "REPORT_SECONDS_MAX", seconds)
-        for answer in (await ask(served, session), await compare(served, session)):
-            assert (answer.status_code, why in answer.json()["detail"]) == (status, True), answer.text[:500]
-        monkeypatch.setattr(worker, "SECONDS_MAX", SECONDS)
-        assert (await served.api.get(f"/sessions/{session}/signals")).status_code == 200
-
-    play(settings, scenario)
+    monkeypatch.setattr(worker, "sys", python(work))
+    monkeypatch.setattr(worker, "SECONDS_MAX", seconds)
+    monkeypatch.setattr(worker, "REPORT_SECONDS_MAX", seconds)
+    for answer in (await ask(served, session), await compare(served, session)):
+        assert (answer.status_code, why in answer.json()["detail"]) == (status, True), answer.text[:500]
+    monkeypatch.setattr(worker, "SECONDS_MAX", SECONDS)
+    assert (await served.api.get(f"/sessions/{session}/signals")).status_code == 200
 
 
-def test_a_killed_process_is_started_again(settings: Settings, session: int) -> None:
-    async def scenario(served: Served) -> None:
-        before = await compare(served, session)
-        process = served.get(ComparisonWorker)._process
-        assert process is not None
-        os.kill(process.pid, signal.SIGKILL)
-        await process.wait()
-        assert (await compare(served, session)).json() == before.json()
-        assert process_of(served) != process.pid
-
-    play(settings, scenario)
+async def test_a_killed_process_is_started_again(session: int, served: Served) -> None:
+    before = await compare(served, session)
+    process = served.get(ComparisonWorker)._process
+    assert process is not None
+    os.kill(process.pid, signal.SIGKILL)
+    await process.wait()
+    assert (await compare(served, session)).json() == before.json()
+    assert process_of(served) != process.pid
 
 
-def test_a_process_that_is_killed_while_it_compares_is_told_in_words(
-    settings: Settings, session: int, python: Python, monkeypatch: pytest.MonkeyPatch
+async def test_a_process_that_is_killed_while_it_compares_is_told_in_words(
+    session: int, python: Python, monkeypatch: pytest.MonkeyPatch, served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        monkeypatch.setattr(worker, "sys", python("time.sleep(3600)"))
-        asking = asyncio.create_task(compare(served, session))
-        await until(lambda: served.get(ComparisonWorker)._process is not None, "the process")
-        os.kill(process_of(served), signal.SIGKILL)
-        answer = await asking
-        assert (answer.status_code, "was ended by signal SIGKILL" in answer.json()["detail"]) == (503, True)
-        monkeypatch.undo()
-        assert (await compare(served, session)).status_code == 200
-
-    play(settings, scenario)
+    monkeypatch.setattr(worker, "sys", python("time.sleep(3600)"))
+    asking = asyncio.create_task(compare(served, session))
+    await until(lambda: served.get(ComparisonWorker)._process is not None, "the process")
+    os.kill(process_of(served), signal.SIGKILL)
+    answer = await asking
+    assert (answer.status_code, "was ended by signal SIGKILL" in answer.json()["detail"]) == (503, True)
+    monkeypatch.undo()
+    assert (await compare(served, session)).status_code == 200
 
 
-def test_the_process_ends_when_nobody_asks_any_more(
+async def test_the_process_ends_when_nobody_asks_any_more(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "IDLE_SECONDS", 0.01)
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         comparison = served.get(ComparisonWorker)
         assert (await compare(served, session)).status_code == 200
         await until(lambda: comparison._process is None, "the process to be left")
         assert (await compare(served, session)).status_code == 200
 
-    play(settings, scenario)
 
-
-def test_only_a_roomy_computer_has_the_process_before_anybody_asks_and_keeps_it(
-    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("roomy", [True, False])
+async def test_only_a_roomy_computer_has_the_process_before_anybody_asks_and_keeps_it(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, roomy: bool
 ) -> None:
     monkeypatch.setattr(worker, "IDLE_SECONDS", 0.01)
-
-    async def scenario(*, roomy: bool) -> None:
-        monkeypatch.setattr(worker, "ROOMY_BYTES", 0 if roomy else 10**18)
-        comparison = ComparisonWorker(settings.data.database)
-        comparison.prepare()
-        assert (comparison._preparing is not None) is roomy
-        if roomy:
-            await until(lambda: comparison._process is not None, "the process")
-        process = comparison._process
-        await comparison.ask("signals", str(session))
-        assert (comparison._process is process) is roomy
-        assert (comparison._idle is None) is roomy
-        await comparison.close()
-
-    for roomy in (True, False):
-        asyncio.run(scenario(roomy=roomy))
+    monkeypatch.setattr(worker, "ROOMY_BYTES", 0 if roomy else 10**18)
+    comparison = ComparisonWorker(settings.data)
+    comparison.prepare()
+    assert (comparison._preparing is not None) is roomy
+    if roomy:
+        await until(lambda: comparison._process is not None, "the process")
+    process = comparison._process
+    await comparison.ask("signals", str(session))
+    assert (comparison._process is process) is roomy
+    assert (comparison._idle is None) is roomy
+    await comparison.close()
 
 
-def test_a_report_ends_with_the_connection_of_its_receiver(
+async def test_a_report_ends_with_the_connection_of_its_receiver(
     settings: Settings, session: int, python: Python, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begun = tmp_path / "begun"
     work = f"import os; open({str(begun)!r}, 'w').write(str(os.getpid())); time.sleep(3600)"
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         monkeypatch.setattr(worker, "sys", python(work))
         asking = asyncio.create_task(ask(served, session))
         await until(lambda: begun.exists() and begun.read_text(), "the report to be begun")
@@ -222,10 +206,8 @@ def test_a_report_ends_with_the_connection_of_its_receiver(
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
 
-    play(settings, scenario)
 
-
-def test_a_report_whose_receiver_hangs_up_while_it_is_read_holds_up_no_other_request(
+async def test_a_report_whose_receiver_hangs_up_while_it_is_read_holds_up_no_other_request(
     settings: Settings, session: int, python: Python, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begun = tmp_path / "begun"
@@ -236,7 +218,7 @@ def test_a_report_whose_receiver_hangs_up_while_it_is_read_holds_up_no_other_req
         "[write(bytes(10**5)) for _ in range(1990)]"
     )
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         with monkeypatch.context() as faked:
             faked.setattr(worker, "sys", python(work))
             asking = asyncio.create_task(ask(served, session))
@@ -244,21 +226,16 @@ def test_a_report_whose_receiver_hangs_up_while_it_is_read_holds_up_no_other_req
             asking.cancel()
         assert (await compare(served, session)).status_code == 200
 
-    play(settings, scenario)
 
-
-def test_no_process_is_left_and_a_missing_interpreter_is_an_error_in_words(
+async def test_no_process_is_left_and_a_missing_interpreter_is_an_error_in_words(
     settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async def scenario() -> None:
-        comparison = ComparisonWorker(settings.data.database)
-        await comparison.ask("signals", str(session))
-        process = comparison._process
-        assert process is not None
-        await comparison.close()
-        assert process.returncode == -signal.SIGKILL
-        monkeypatch.setattr(worker, "sys", SimpleNamespace(executable="/nowhere/python"))
-        with pytest.raises(ComparisonError, match="no process can be started"):
-            await ComparisonWorker(settings.data.database).ask("signals", str(session))
-
-    asyncio.run(scenario())
+    comparison = ComparisonWorker(settings.data)
+    await comparison.ask("signals", str(session))
+    process = comparison._process
+    assert process is not None
+    await comparison.close()
+    assert process.returncode == -signal.SIGKILL
+    monkeypatch.setattr(worker, "sys", SimpleNamespace(executable="/nowhere/python"))
+    with pytest.raises(ComparisonError, match="no process can be started"):
+        await ComparisonWorker(settings.data).ask("signals", str(session))

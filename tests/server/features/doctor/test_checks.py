@@ -32,6 +32,8 @@ GOOD = Machine(
     groups=frozenset({"dialout", "gpio", "video"}),
     reset="gpio:/dev/gpiochip0:4",
     reset_label="pinctrl-bcm2835",
+    reserve=30.0,
+    warm_reserve=24.0,
     cameras=("unicam",),
     now=SOFTWARE_MADE + 1,
     throttled=0,
@@ -108,6 +110,9 @@ CASES: dict[str, tuple[dict[str, Any], str, str]] = {
     "groups: missing": ({"groups": frozenset({"dialout"})}, "wrong", "not in gpio, video"),
     "reset: no chip": ({"reset_problem": "/dev/gpiochip0: No such file"}, "wrong", "No such file"),
     "reset: other chip": ({"reset_label": "raspberrypi-exp-gpio"}, "look", "raspberrypi-exp-gpio"),
+    "buoyancy: not weighed": ({"reserve": 0.0}, "look", "reserve of buoyancy is not known"),
+    "buoyancy: sinks when warm": ({"reserve": 7.0, "warm_reserve": -1.0}, "look", "there it sinks"),
+    "buoyancy: little": ({"reserve": 14.0, "warm_reserve": 6.0}, "look", "less than 15 g"),
     "camera: no library": ({"camera_library": False}, "wrong", "picamera2"),
     "camera: not connected": ({"cameras": ()}, "look", "No camera"),
     "clock: 1970": ({"now": 12.0}, "look", "has not been set"),
@@ -124,22 +129,22 @@ CASES: dict[str, tuple[dict[str, Any], str, str]] = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_check_finds_it_and_says_what_mends_it(case: str) -> None:
-    changed, verdict, words = CASES[case]
+    changed, verdict, text = CASES[case]
     name = case.partition(":")[0]
-    found = {one.name: one for one in examine(replace(GOOD, **changed))}
-    assert (found[name].verdict, words in found[name].text) == (verdict, True), found[name]
-    assert found[name].mend
+    results = {finding.name: finding for finding in examine(replace(GOOD, **changed))}
+    assert (results[name].verdict, text in results[name].text) == (verdict, True), results[name]
+    assert results[name].mend
     # Nothing else is found.
-    assert {one.name for one in found.values() if one.verdict != "ok"} == {name}
+    assert {finding.name for finding in results.values() if finding.verdict != "ok"} == {name}
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_the_commands_that_mend_it_can_be_typed_so(case: str) -> None:
     for finding in examine(replace(GOOD, **CASES[case][0])):
-        for words in re.findall(r"\bmucat ([a-z-]+(?: (?:[A-Z]+|--[a-z-]+))*)", finding.mend):
-            name, *arguments = words.split()
+        for text in re.findall(r"\bmucat ([a-z-]+(?: (?:[A-Z]+|--[a-z-]+))*)", finding.mend):
+            name, *arguments = text.split()
             command = mucat.get_command(click.Context(mucat), name)
-            assert command is not None, words
+            assert command is not None, text
             # A group alone lists its commands.
             if not isinstance(command, click.Group):
                 command.make_context(name, arguments)
@@ -147,16 +152,16 @@ def test_the_commands_that_mend_it_can_be_typed_so(case: str) -> None:
 
 def test_every_check_is_good_on_a_good_computer_and_has_a_case_with_every_other_verdict() -> None:
     good = examine(GOOD)
-    assert [one.name for one in good if one.verdict != "ok"] == []
-    by_usb = {one.name for one in examine(replace(GOOD, **BY_USB)) if one.verdict == "ok"}
-    names = {one.name for one in good} | by_usb
+    assert [finding.name for finding in good if finding.verdict != "ok"] == []
+    by_usb = {finding.name for finding in examine(replace(GOOD, **BY_USB)) if finding.verdict == "ok"}
+    names = {finding.name for finding in good} | by_usb
     assert len(CHECKS) == len(names) == len(good) + 1
     assert {case.partition(":")[0] for case in CASES} == names
-    assert not any(one.mend for one in good)
+    assert not any(finding.mend for finding in good)
 
 
 def test_an_emulated_robot_is_asked_nothing_about_pins() -> None:
-    names = {one.name for one in examine(EMULATED)}
+    names = {finding.name for finding in examine(EMULATED)}
     assert names == {
         "configuration",
         "versions",
@@ -189,7 +194,7 @@ def test_an_emulated_robot_is_asked_nothing_about_pins() -> None:
     ],
 )
 def test_a_check_that_does_not_apply_says_nothing(changed: dict[str, Any], check: str) -> None:
-    assert check not in {one.name for one in examine(replace(GOOD, **changed))}
+    assert check not in {finding.name for finding in examine(replace(GOOD, **changed))}
 
 
 def test_groups_are_those_that_the_configuration_needs() -> None:
@@ -198,8 +203,11 @@ def test_groups_are_those_that_the_configuration_needs() -> None:
 
 
 def test_a_port_whose_opening_resets_the_board_says_so() -> None:
-    said = {reset: examine(replace(GOOD, reset=reset)) for reset in ("dtr", "gpio:/dev/gpiochip0:4")}
-    texts = {reset: next(one.text for one in found if one.name == "port") for reset, found in said.items()}
+    answer = {reset: examine(replace(GOOD, reset=reset)) for reset in ("dtr", "gpio:/dev/gpiochip0:4")}
+    texts = {
+        reset: next(finding.text for finding in result if finding.name == "port")
+        for reset, result in answer.items()
+    }
     assert "starts a board with DTR at its reset anew" in texts["dtr"]
     assert "anew" not in texts["gpio:/dev/gpiochip0:4"]
 

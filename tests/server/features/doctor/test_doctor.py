@@ -36,8 +36,8 @@ def doctor(settings: Settings, *more: str) -> int:
     return main(["doctor", "--data", str(settings.data.path), "--config", str(settings.config), *more])
 
 
-def found(capsys: pytest.CaptureFixture[str]) -> dict[str, Finding]:
-    return {one["name"]: Finding(**one) for one in json.loads(capsys.readouterr().out)}
+def read_findings(capsys: pytest.CaptureFixture[str]) -> dict[str, Finding]:
+    return {document["name"]: Finding(**document) for document in json.loads(capsys.readouterr().out)}
 
 
 def test_it_tells_a_person_and_a_program_the_same(
@@ -49,9 +49,9 @@ def test_it_tells_a_person_and_a_program_the_same(
     assert "wrong Serial port: There is no /dev/nowhere. Serial ports that are there: " in text
     assert "\n      → Set link.port" in text
     assert doctor(settings, "--json") == 1
-    findings = found(capsys)
+    findings = read_findings(capsys)
     assert findings["port"].verdict == "wrong"
-    assert all(f"{one.verdict:6}{one.title}: " in text for one in findings.values())
+    assert all(f"{finding.verdict:6}{finding.title}: " in text for finding in findings.values())
 
 
 def test_a_port_that_opens_is_good_and_stays_free(
@@ -60,7 +60,7 @@ def test_a_port_that_opens_is_good_and_stays_free(
     board, line = pty.openpty()
     settings.config.write_text(ROBOT.format(port=os.ttyname(line), web=web))
     doctor(settings, "--json")
-    findings = found(capsys)
+    findings = read_findings(capsys)
     assert (findings["port"].verdict, findings["board"].verdict) == ("ok", "look")
     assert findings["libraries"].verdict == "ok"
     os.close(board)
@@ -72,7 +72,7 @@ def test_a_configuration_that_cannot_be_read_is_a_finding(
 ) -> None:
     settings.config.write_text("[robot\n")
     assert doctor(settings, "--json") == 1
-    findings = found(capsys)
+    findings = read_findings(capsys)
     assert findings["configuration"].verdict == "wrong"
     assert "robot.toml" in findings["configuration"].text
     assert findings["data"].verdict != "wrong"
@@ -85,7 +85,7 @@ def test_a_database_of_a_newer_version_is_wrong(
     with closing(sqlite3.connect(settings.data.database)) as connection, connection:
         connection.execute("UPDATE alembic_version SET version_num = '9999'")
     assert doctor(settings, "--json") == 1
-    assert "newer version" in found(capsys)["database"].text
+    assert "newer version" in read_findings(capsys)["database"].text
 
 
 def test_it_changes_nothing(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
@@ -110,9 +110,9 @@ def test_a_user_who_may_not_read_the_data_is_told_who_may(
     finally:
         os.seteuid(user)
         folder.chmod(0o700)
-    said = capsys.readouterr().err
-    assert (status, said.count("\n")) == (1, 1)
-    assert "sudo mucat doctor" in said
+    output = capsys.readouterr().err
+    assert (status, output.count("\n")) == (1, 1)
+    assert "sudo mucat doctor" in output
 
 
 def test_a_server_that_is_starting_says_nothing_about_the_board(
@@ -121,7 +121,7 @@ def test_a_server_that_is_starting_says_nothing_about_the_board(
     settings.config.write_text(ROBOT.format(port="/dev/nowhere", web=web))
     PidFile(settings.data.runner).write(os.getpid(), "")
     doctor(settings, "--json")
-    board = found(capsys)["board"]
+    board = read_findings(capsys)["board"]
     assert (board.verdict, board.text) == ("look", "Not asked: the server does not answer.")
 
 
@@ -129,16 +129,17 @@ def test_an_address_that_is_taken_is_wrong(settings: Settings) -> None:
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))
         other.listen()
-        taken = replace(settings, port=other.getsockname()[1])
+        taken = settings.with_section(replace(settings.server, port=other.getsockname()[1]))
         machine = read_machine(taken, 0.0, thorough=False)
     assert "in use" in machine.address_problem
     assert read_machine(taken, 0.0, thorough=False).address_problem == ""
 
 
 def test_the_address_is_that_of_the_running_server(settings: Settings) -> None:
-    assert read_machine(settings, 0.0, thorough=False).address == f"{settings.host}:{settings.port}"
+    own = f"{settings.server.host}:{settings.server.port}"
+    assert read_machine(settings, 0.0, thorough=False).address == own
     settings.data.address.write_text("https://127.0.0.1:8123\n")
-    assert read_machine(settings, 0.0, thorough=False).address == f"{settings.host}:{settings.port}"
+    assert read_machine(settings, 0.0, thorough=False).address == own
     PidFile(settings.data.runner).write(os.getpid(), "")
     assert read_machine(settings, 0.0, thorough=False).address == "127.0.0.1:8123"
 
@@ -216,4 +217,17 @@ def test_a_library_that_cannot_be_imported_is_named(
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), *filter(None, sys.path)]))
     machine = read_machine(settings, 0.0)
     assert machine.broken_libraries == {"cv2": "libGL.so.1 is missing"}
-    assert "cv2: libGL.so.1 is missing" in {one.name: one for one in examine(machine)}["libraries"].text
+    assert (
+        "cv2: libGL.so.1 is missing"
+        in {finding.name: finding for finding in examine(machine)}["libraries"].text
+    )
+
+
+def test_the_weighed_reserve_is_carried_into_warm_fresh_water(settings: Settings, web: int) -> None:
+    robot = ROBOT.format(port="/dev/nowhere", web=web)
+    settings.config.write_text(robot)
+    assert read_machine(settings, 0, thorough=False).reserve == 0
+    settings.config.write_text(f"{robot}[craft]\nreserve = 30.0\ntemperature = 10.0\n")
+    machine = read_machine(settings, 0, thorough=False)
+    assert (machine.mass, machine.reserve) == (3.0, 30.0)
+    assert machine.warm_reserve == pytest.approx(22, abs=0.5)

@@ -6,10 +6,10 @@ from contextlib import contextmanager
 from hypothesis import HealthCheck
 
 from server.container import Container
+from server.driving.arbiter import ControlArbiter
+from server.driving.checked_commands import CheckedCommands
 from server.features.doors.commands import DoorCommands, DoorPilot
 from server.features.doors.subscriptions import DoorClient
-from server.features.lease.arbiter import ControlArbiter
-from server.features.operate.performing import CheckedCommands
 from server.http.audit import AuditLog
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import SHELL

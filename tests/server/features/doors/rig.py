@@ -3,7 +3,6 @@
 import asyncio
 import json
 import time
-from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
@@ -20,9 +19,8 @@ from server.features.doors import subscriptions
 from server.features.doors.config import DoorsConfig
 from server.features.doors.subscriptions import DoorClient
 from server.http.sign_in.access import Access
-from server.platform.settings import Settings
 from server.stream import socket_ends
-from tests.server.serving import Served, play
+from tests.server.serving import Served
 from tests.server.waiting import SECONDS
 
 OPEN = DoorsConfig(rosbridge=True, foxglove=True)
@@ -30,15 +28,10 @@ LIFE = 3600.0
 """s; a token's whole time, see `TokenTime`."""
 
 
-def play_open(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
-    """Run `scenario` with both doors open."""
-    play(settings.with_section(OPEN), scenario)
-
-
 async def make_token(served: Served, scope: str = "operate", name: str = "Program") -> str:
-    """A new token of this scope."""
-    said = {"name": name, "scope": scope}
-    answer = await served.api.post("/access/tokens", json=said)
+    """Return a new token of this scope."""
+    output = {"name": name, "scope": scope}
+    answer = await served.api.post("/access/tokens", json=output)
     answer.raise_for_status()
     return str(answer.json()["token"])
 
@@ -50,7 +43,7 @@ class TokenTime:
         self._date = time.time()
         self._waiting: list[asyncio.Timeout] = []
         devices = served.get(Access).devices
-        (self._device,) = (one for one in devices.all() if one.name == name)
+        (self._device,) = (device for device in devices.all() if device.name == name)
         self._ends = self._device.ends = self._date + LIFE
         monkeypatch.setattr(devices, "_utc", lambda: self._date)
         monkeypatch.setattr(socket_ends, "asyncio", SimpleNamespace(timeout=self._limit))
@@ -87,15 +80,15 @@ def hurry(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
 
 
 async def acts_of(served: Served) -> set[tuple[str, str, str]]:
-    """The audit log's entries: who, what, with which outcome."""
+    """Return the audit log's entries: who, what, with which outcome."""
     entries = (await served.api.get("/audit")).json()["entries"]
-    return {(one["who"], one["action"], one["outcome"]) for one in entries}
+    return {(entry["who"], entry["action"], entry["outcome"]) for entry in entries}
 
 
 def address(served: Served, door: str, token: str | None) -> str:
-    """The address of a door, with a token."""
+    """Return the address of a door, with a token."""
     query = f"?token={token}" if token else ""
-    return f"ws://127.0.0.1:{served.settings.port}/{door}{query}"
+    return f"ws://127.0.0.1:{served.settings.server.port}/{door}{query}"
 
 
 class RosbridgeClient:
@@ -110,17 +103,17 @@ class RosbridgeClient:
         await self.socket.send(json.dumps(operation))
 
     async def next(self, op: str, **fields: Any) -> dict[str, Any]:
-        """The next message of this op with these fields; others are passed over."""
+        """Return the next message of this op with these fields; others are passed over."""
         async with asyncio.timeout(SECONDS):
             async for message in self.socket:
-                found = json.loads(message)
-                if found["op"] == op and all(found.get(key) == one for key, one in fields.items()):
-                    assert isinstance(found, dict)
-                    return found
+                answer = json.loads(message)
+                if answer["op"] == op and all(answer.get(key) == value for key, value in fields.items()):
+                    assert isinstance(answer, dict)
+                    return answer
         raise AssertionError(f"the socket was closed before {op} came")
 
     async def call(self, service: str, args: Any = None) -> dict[str, Any]:
-        """Call a service; returns its whole answer."""
+        """Call a service; return its whole answer."""
         self._number += 1
         number = f"call:{self._number}"
         await self.say(op="call_service", service=service, id=number, args={} if args is None else args)
@@ -128,23 +121,23 @@ class RosbridgeClient:
 
 
 def open_rosbridge(served: Served, token: str | None, **options: Any) -> connect:
-    """A connection to the rosbridge door."""
+    """Return a connection to the rosbridge door."""
     return connect(address(served, "rosbridge", token), max_size=None, compression=None, **options)
 
 
 def rows_block(topic: str, first: int, *rows: tuple[float, Record]) -> Block:
-    """A block of these rows: time (s, steady clock) and record."""
+    """Return a block of these rows: time (s, steady clock) and record."""
     data = b"".join(row(time, record.to_bytes()) for time, record in rows)
     return Block.of(BY_NAME[topic], len(rows), first, data)
 
 
 def imu(attitude: tuple[float, float, float, float], **values: Any) -> packets.Imu:
-    """A sample of the IMU, at rest but for these values."""
+    """Return a sample of the IMU, at rest but for these values."""
     given: dict[str, Any] = {"time": 0, "rate": (0.0, 0.0, 0.0), "force": (0.0, 0.0, -9.8)}
     return packets.Imu(attitude=attitude, **(given | values))
 
 
 def truth(position: tuple[float, float, float], attitude: tuple[float, float, float, float]) -> Truth:
-    """The body at rest at this place (north, east, down)."""
+    """Return the body at rest at this place (north, east, down)."""
     still = (0.0, 0.0, 0.0)
     return Truth(position=position, attitude=attitude, velocity=still, rate=still, fins=(0.0, 0.0, 0.0, 0.0))

@@ -5,7 +5,7 @@ import json
 import os
 import queue
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Sequence
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from server.http.sign_in.tokens import digest
 from server.platform.authority import Authority
 from server.platform.settings import Settings
 from tests.server.features.doors.rig import make_token
-from tests.server.serving import Served, play
+from tests.server.serving import Served
 from tests.server.waiting import SECONDS
 
 OPEN = DoorsConfig(rosbridge=True, ros2=True, ros2_listen="tls/127.0.0.1:0")
@@ -30,17 +30,15 @@ PLACEHOLDER = "uint8 structure_needs_at_least_one_member"
 TRIGGER_DEFINITIONS = PLACEHOLDER, "bool success\nstring message"
 
 
-def play_ros2(
-    settings: Settings, scenario: Callable[[Served], Awaitable[None]], doors: DoorsConfig = OPEN
-) -> None:
-    """Run `scenario` with the doors for ROS 2 and rosbridge open."""
+def with_ros2(settings: Settings, doors: DoorsConfig = OPEN) -> Settings:
+    """Return these settings with the doors for ROS 2 and rosbridge open, and their authority."""
     settings = settings.with_section(doors)
     Authority(settings).prepare()
-    play(settings, scenario)
+    return settings
 
 
 async def issue(served: Served, scope: str = "operate", name: str = "Lab") -> Path:
-    """The folder of a new certificate for a program with this scope."""
+    """Return the folder of a new certificate for a program with this scope."""
     token = await make_token(served, scope, name)
     folder = served.settings.data.path.parent / name
     await asyncio.to_thread(Authority(served.settings).issue_program, digest(token), folder)
@@ -61,7 +59,7 @@ def tls_settings(served: Served, folder: Path) -> dict[str, Any]:
 
 
 def open_zenoh(values: dict[str, Any]) -> zenoh.Session:
-    """A plain session of Zenoh with these settings."""
+    """Return a plain session of Zenoh with these settings."""
     config = zenoh.Config()
     defaults = {"scouting/multicast/enabled": False, "timestamping/enabled": True}
     for key, value in (defaults | values).items():
@@ -97,7 +95,7 @@ class Ros2Peer:
         self._open.append(ROS2Subscriber(topic, kind, receive, domain_id=self._domain, qos=qos))
 
     def publisher(self, topic: str, kind: str) -> ROS2Publisher:
-        """A publisher of a topic that the robot subscribes to."""
+        """Return a publisher of a topic that the robot subscribes to."""
         self._define(kind)
         publisher = ROS2Publisher(topic, kind, domain_id=self._domain)
         self._open.append(publisher)
@@ -125,25 +123,25 @@ class Ros2Peer:
         return answer.success, answer.message
 
     async def next(self, topic: str) -> Any:
-        """The next message of a topic; others are passed over."""
+        """Return the next message of a topic; others are passed over."""
         while True:
-            found, message = await asyncio.to_thread(self.received.get, timeout=SECONDS)
-            if found == topic:
+            result, message = await asyncio.to_thread(self.received.get, timeout=SECONDS)
+            if result == topic:
                 return message
 
     def type(self, kind: str) -> Any:
-        """The class of a type that was defined."""
+        """Return the class of a type that was defined."""
         return ZenohSession.get_instance().store.types[kind]
 
     def tokens(self, pattern: str) -> list[str]:
-        """The liveliness tokens there are."""
+        """Return the liveliness tokens there are."""
         replies = ZenohSession.get_instance().liveliness.get(pattern)
-        return [str(one.ok.key_expr) for one in replies if one.ok is not None]
+        return [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
 
     def close(self) -> None:
         """End all of it."""
-        for one in reversed(self._open):
-            one.close()
+        for opened in reversed(self._open):
+            opened.close()
         ZenohSession.get_instance().close()
 
     def _define(self, kind: str) -> None:
@@ -173,7 +171,7 @@ def write_definitions(kind: str, folder: Path) -> None:
 
 
 def start_peer(messages: Path, values: dict[str, Any] | str, domain: int = 0) -> Ros2Peer:
-    """A program whose session has these settings, and whose types' definitions are put into `messages`."""
+    """Return a program with these settings of its session; definitions of types go into `messages`."""
     message_registry._registry = None
     message_registry.get_registry(str(messages))
     with overriding(values):
@@ -193,18 +191,18 @@ async def ros2_peer(served: Served, values: dict[str, Any] | str, domain: int = 
 
 
 async def doors_of(served: Served) -> Sequence[dict[str, Any]]:
-    """The programs at the door, as System lists them."""
-    (found,) = (one for one in (await served.api.get("/doors")).json() if one["name"] == "ros2")
-    clients: list[dict[str, Any]] = found["clients"]
+    """Return the programs at the door, as System lists them."""
+    (answer,) = (door for door in (await served.api.get("/doors")).json() if door["name"] == "ros2")
+    clients: list[dict[str, Any]] = answer["clients"]
     return clients
 
 
 def subscribed(served: Served) -> set[str]:
-    """The topics that programs at the door subscribe to."""
+    """Return the topics that programs at the door subscribe to."""
     return {
-        one.channel.name
+        subscription.channel.name
         for client in served.get(Doors).doors["ros2"].clients
-        for one in client.subscriptions.values()
+        for subscription in client.subscriptions.values()
     }
 
 

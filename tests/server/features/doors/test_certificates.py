@@ -81,7 +81,7 @@ def test_the_simulator_swims_the_craft_of_the_file(
     file.write_text("title = 'Two'\n[craft]\nmass = 2.5\n")
     started: list[list[str]] = []
     monkeypatch.setattr(subprocess, "Popen", started.append)
-    monkeypatch.setattr(os, "execv", lambda _, words: started.append(words))
+    monkeypatch.setattr(os, "execv", lambda _, message: started.append(message))
     there = ["--connect", "tls/192.0.2.7:7447", "--certificate", str(tmp_path / "lab")]
     main(["simulator", *there, "--craft", str(file)])
     main(["simulator", *there])

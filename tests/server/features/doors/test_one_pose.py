@@ -22,16 +22,18 @@ import pytest
 from mcap.reader import make_reader
 
 from mucat import FolderSessions, Robot, Sessions
+from robot_runtime.config import RobotConfig
 from robot_runtime.contract.packets import Depth
+from robot_runtime.contract.topics import BY_NAME
 from server.features.doors.config import DoorsConfig
 from server.features.exports.formats import KINDS
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
-from server.features.sessions.session import find_row
 from server.health.monitor import HealthMonitor
 from server.platform.authority import Authority
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Reader
+from server.recording.session import find_row
 from tests.server.blocks import state_block
 from tests.server.features.doors import ros2_rig
 from tests.server.features.doors.rig import (
@@ -79,9 +81,9 @@ WAYS = (
 )
 
 
-def multiply(one: Quaternion, other: Quaternion) -> Quaternion:
+def multiply(first: Quaternion, other: Quaternion) -> Quaternion:
     """Hamilton's product."""
-    a, b, c, d = one
+    a, b, c, d = first
     e, f, g, h = other
     return (
         a * e - b * f - c * g - d * h,
@@ -92,7 +94,7 @@ def multiply(one: Quaternion, other: Quaternion) -> Quaternion:
 
 
 def turn(axis: int, angle: float) -> Quaternion:
-    """A rotation about one axis."""
+    """Return a rotation about one axis."""
     values = [math.cos(angle / 2), 0.0, 0.0, 0.0]
     values[1 + axis] = math.sin(angle / 2)
     return (values[0], values[1], values[2], values[3])
@@ -105,7 +107,7 @@ def attitude_of(pose: Pose) -> Quaternion:
 
 
 def pose_of(attitude: Sequence[float], depth: float) -> Pose:
-    """The pose of an attitude (w, x, y, z) in our axes."""
+    """Return the pose of an attitude (w, x, y, z) in our axes."""
     w, x, y, z = attitude
     return (
         math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
@@ -116,77 +118,83 @@ def pose_of(attitude: Sequence[float], depth: float) -> Pose:
 
 
 def ros_pose(orientation: dict[str, float], depth: float) -> Pose:
-    """The pose of a message in ROS's axes: there a nose up and a turn to the right are negative."""
+    """Return the pose of a message in ROS's axes: there a nose up and a turn to the right are negative."""
     roll, pitch, yaw, _ = pose_of([orientation[axis] for axis in "wxyz"], 0.0)
     return roll, -pitch, -yaw, depth
 
 
 def foxglove_pose(message: dict[str, Any]) -> Pose:
-    """The pose of a foxglove.PoseInFrame in the frame `ned`."""
+    """Return the pose of a foxglove.PoseInFrame in the frame `ned`."""
     assert message["frame_id"] == "ned"
     pose = message["pose"]
     return pose_of([pose["orientation"][axis] for axis in "wxyz"], pose["position"]["z"])
 
 
 def foxglove_transform(message: dict[str, Any]) -> Pose:
-    """The pose of a foxglove.FrameTransform from the frame `ned`."""
+    """Return the pose of a foxglove.FrameTransform from the frame `ned`."""
     assert (message["parent_frame_id"], message["child_frame_id"]) == ("ned", "turtle")
     return pose_of([message["rotation"][axis] for axis in "wxyz"], message["translation"]["z"])
 
 
 def frame_poses(imus: pandas.DataFrame, depths: pandas.DataFrame) -> list[Pose]:
-    """The poses in two tables."""
-    attitudes = imus[[f"attitude_{place}" for place in range(4)]].to_numpy().tolist()
-    return [pose_of(one, depth) for one, depth in zip(attitudes, depths["depth"], strict=True)]
+    """Return the poses in two tables."""
+    attitudes = imus[[f"attitude_{position}" for position in range(4)]].to_numpy().tolist()
+    return [pose_of(attitude, depth) for attitude, depth in zip(attitudes, depths["depth"], strict=True)]
 
 
-def ros_poses(door: str, found: dict[str, list[Any]]) -> dict[str, list[Pose]]:
-    """The poses by ROS's messages of these topics."""
-    measured = zip(found["/imu/data"], found["/depth"], strict=True)
-    odometry = [one["pose"]["pose"] for one in found["/truth/odometry"]]
-    poses = [one["pose"] for one in found["/pose"]]
-    transforms = [one["transforms"][0]["transform"] for one in found["/tf"]]
+def ros_poses(door: str, result: dict[str, list[Any]]) -> dict[str, list[Pose]]:
+    """Return the poses by ROS's messages of these topics."""
+    measured = zip(result["/imu/data"], result["/depth"], strict=True)
+    odometry = [message["pose"]["pose"] for message in result["/truth/odometry"]]
+    poses = [message["pose"] for message in result["/pose"]]
+    transforms = [message["transforms"][0]["transform"] for message in result["/tf"]]
     return {
         f"{door}: /imu/data and /depth": [
-            ros_pose(one["orientation"], depth["data"]) for one, depth in measured
+            ros_pose(attitude["orientation"], depth["data"]) for attitude, depth in measured
         ],
-        f"{door}: /truth/odometry": [ros_pose(one["orientation"], -one["position"]["z"]) for one in odometry],
-        f"{door}: /pose": [ros_pose(one["orientation"], -one["position"]["z"]) for one in poses],
-        f"{door}: /tf": [ros_pose(one["rotation"], -one["translation"]["z"]) for one in transforms],
+        f"{door}: /truth/odometry": [
+            ros_pose(message["orientation"], -message["position"]["z"]) for message in odometry
+        ],
+        f"{door}: /pose": [ros_pose(pose["orientation"], -pose["position"]["z"]) for pose in poses],
+        f"{door}: /tf": [
+            ros_pose(transform["rotation"], -transform["translation"]["z"]) for transform in transforms
+        ],
     }
 
 
-def is_whole(found: dict[Any, list[Any]]) -> bool:
-    """True where all messages have come."""
-    return all(len(messages) >= len(TRUTH) for messages in found.values())
+def is_whole(result: dict[Any, list[Any]]) -> bool:
+    """Return True where all messages have come."""
+    return all(len(messages) >= len(TRUTH) for messages in result.values())
 
 
 async def from_rosbridge(client: RosbridgeClient) -> dict[str, list[Pose]]:
-    found: dict[str, list[Any]] = {topic: [] for topic in ROS_TOPICS}
-    while not is_whole(found):
+    results: dict[str, list[Any]] = {topic: [] for topic in ROS_TOPICS}
+    while not is_whole(results):
         message = await client.next("publish")
-        found[message["topic"]].append(message["msg"])
-    return ros_poses("rosbridge", found)
+        results[message["topic"]].append(message["msg"])
+    return ros_poses("rosbridge", results)
 
 
 async def from_ros2(peer: ros2_rig.Ros2Peer) -> dict[str, list[Pose]]:
-    found: dict[str, list[Any]] = {topic: [] for topic in ROS_TOPICS}
-    while not is_whole(found):
+    results: dict[str, list[Any]] = {topic: [] for topic in ROS_TOPICS}
+    while not is_whole(results):
         topic, message = await asyncio.to_thread(peer.received.get, timeout=SECONDS)
-        found[topic].append(asdict(message))
-    return ros_poses("ROS 2", found)
+        results[topic].append(asdict(message))
+    return ros_poses("ROS 2", results)
 
 
 async def from_foxglove(socket: Any, numbers: dict[str, int]) -> dict[str, list[Pose]]:
-    found: dict[int, list[Any]] = {number: [] for number in numbers.values()}
-    while not is_whole(found):
+    results: dict[int, list[Any]] = {number: [] for number in numbers.values()}
+    while not is_whole(results):
         number, _, message = await next_message(socket)
-        found[number].append(message)
-    measured = zip(found[numbers["/imu"]], found[numbers["/depth"]], strict=True)
+        results[number].append(message)
+    measured = zip(results[numbers["/imu"]], results[numbers["/depth"]], strict=True)
     return {
-        "Foxglove: /imu and /depth": [pose_of(one["attitude"], depth["depth"]) for one, depth in measured],
-        "Foxglove: /pose": [*map(foxglove_pose, found[numbers["/pose"]])],
-        "Foxglove: /tf": [*map(foxglove_transform, found[numbers["/tf"]])],
+        "Foxglove: /imu and /depth": [
+            pose_of(message["attitude"], depth["depth"]) for message, depth in measured
+        ],
+        "Foxglove: /pose": [*map(foxglove_pose, results[numbers["/pose"]])],
+        "Foxglove: /tf": [*map(foxglove_transform, results[numbers["/tf"]])],
     }
 
 
@@ -202,19 +210,21 @@ async def from_python(robot: Robot, reading: asyncio.Event) -> dict[str, list[Po
             depths.append(sample["depth"])
         if len(attitudes) == len(depths) == len(TRUTH):
             break
-    return {"Python: live": [pose_of(one, depth) for one, depth in zip(attitudes, depths, strict=True)]}
+    return {
+        "Python: live": [pose_of(attitude, depth) for attitude, depth in zip(attitudes, depths, strict=True)]
+    }
 
 
 def from_files(served: Served, token: str, session: int, folder: Path) -> dict[str, list[Pose]]:
-    """The poses of a session by the Python package, and of the files of two exports."""
-    sessions = Sessions(f"http://127.0.0.1:{served.settings.port}", token)
-    found = {}
+    """Return the poses of a session by the Python package, and of the files of two exports."""
+    sessions = Sessions(f"http://127.0.0.1:{served.settings.server.port}", token)
+    results = {}
     for way, tables in (
         ("Python: session of the server", sessions.load(session)),
         ("Python: data folder", FolderSessions(served.settings.data.path).load(session)),
     ):
-        found[way] = frame_poses(tables.pandas("imu"), tables.pandas("depth"))
-    return found | from_exports(served.settings, session, folder)
+        results[way] = frame_poses(tables.pandas("imu"), tables.pandas("depth"))
+    return results | from_exports(served.settings, session, folder)
 
 
 def from_exports(settings: Settings, session: int, folder: Path) -> dict[str, list[Pose]]:
@@ -234,19 +244,21 @@ def from_exports(settings: Settings, session: int, folder: Path) -> dict[str, li
     measured = zip(messages["/imu"], messages["/depth"], strict=True)
     return {
         "CSV": frame_poses(imus, depths),
-        "MCAP: /imu and /depth": [pose_of(one["attitude"], depth["depth"]) for one, depth in measured],
+        "MCAP: /imu and /depth": [
+            pose_of(message["attitude"], depth["depth"]) for message, depth in measured
+        ],
         "MCAP: /pose": [*map(foxglove_pose, messages["/pose"])],
     }
 
 
-def has_come(served: Served, topic: str, place: int) -> bool:
-    """True where the sample of this place has come."""
-    newest = served.get(HealthMonitor)._newest.get(topic)
-    return newest is not None and newest[1].first == place
+def has_come(served: Served, topic: str, position: int) -> bool:
+    """Return True where the sample of this place has come."""
+    newest = served.get(HealthMonitor)._newest.get(BY_NAME[topic])
+    return newest is not None and newest[1].first == position
 
 
 async def dive(served: Served, folder: Path) -> dict[str, list[Pose]]:
-    """Record the poses while a program is at each door; returns what each of them got."""
+    """Record the poses while a program is at each door; return what each of them got."""
     token = await make_token(served)
     async with AsyncExitStack() as stack:
         client = RosbridgeClient(await stack.enter_async_context(open_rosbridge(served, token)))
@@ -260,7 +272,7 @@ async def dive(served: Served, folder: Path) -> dict[str, list[Pose]]:
         socket = await stack.enter_async_context(open_foxglove(served, token))
         numbers = await subscribe(socket, "/imu", "/depth", "/pose", "/tf")
         reading = asyncio.Event()
-        robot = Robot(f"http://127.0.0.1:{served.settings.port}", token)
+        robot = Robot(f"http://127.0.0.1:{served.settings.server.port}", token)
         programs = [
             asyncio.create_task(work)
             for work in (
@@ -277,24 +289,24 @@ async def dive(served: Served, folder: Path) -> dict[str, list[Pose]]:
             served.runtime.publish(state_block(next(states)))
             await asyncio.sleep(0.02)
         now = served.container.clock.now()
-        for place, pose in enumerate(TRUTH):
-            time, attitude = now + place / 5, attitude_of(pose)
+        for index, pose in enumerate(TRUTH):
+            time, attitude = now + index / 5, attitude_of(pose)
             depth = Depth(time=0, depth=pose[3], pressure=101_325, temperature=18.0)
             # The pose has the newest position when an attitude comes.
             before = time - 0.01
-            served.runtime.publish(rows_block("truth", place, (before, truth((1.0, 2.0, pose[3]), attitude))))
-            served.runtime.publish(rows_block("depth", place, (before, depth)))
-            while not has_come(served, "truth", place):
+            served.runtime.publish(rows_block("truth", index, (before, truth((1.0, 2.0, pose[3]), attitude))))
+            served.runtime.publish(rows_block("depth", index, (before, depth)))
+            while not has_come(served, "truth", index):
                 # A message of the simulator waits in the server for the robot's next one.
                 served.runtime.publish(state_block(next(states)))
                 await asyncio.sleep(0.02)
-            served.runtime.publish(rows_block("imu", place, (time, imu(attitude))))
-            await until(partial(has_come, served, "imu", place), "the attitude")
-        found: dict[str, list[Pose]] = {}
+            served.runtime.publish(rows_block("imu", index, (time, imu(attitude))))
+            await until(partial(has_come, served, "imu", index), "the attitude")
+        results: dict[str, list[Pose]] = {}
         for gathered in await asyncio.gather(*programs):
-            found |= gathered
+            results |= gathered
     (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
-    return found | await asyncio.to_thread(from_files, served, token, session, folder)
+    return results | await asyncio.to_thread(from_files, served, token, session, folder)
 
 
 @pytest.fixture(scope="module")
@@ -307,7 +319,9 @@ def poses() -> dict[str, list[Pose]]:
         config.write_text('[robot]\nname = "tested"\n', encoding="utf-8")
 
         doors = replace(ros2_rig.OPEN, foxglove=True)
-        settings = Settings(data=folder, config=config, robot="tested", sections={DoorsConfig: doors})
+        settings = Settings(
+            data=folder, config=config, robot=RobotConfig(name="tested"), sections={DoorsConfig: doors}
+        )
         Authority(settings).prepare()
 
         async def perform() -> dict[str, list[Pose]]:
@@ -322,6 +336,6 @@ def test_every_way_gives_the_roll_pitch_yaw_and_depth_of_the_truth(
     poses: dict[str, list[Pose]], way: str
 ) -> None:
     assert len(poses[way]) == len(TRUTH)
-    for found, true in zip(poses[way], TRUTH, strict=True):
+    for result, true in zip(poses[way], TRUTH, strict=True):
         # The wire has 15 bits of a quaternion's number, and depth in mm.
-        assert found == pytest.approx(true, abs=3e-4)
+        assert result == pytest.approx(true, abs=3e-4)

@@ -1,6 +1,5 @@
 """Anything at all as a message or call of a ROS 2 program: it is used, or refused and counted."""
 
-import asyncio
 from collections.abc import Coroutine
 from contextlib import suppress
 from struct import pack
@@ -33,47 +32,41 @@ PAYLOADS = (
 
 
 @settings(max_examples=EXAMPLES, suppress_health_check=CHECKS)
-@given(place=st.integers(0), typed=st.booleans(), payload=PAYLOADS, attachment=st.binary(max_size=40))
-def test_the_door_uses_or_refuses_anything(
-    container: Container, place: int, typed: bool, payload: bytes | None, attachment: bytes
+@given(position=st.integers(0), typed=st.booleans(), payload=PAYLOADS, attachment=st.binary(max_size=40))
+async def test_the_door_uses_or_refuses_anything(
+    container: Container, position: int, typed: bool, payload: bytes | None, attachment: bytes
 ) -> None:
     """Nobody has control, so that driving is refused, too."""
-    endpoints = [one for one in ros2_endpoints(standard_channels()) if one.kind != "MP"]
-    endpoint = endpoints[place % len(endpoints)]
+    endpoints = [endpoint for endpoint in ros2_endpoints(standard_channels()) if endpoint.kind != "MP"]
+    endpoint = endpoints[position % len(endpoints)]
     query: Any = object() if endpoint.kind == "SS" else None
 
-    async def run() -> None:
-        async def writable() -> None:
-            pass
+    async def writable() -> None:
+        pass
 
-        with join_door(container, "ros2") as (client, pilot, commands):
-            session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
-            calls: list[Coroutine[Any, Any, None]] = []
-            session.begin = lambda call, **_: calls.append(call)  # type: ignore[method-assign]
-            session.act(Incoming(endpoint, typed, payload, attachment, query), None)  # type: ignore[arg-type]
-            assert client.refused == (not calls)
-            for call in calls:
-                call.close()
-
-    asyncio.run(run())
+    with join_door(container, "ros2") as (client, pilot, commands):
+        session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
+        calls: list[Coroutine[Any, Any, None]] = []
+        session.begin = lambda call, **_: calls.append(call)  # type: ignore[method-assign]
+        session.act(Incoming(endpoint, typed, payload, attachment, query), None)  # type: ignore[arg-type]
+        assert client.refused == (not calls)
+        for call in calls:
+            call.close()
 
 
-def test_the_bytes_of_a_twist_drive_only_with_its_type(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_bytes_of_a_twist_drive_only_with_its_type(monkeypatch: pytest.MonkeyPatch) -> None:
     driven: list[list[float]] = []
     monkeypatch.setattr(DoorCommands, "__init__", lambda _: None)
     monkeypatch.setattr(DoorCommands, "note_refusal", lambda *_: None)
     monkeypatch.setattr(DoorCommands, "drive", lambda _, __, linear, ___: driven.append(linear))
-    (twist,) = (one for one in ros2_endpoints(standard_channels()) if one.name == "/cmd_vel")
+    (twist,) = (endpoint for endpoint in ros2_endpoints(standard_channels()) if endpoint.name == "/cmd_vel")
     payload = b"\0\1\0\0" + pack("<6d", 1, 2, 3, 4, 5, 6)
 
-    async def run() -> None:
-        doors, client = MagicMock(), MagicMock(refused=0)
-        session = Ros2Session(client, MagicMock(), doors, DoorCommands(), MagicMock())  # type: ignore[call-arg]
-        for typed in (False, True):
-            session.act(Incoming(twist, typed, payload, b""), MagicMock())
-        assert (client.refused, driven) == (1, [[1, 2, 3]])
-
-    asyncio.run(run())
+    doors, client = MagicMock(), MagicMock(refused=0)
+    session = Ros2Session(client, MagicMock(), doors, DoorCommands(), MagicMock())  # type: ignore[call-arg]
+    for typed in (False, True):
+        session.act(Incoming(twist, typed, payload, b""), MagicMock())
+    assert (client.refused, driven) == (1, [[1, 2, 3]])
 
 
 @settings(max_examples=1000)
@@ -87,8 +80,8 @@ def test_any_bytes_are_a_message_or_none(kind: str, data: bytes) -> None:
 @given(data=st.binary(max_size=40) | st.binary(min_size=33, max_size=33))
 def test_any_bytes_are_an_attachment_or_none(data: bytes) -> None:
     try:
-        found = Attachment.from_bytes(data)
+        result = Attachment.from_bytes(data)
     except UnusableMessageError:
         assert len(data) != 33 or data[16] != 16
     else:
-        assert found.to_bytes() == data
+        assert result.to_bytes() == data

@@ -30,53 +30,55 @@ from tests.server.features.doors.ros2_rig import (
     doors_of,
     issue,
     open_zenoh,
-    play_ros2,
     refused,
     ros2_peer,
     subscribed,
     tls_settings,
+    with_ros2,
 )
-from tests.server.serving import Served
+from tests.server.serving import Served, serve
 from tests.server.waiting import SECONDS, until
 
 
-def test_what_is_not_valid_is_refused_and_counted(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        folder = await issue(served)
-        session = await asyncio.to_thread(open_zenoh, {"mode": "client"} | tls_settings(served, folder))
-        try:
-            names = ("%cmd_vel", "%mucat%arm")
-            twist, arm = [await asyncio.to_thread(key_of, session, name) for name in names]
-            cut, filled = b"\0\1\0\0", b"\0\1\0\0" + b"\xff" * 48
-            bad = [b"", b"\0", cut, filled, b"\7\7\0\0" + bytes(48), bytes(5000), bytes(10**6)]
-            for payload in bad:
-                await put(session, twist, payload)
-            await put(session, "0/cmd_vel/geometry_msgs::msg::dds_::TwistStamped_/RIHS01_0", bytes(60))
-            await until(lambda: refused(served) >= len(bad), "the refusals")
-            for payload in bad[:4]:
-                assert not await asyncio.to_thread(answers, session, arm, payload)
-            assert served.runtime.driven == []
-            await put(session, "0/mucat/stop/std_msgs::msg::dds_::Bool_/RIHS01_0", b"")
-            await until(lambda: ("stop", {}) in served.runtime.asked, "STOP by whatever message")
-            stop = await asyncio.to_thread(key_of, session, "%mucat%stop", "SS")
-            await asyncio.to_thread(answers, session, stop, bytes(PAYLOAD_MAX + 1))
-            asked = [name for name, _ in served.runtime.asked if name != "there"]
-            assert asked == ["stop", "stop"]
-            await until(lambda: refused(served) >= len(bad) + 4, "the calls to be refused")
-            (client,) = await doors_of(served)
-            assert client["refused"] >= len(bad) + 4
-        finally:
-            await asyncio.to_thread(session.close)
-
-    play_ros2(settings, scenario)
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    return with_ros2(settings)
 
 
-def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
+async def test_what_is_not_valid_is_refused_and_counted(served: Served) -> None:
+    folder = await issue(served)
+    session = await asyncio.to_thread(open_zenoh, {"mode": "client"} | tls_settings(served, folder))
+    try:
+        names = ("%cmd_vel", "%mucat%arm")
+        twist, arm = [await asyncio.to_thread(key_of, session, name) for name in names]
+        cut, filled = b"\0\1\0\0", b"\0\1\0\0" + b"\xff" * 48
+        bad = [b"", b"\0", cut, filled, b"\7\7\0\0" + bytes(48), bytes(5000), bytes(10**6)]
+        for payload in bad:
+            await put(session, twist, payload)
+        await put(session, "0/cmd_vel/geometry_msgs::msg::dds_::TwistStamped_/RIHS01_0", bytes(60))
+        await until(lambda: refused(served) >= len(bad), "the refusals")
+        for payload in bad[:4]:
+            assert not await asyncio.to_thread(answers, session, arm, payload)
+        assert served.runtime.driven == []
+        await put(session, "0/mucat/stop/std_msgs::msg::dds_::Bool_/RIHS01_0", b"")
+        await until(lambda: ("stop", {}) in served.runtime.asked, "STOP by whatever message")
+        stop = await asyncio.to_thread(key_of, session, "%mucat%stop", "SS")
+        await asyncio.to_thread(answers, session, stop, bytes(PAYLOAD_MAX + 1))
+        asked = [name for name, _ in served.runtime.asked if name != "there"]
+        assert asked == ["stop", "stop"]
+        await until(lambda: refused(served) >= len(bad) + 4, "the calls to be refused")
+        (client,) = await doors_of(served)
+        assert client["refused"] >= len(bad) + 4
+    finally:
+        await asyncio.to_thread(session.close)
+
+
+async def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     hurry(monkeypatch, "Lab")
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         folder, token = await issue(served, "read"), await make_token(served, "read", "Page")
         values = tls_settings(served, folder)
         reading = asyncio.Event()
@@ -104,53 +106,48 @@ def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
                 await asyncio.sleep(0)
             reading.set()
 
-    play_ros2(settings, scenario)
 
+async def test_a_flood_of_a_program_is_slowed_down_and_stop_passes(served: Served) -> None:
+    folder, token = await issue(served), await make_token(served, "read", "Page")
+    session = await asyncio.to_thread(open_zenoh, {"mode": "client"} | tls_settings(served, folder))
+    flooding = True
 
-def test_a_flood_of_a_program_is_slowed_down_and_stop_passes(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        folder, token = await issue(served), await make_token(served, "read", "Page")
-        session = await asyncio.to_thread(open_zenoh, {"mode": "client"} | tls_settings(served, folder))
-        flooding = True
+    def flood() -> None:
+        publisher = session.declare_publisher("0/cmd_vel/a/b")
+        while flooding:
+            publisher.put(bytes(40))
 
-        def flood() -> None:
-            publisher = session.declare_publisher("0/cmd_vel/a/b")
-            while flooding:
-                publisher.put(bytes(40))
-
-        try:
-            async with open_rosbridge(served, token) as socket:
-                page = RosbridgeClient(socket)
-                work = asyncio.create_task(asyncio.to_thread(flood))
-                await until(lambda: refused(served) > 1000, "the flood")
-                for _ in range(20):
-                    assert (await page.call("/mucat/stop"))["result"] is True
-                flooding = False
-                await work
-        finally:
+    try:
+        async with open_rosbridge(served, token) as socket:
+            page = RosbridgeClient(socket)
+            work = asyncio.create_task(asyncio.to_thread(flood))
+            await until(lambda: refused(served) > 1000, "the flood")
+            for _ in range(20):
+                assert (await page.call("/mucat/stop"))["result"] is True
             flooding = False
-            # Megabytes may lie before the door, which reads them slowly; Zenoh waits 10 s to say goodbye.
-            with suppress(zenoh.ZError):
-                await asyncio.to_thread(session.close)
+            await work
+    finally:
+        flooding = False
+        # Megabytes may lie before the door, which reads them slowly; Zenoh waits 10 s to say goodbye.
+        with suppress(zenoh.ZError):
+            await asyncio.to_thread(session.close)
 
-    play_ros2(settings, scenario)
 
-
-def test_of_many_connections_at_once_no_more_than_the_limit_are_let_in(
+async def test_of_many_connections_at_once_no_more_than_the_limit_are_let_in(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ros2_door, "HANDSHAKE_SECONDS", 10 * SECONDS)
     refused_count = 50
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         with ExitStack() as stack:
             # They wait in the listener's backlog, since the door does not run meanwhile.
             connections = [
                 stack.enter_context(socket.create_connection(served.get(Ros2Door).address))
                 for _ in range(ros2_door.STRANGERS_MAX + refused_count)
             ]
-            for one in connections:
-                one.setblocking(False)
+            for connection in connections:
+                connection.setblocking(False)
 
             def ended() -> int:
                 return len(select.select(connections, [], [], 0)[0])
@@ -159,47 +156,39 @@ def test_of_many_connections_at_once_no_more_than_the_limit_are_let_in(
             assert ended() == refused_count
             assert served.get(Doors).doors["ros2"].strangers == ros2_door.STRANGERS_MAX
 
-    play_ros2(settings, scenario)
+
+async def test_a_subscriber_that_comes_while_its_program_is_disconnected_gets_nothing(served: Served) -> None:
+    container = served.container
+    door = container.services.get(Doors).doors["ros2"]
+    with join_door(container, "ros2") as (client, pilot, commands):
+
+        async def writable() -> None:
+            pass
+
+        session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
+        (topic, *_) = door.publisher.channels
+        session.match(Endpoint("MP", topic, "", "", 1, False), True)
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+        assert door.publisher.sources() == frozenset()
 
 
-def test_a_subscriber_that_comes_while_its_program_is_disconnected_gets_nothing(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        container = served.container
-        door = container.services.get(Doors).doors["ros2"]
-        with join_door(container, "ros2") as (client, pilot, commands):
+async def test_of_a_flood_of_stops_as_many_wait_as_of_other_messages(container: Container) -> None:
+    with join_door(container, "ros2") as (client, pilot, commands):
 
-            async def writable() -> None:
-                pass
+        async def writable() -> None:
+            pass
 
-            session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
-            (topic, *_) = door.publisher.channels
-            session.match(Endpoint("MP", topic, "", "", 1, False), True)
-            await asyncio.sleep(0)
-            await asyncio.sleep(0)
-            assert door.publisher.sources() == frozenset()
-
-    play_ros2(settings, scenario)
-
-
-def test_of_a_flood_of_stops_as_many_wait_as_of_other_messages(container: Container) -> None:
-    async def scenario() -> None:
-        with join_door(container, "ros2") as (client, pilot, commands):
-
-            async def writable() -> None:
-                pass
-
-            session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
-            drive, stop = (Endpoint("MS", name, "", "", 1, False) for name in (CMD_VEL, STOP_TOPIC))
-            for _ in range(1000):
-                session.receive(Incoming(drive, True, b"", b""))
-            for _ in range(1000):
-                session.receive(Incoming(stop, True, b"", b""))
-            await asyncio.sleep(0)
-            waiting = [session._waiting.get_nowait() for _ in range(session._waiting.qsize())]
-            assert [one.endpoint for one in waiting] == [drive] * WAITING_MAX + [stop] * WAITING_MAX
-            assert client.refused == 2 * (1000 - WAITING_MAX)
-
-    asyncio.run(scenario())
+        session = Ros2Session(client, pilot, container.services.get(Doors), commands, writable)
+        drive, stop = (Endpoint("MS", name, "", "", 1, False) for name in (CMD_VEL, STOP_TOPIC))
+        for _ in range(1000):
+            session.receive(Incoming(drive, True, b"", b""))
+        for _ in range(1000):
+            session.receive(Incoming(stop, True, b"", b""))
+        await asyncio.sleep(0)
+        waiting = [session._waiting.get_nowait() for _ in range(session._waiting.qsize())]
+        assert [call.endpoint for call in waiting] == [drive] * WAITING_MAX + [stop] * WAITING_MAX
+        assert client.refused == 2 * (1000 - WAITING_MAX)
 
 
 def test_a_message_that_is_too_large_is_not_read() -> None:
@@ -209,7 +198,7 @@ def test_a_message_that_is_too_large_is_not_read() -> None:
 
 
 def key_of(session: zenoh.Session, name: str, kind: str = "*") -> str:
-    """The key of the robot's topic or service with this name, by its token."""
+    """Return the key of the robot's topic or service with this name, by its token."""
     pattern = f"@ros2_lv/0/*/*/*/{kind}/%/%/mucat/{name}/*/*/*"
     (reply,) = session.liveliness().get(pattern)
     assert reply.ok is not None
@@ -223,9 +212,9 @@ async def put(session: zenoh.Session, key: str, payload: bytes) -> None:
 
 
 def answers(session: zenoh.Session, key: str, payload: bytes) -> list[bytes]:
-    """The answers to a call."""
+    """Return the answers to a call."""
     replies = session.get(key, payload=payload, timeout=1.0)
-    return [one.ok.payload.to_bytes() for one in replies if one.ok is not None]
+    return [reply.ok.payload.to_bytes() for reply in replies if reply.ok is not None]
 
 
 async def pass_on(
@@ -247,5 +236,5 @@ async def pass_on(
     try:
         await asyncio.gather(pump(reader, back, None), pump(there, writer, reading))
     finally:
-        for one in (back, writer):
-            one.transport.abort()
+        for stream in (back, writer):
+            stream.transport.abort()

@@ -15,7 +15,7 @@ from server.features.doors.ros_channels import standard_channels
 from server.features.doors.twist import TAKEN_IN
 from tests.server.features.doors.ros2_rig import TRIGGER_DEFINITIONS, write_definitions
 
-KINDS = sorted({one.type for one in standard_channels()} | {*TAKEN_IN.values()})
+KINDS = sorted({channel.type for channel in standard_channels()} | {*TAKEN_IN.values()})
 OF_ROS = {
     "diagnostic_msgs/msg/DiagnosticArray": (
         "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"
@@ -62,13 +62,15 @@ def test_keys_and_tokens_are_those_of_an_independent_program(namespace: str) -> 
     node = NodeEntity(7, SESSION, 0, "mucat", namespace or "/")
     assert names.node_token(SESSION) == node_liveliness_keyexpr(node)
     kinds = {"MP": EntityKind.PUBLISHER, "MS": EntityKind.SUBSCRIPTION, "SS": EntityKind.SERVICE}
-    for number, one in enumerate(ros2_endpoints(standard_channels()), 1):
-        durability = QosDurability.TRANSIENT_LOCAL if one.latched else QosDurability.VOLATILE
-        qos = QosProfile(durability=durability, history_depth=one.depth).encode()
-        full = namespace + one.name
-        entity = EndpointEntity(node, number, kinds[one.kind], full, one.wire_type, one.hash, qos)
-        assert names.token(SESSION, number, one) == endpoint_liveliness_keyexpr(entity)
-        assert names.key(one) == topic_keyexpr(7, full, one.wire_type, one.hash)
+    for number, endpoint in enumerate(ros2_endpoints(standard_channels()), 1):
+        durability = QosDurability.TRANSIENT_LOCAL if endpoint.latched else QosDurability.VOLATILE
+        qos = QosProfile(durability=durability, history_depth=endpoint.depth).encode()
+        full = namespace + endpoint.name
+        entity = EndpointEntity(
+            node, number, kinds[endpoint.kind], full, endpoint.wire_type, endpoint.hash, qos
+        )
+        assert names.token(SESSION, number, endpoint) == endpoint_liveliness_keyexpr(entity)
+        assert names.key(endpoint) == topic_keyexpr(7, full, endpoint.wire_type, endpoint.hash)
 
 
 def test_a_type_has_the_name_of_dds() -> None:

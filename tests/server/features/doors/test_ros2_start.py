@@ -7,7 +7,7 @@ import pytest
 
 from robot_runtime.contract.limits import ConfigError
 from server.features.doors.config import DoorsConfig
-from server.features.doors.ros2_door import check_ros2
+from server.features.doors.ros2_certificates import check_ros2
 from server.features.doors.ros2_messages import NO_ROSBAGS
 from server.platform.authority import Authority
 from server.platform.settings import Settings, SetupError
@@ -52,5 +52,9 @@ def test_the_endpoint_may_have_any_address() -> None:
 
 def test_other_users_of_this_computer_reach_neither_sockets_nor_keys(settings: Settings) -> None:
     Authority(settings).prepare()
-    for place in (settings.data.run, settings.data.zenoh / "key.pem", settings.data.zenoh / "authority.key"):
-        assert not place.stat().st_mode & (stat.S_IRWXG | stat.S_IRWXO), place
+    for position in (
+        settings.data.run,
+        settings.data.zenoh / "key.pem",
+        settings.data.zenoh / "authority.key",
+    ):
+        assert not position.stat().st_mode & (stat.S_IRWXG | stat.S_IRWXO), position

@@ -29,53 +29,56 @@ from tests.server.features.doors.ros2_rig import (
     Ros2Peer,
     doors_of,
     issue,
-    play_ros2,
     ros2_peer,
     subscribed,
     tls_settings,
+    with_ros2,
 )
-from tests.server.serving import Served
+from tests.server.serving import Served, serve
 from tests.server.waiting import SECONDS, until
 
 MARK = "marked"
 TURNED = (0.9, 0.1, -0.2, 0.374)
 
 
-def test_a_program_gets_the_values_of_rosbridge(settings: Settings) -> None:
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    return with_ros2(settings)
+
+
+async def test_a_program_gets_the_values_of_rosbridge(served: Served) -> None:
     """Every standard topic, through both doors, from the same samples."""
 
-    async def scenario(served: Served) -> None:
-        folder, token = await issue(served, "read"), await make_token(served, "read", "Page")
-        channels = {one.name: one for one in standard_channels()}
-        async with (
-            ros2_peer(served, tls_settings(served, folder)) as peer,
-            open_rosbridge(served, token) as socket,
+    folder, token = await issue(served, "read"), await make_token(served, "read", "Page")
+    channels = {channel.name: channel for channel in standard_channels()}
+    async with (
+        ros2_peer(served, tls_settings(served, folder)) as peer,
+        open_rosbridge(served, token) as socket,
+    ):
+        page = RosbridgeClient(socket)
+        for name, channel in channels.items():
+            await page.say(op="subscribe", topic=name)
+            await asyncio.to_thread(peer.subscribe, name, channel.type)
+        await until(lambda: len(subscribed(served)) == len(channels), "all subscriptions")
+        for topic in ("picture", "observer", "mask", "balanced"):
+            await served.heard(topic)
+        with_attitude = {"/imu/data", "/pose", "/tf"}
+        for publish, names in (
+            (publish_most, channels.keys() - with_attitude),
+            (publish_attitude, with_attitude),
         ):
-            page = RosbridgeClient(socket)
-            for name, channel in channels.items():
-                await page.say(op="subscribe", topic=name)
-                await asyncio.to_thread(peer.subscribe, name, channel.type)
-            await until(lambda: len(subscribed(served)) == len(channels), "all subscriptions")
-            for topic in ("picture", "observer", "mask", "balanced"):
-                await served.heard(topic)
-            with_attitude = {"/imu/data", "/pose", "/tf"}
-            for publish, names in (
-                (publish_most, channels.keys() - with_attitude),
-                (publish_attitude, with_attitude),
-            ):
-                publish(served)
-                theirs, ours = await asyncio.gather(by_rosbridge(page, names), by_ros2(peer, names))
-                for name in names:
-                    assert not differences(ours[name], theirs[name]), name
-            assert ours["/imu/data"]["linear_acceleration.z"] == pytest.approx(9.5, abs=1e-3)
-            (client,) = await doors_of(served)
-            assert (client["name"], client["role"], set(client["topics"])) == ("Lab", "viewer", {*channels})
-
-    play_ros2(settings, scenario)
+            publish(served)
+            theirs, ours = await asyncio.gather(by_rosbridge(page, names), by_ros2(peer, names))
+            for name in names:
+                assert not differences(ours[name], theirs[name]), name
+        assert ours["/imu/data"]["linear_acceleration.z"] == pytest.approx(9.5, abs=1e-3)
+        (client,) = await doors_of(served)
+        assert (client["name"], client["role"], set(client["topics"])) == ("Lab", "viewer", {*channels})
 
 
-def test_domain_and_namespace_are_the_configured_ones(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
+async def test_domain_and_namespace_are_the_configured_ones(settings: Settings) -> None:
+    own = replace(OPEN, ros2_domain=7, ros2_namespace="/turtle")
+    async with serve(with_ros2(settings, own)) as served:
         folder = await issue(served)
         async with ros2_peer(served, tls_settings(served, folder), domain=7) as peer:
             await asyncio.to_thread(peer.subscribe, "/turtle/depth", "std_msgs/msg/Float64")
@@ -84,24 +87,19 @@ def test_domain_and_namespace_are_the_configured_ones(settings: Settings) -> Non
             assert (await peer.next("/turtle/depth")).data == pytest.approx(0.25)
             assert (await asyncio.to_thread(peer.call, "/turtle/mucat/stop"))[0] is True
             nodes = await asyncio.to_thread(peer.tokens, "@ros2_lv/7/*/*/*/NN/**")
-            assert any(one.endswith("/NN/%/%turtle/mucat") for one in nodes)
-
-    play_ros2(settings, scenario, replace(OPEN, ros2_domain=7, ros2_namespace="/turtle"))
+            assert any(node.endswith("/NN/%/%turtle/mucat") for node in nodes)
 
 
-def test_a_late_subscriber_of_a_latched_topic_gets_the_newest_message(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        folder = await issue(served, "read")
-        kind = "diagnostic_msgs/msg/DiagnosticArray"
-        async with ros2_peer(served, tls_settings(served, folder)) as peer:
-            served.get(Doors).see_health([{"name": "board", "state": "failed", "text": "Gone."}])
-            await asyncio.to_thread(peer.subscribe, "/diagnostics", kind)
-            first = await peer.next("/diagnostics")
-            await asyncio.to_thread(peer.subscribe, "/diagnostics", kind, ":1:,1:,:,:,,")
-            assert (await peer.next("/diagnostics")).status[0].name.startswith("mucat: ")
-            assert first.status[0].name.startswith("mucat: ")
-
-    play_ros2(settings, scenario)
+async def test_a_late_subscriber_of_a_latched_topic_gets_the_newest_message(served: Served) -> None:
+    folder = await issue(served, "read")
+    kind = "diagnostic_msgs/msg/DiagnosticArray"
+    async with ros2_peer(served, tls_settings(served, folder)) as peer:
+        served.get(Doors).see_health([{"name": "board", "state": "failed", "text": "Gone."}])
+        await asyncio.to_thread(peer.subscribe, "/diagnostics", kind)
+        first = await peer.next("/diagnostics")
+        await asyncio.to_thread(peer.subscribe, "/diagnostics", kind, ":1:,1:,:,:,,")
+        assert (await peer.next("/diagnostics")).status[0].name.startswith("mucat: ")
+        assert first.status[0].name.startswith("mucat: ")
 
 
 def depth_block(served: Served, depth: float) -> Any:
@@ -143,35 +141,35 @@ def publish_most(served: Served) -> None:
 
 
 async def by_rosbridge(page: RosbridgeClient, topics: Set[str]) -> dict[str, dict[str, Any]]:
-    """The newest message of each topic, flat."""
-    found: dict[str, dict[str, Any]] = {}
-    while found.keys() != topics:
+    """Return the newest message of each topic, flat."""
+    results: dict[str, dict[str, Any]] = {}
+    while results.keys() != topics:
         message = await page.next("publish")
         if message["topic"] in topics and is_wanted(message["topic"], flat := flatten(message["msg"])):
-            found[message["topic"]] = flat
-    return found
+            results[message["topic"]] = flat
+    return results
 
 
 async def by_ros2(peer: Ros2Peer, topics: Set[str]) -> dict[str, dict[str, Any]]:
-    """The same at the other door."""
-    found: dict[str, dict[str, Any]] = {}
-    while found.keys() != topics:
+    """Return the same at the other door."""
+    results: dict[str, dict[str, Any]] = {}
+    while results.keys() != topics:
         topic, message = await asyncio.to_thread(peer.received.get, timeout=SECONDS)
         if topic in topics and is_wanted(topic, flat := flatten(message)):
-            found[topic] = flat
-    return found
+            results[topic] = flat
+    return results
 
 
 def is_wanted(topic: str, message: dict[str, Any]) -> bool:
-    """False for the server's own lines and health, of which each door may send others first."""
+    """Return False for the server's own lines and health, of which each door may send others first."""
     expected = {"/rosout": ("msg", "hello"), "/diagnostics": ("status.0.message", MARK)}
     key, value = expected.get(topic, ("", None))
     return message.get(key) == value
 
 
-def differences(one: dict[str, Any], other: dict[str, Any]) -> dict[str, tuple[Any, Any]]:
-    """The values that are not equal; of 32 bits, or in JSON, a number may be rounded."""
-    pairs = {key: (one.get(key), other.get(key)) for key in one.keys() | other.keys()}
+def differences(item: dict[str, Any], other: dict[str, Any]) -> dict[str, tuple[Any, Any]]:
+    """Return the values that are not equal; of 32 bits, or in JSON, a number may be rounded."""
+    pairs = {key: (item.get(key), other.get(key)) for key in item.keys() | other.keys()}
     return {
         key: (first, second)
         for key, (first, second) in pairs.items()
@@ -180,18 +178,22 @@ def differences(one: dict[str, Any], other: dict[str, Any]) -> dict[str, tuple[A
 
 
 def flatten(value: Any, name: str = "") -> dict[str, Any]:
-    """The plain values of a message by their path; base64, null and arrays of rosbridge as ROS 2 has them."""
+    """Return a message's plain values by path; base64, null and arrays of rosbridge as in ROS 2."""
     if is_dataclass(value):
         # Constants are fields here, too.
-        names = [one.name for one in fields(value) if one.name.islower() and one.name != "__msgtype__"]
-        value = {one: getattr(value, one) for one in names}
+        names = [
+            field.name for field in fields(value) if field.name.islower() and field.name != "__msgtype__"
+        ]
+        value = {name: getattr(value, name) for name in names}
     if isinstance(value, numpy.ndarray):
         value = bytes(value) if value.dtype == numpy.uint8 else value.tolist()
     if name == "data" and isinstance(value, str):
         value = base64.b64decode(value)
     if isinstance(value, dict):
         return {
-            path: one for key, inner in value.items() for path, one in flatten(inner, join(name, key)).items()
+            path: leaf
+            for key, inner in value.items()
+            for path, leaf in flatten(inner, join(name, key)).items()
         }
     if isinstance(value, list):
         return {name: len(value)} | flatten(dict(enumerate(value)), name)

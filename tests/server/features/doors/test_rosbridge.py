@@ -1,8 +1,6 @@
 import asyncio
 import base64
 import json
-import struct
-import zlib
 from math import asin, atan2, cos, sin
 from typing import Any
 
@@ -13,30 +11,34 @@ import server.stream.bridge as bridge_module
 from robot_runtime.contract.packets import Beacon, Depth
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
+from server.driving.arbiter import ControlArbiter
 from server.features.doors.config import DoorsConfig
 from server.features.doors.house import Doors
-from server.features.doors.rosbridge import FRAGMENT_MIN
 from server.features.doors.session import INVALID_MAX
-from server.features.lease.arbiter import ControlArbiter
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block, picture_block, state_block
 from tests.server.features.doors.rig import (
+    OPEN,
     RosbridgeClient,
     acts_of,
     hurry,
     imu,
     make_token,
     open_rosbridge,
-    play_open,
     rows_block,
     truth,
 )
-from tests.server.serving import Served, next_text, play
+from tests.server.serving import Served, next_text, serve
 from tests.server.waiting import SECONDS, until
 
 
-def test_a_door_is_closed_unless_the_configuration_opens_it(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
+@pytest.fixture
+def settings(settings: Settings) -> Settings:
+    return settings.with_section(OPEN)
+
+
+async def test_a_door_is_closed_unless_the_configuration_opens_it(settings: Settings) -> None:
+    async with serve(settings.with_section(DoorsConfig(foxglove=True))) as served:
         token = await make_token(served)
         with pytest.raises(InvalidStatus):
             async with open_rosbridge(served, token):
@@ -44,11 +46,9 @@ def test_a_door_is_closed_unless_the_configuration_opens_it(settings: Settings) 
         (rosbridge, foxglove, _) = (await served.api.get("/doors")).json()
         assert (rosbridge["open"], foxglove["open"]) == (False, True)
 
-    play(settings.with_section(DoorsConfig(foxglove=True)), scenario)
 
-
-def test_without_an_open_door_the_feature_is_off(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
+async def test_without_an_open_door_the_feature_is_off(settings: Settings) -> None:
+    async with serve(settings.with_section(DoorsConfig())) as served:
         with pytest.raises(InvalidStatus):
             async with open_rosbridge(served, await make_token(served)):
                 pass
@@ -56,257 +56,217 @@ def test_without_an_open_door_the_feature_is_off(settings: Settings) -> None:
         async with served.connect() as socket:
             assert "doors" not in (await next_text(socket, "hello"))["features"]
 
-    play(settings, scenario)
 
-
-def test_a_token_in_the_address_or_in_the_first_message_signs_in(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        token = await make_token(served, "read", "Reader")
-        async with open_rosbridge(served, token, origin="http://else.where") as socket:
-            client = RosbridgeClient(socket)
-            assert (await client.call("/rosapi/get_time"))["result"] is True
-            (rosbridge, *_) = (await served.api.get("/doors")).json()
-            assert [(one["name"], one["role"]) for one in rosbridge["clients"]] == [("Reader", "viewer")]
+async def test_a_token_in_the_address_or_in_the_first_message_signs_in(served: Served) -> None:
+    token = await make_token(served, "read", "Reader")
+    async with open_rosbridge(served, token, origin="http://else.where") as socket:
+        client = RosbridgeClient(socket)
+        assert (await client.call("/rosapi/get_time"))["result"] is True
+        (rosbridge, *_) = (await served.api.get("/doors")).json()
+        assert [(client["name"], client["role"]) for client in rosbridge["clients"]] == [("Reader", "viewer")]
+    async with open_rosbridge(served, None) as socket:
+        client = RosbridgeClient(socket)
+        await client.say(op="auth", mac=token, client="", dest="", rand="", t=0, level="", end=0)
+        assert (await client.call("rosapi/get_time"))["result"] is True
+    for first in ({"op": "auth", "mac": "mucat_wrong"}, {"op": "subscribe", "topic": "/depth"}):
         async with open_rosbridge(served, None) as socket:
-            client = RosbridgeClient(socket)
-            await client.say(op="auth", mac=token, client="", dest="", rand="", t=0, level="", end=0)
-            assert (await client.call("rosapi/get_time"))["result"] is True
-        for first in ({"op": "auth", "mac": "mucat_wrong"}, {"op": "subscribe", "topic": "/depth"}):
-            async with open_rosbridge(served, None) as socket:
-                await socket.send(json.dumps(first))
-                with pytest.raises(ConnectionClosed) as closed:
-                    await socket.recv()
-                assert closed.value.rcvd is not None
-                assert closed.value.rcvd.code == 1008
-        async with open_rosbridge(served, "mucat_wrong") as socket:
-            await socket.send(json.dumps({"op": "publish", "topic": "/mucat/stop", "msg": {}}))
-            with pytest.raises(ConnectionClosed):
+            await socket.send(json.dumps(first))
+            with pytest.raises(ConnectionClosed) as closed:
                 await socket.recv()
-
-    play_open(settings, scenario)
-
-
-def test_a_page_of_another_origin_gets_nothing_by_a_browsers_cookie(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        cookie = {"Cookie": f"mucat_{served.settings.port}=anything"}
-        async with open_rosbridge(
-            served, None, origin="http://else.where", additional_headers=cookie
-        ) as socket:
-            await socket.send(json.dumps({"op": "subscribe", "topic": "/depth"}))
-            with pytest.raises(ConnectionClosed):
-                await socket.recv()
-
-    play_open(settings, scenario)
+            assert closed.value.rcvd is not None
+            assert closed.value.rcvd.code == 1008
+    async with open_rosbridge(served, "mucat_wrong") as socket:
+        await socket.send(json.dumps({"op": "publish", "topic": "/mucat/stop", "msg": {}}))
+        with pytest.raises(ConnectionClosed):
+            await socket.recv()
 
 
-def test_samples_come_in_the_axes_units_and_stamps_of_ros(settings: Settings) -> None:
+async def test_a_page_of_another_origin_gets_nothing_by_a_browsers_cookie(served: Served) -> None:
+    cookie = {"Cookie": f"mucat_{served.settings.server.port}=anything"}
+    async with open_rosbridge(served, None, origin="http://else.where", additional_headers=cookie) as socket:
+        await socket.send(json.dumps({"op": "subscribe", "topic": "/depth"}))
+        with pytest.raises(ConnectionClosed):
+            await socket.recv()
+
+
+async def test_samples_come_in_the_axes_units_and_stamps_of_ros(served: Served) -> None:
     """Rolled 0.3 rad to the right, nose up 0.2, turned 0.5 to the right, at a known place."""
 
-    async def scenario(served: Served) -> None:
-        token = await make_token(served, "read")
-        roll, pitch, yaw = 0.3, 0.2, 0.5
-        attitude = _quaternion(roll, pitch, yaw)
-        async with open_rosbridge(served, token) as socket:
-            client = RosbridgeClient(socket)
-            for topic in ("/imu/data", "/depth", "/pressure", "/temperature", "/pose", "/tf", "/beacon/left"):
-                await client.say(op="subscribe", topic=topic)
-            await client.say(op="subscribe", topic="/truth/odometry", type="nav_msgs/Odometry")
-            await client.call("/rosapi/get_time")
-            now = served.container.clock.now()
-            served.runtime.publish(
-                rows_block("truth", 0, (now, truth((1.0, 2.0, 0.7), attitude))),
-                rows_block("depth", 0, (now, Depth(time=0, depth=0.7, pressure=108_000, temperature=18.5))),
-                rows_block("beacon", 0, (now, Beacon(time=0, right=0, left=1))),
-            )
-            odometry = (await client.next("publish", topic="/truth/odometry"))["msg"]
-            assert odometry["header"]["frame_id"] == "odom"
-            assert odometry["child_frame_id"] == "base_link"
-            place = odometry["pose"]["pose"]["position"]
-            assert [round(place[axis], 6) for axis in "xyz"] == [1.0, -2.0, -0.7]
-            served.runtime.publish(
-                rows_block("imu", 0, (now, imu(attitude, rate=(0.1, 0.2, 0.3), force=(1.0, 2.0, -9.5))))
-            )
-            found: dict[str, Any] = {}
-            while len(found) < 3:
-                message = await client.next("publish")
-                if message["topic"] in ("/imu/data", "/pose", "/tf"):
-                    found[message["topic"]] = message["msg"]
-            measured = found["/imu/data"]
-            assert _angles(measured["orientation"]) == pytest.approx((roll, -pitch, -yaw), abs=2e-4)
-            assert _vector(measured["angular_velocity"]) == pytest.approx((0.1, -0.2, -0.3), abs=2e-4)
-            assert _vector(measured["linear_acceleration"]) == pytest.approx((1.0, -2.0, 9.5), abs=1e-3)
-            stamp = measured["header"]["stamp"]
-            clock = served.container.clock
-            before, utc_ns, after = clock.now(), served.get(Doors).utc_ns(), clock.now()
-            age = (utc_ns - (stamp["sec"] * 10**9 + stamp["nanosec"])) / 1e9
-            assert before - now - 0.01 < age < after - now + 0.01
-            assert _angles(found["/pose"]["pose"]["orientation"])[2] == pytest.approx(-yaw, abs=2e-4)
-            (transform,) = found["/tf"]["transforms"]
-            assert _vector(transform["transform"]["translation"]) == pytest.approx((1.0, -2.0, -0.7))
-
-    play_open(settings, scenario)
+    token = await make_token(served, "read")
+    roll, pitch, yaw = 0.3, 0.2, 0.5
+    attitude = _quaternion(roll, pitch, yaw)
+    async with open_rosbridge(served, token) as socket:
+        client = RosbridgeClient(socket)
+        for topic in ("/imu/data", "/depth", "/pressure", "/temperature", "/pose", "/tf", "/beacon/left"):
+            await client.say(op="subscribe", topic=topic)
+        await client.say(op="subscribe", topic="/truth/odometry", type="nav_msgs/Odometry")
+        await client.call("/rosapi/get_time")
+        now = served.container.clock.now()
+        served.runtime.publish(
+            rows_block("truth", 0, (now, truth((1.0, 2.0, 0.7), attitude))),
+            rows_block("depth", 0, (now, Depth(time=0, depth=0.7, pressure=108_000, temperature=18.5))),
+            rows_block("beacon", 0, (now, Beacon(time=0, right=0, left=1))),
+        )
+        odometry = (await client.next("publish", topic="/truth/odometry"))["msg"]
+        assert odometry["header"]["frame_id"] == "odom"
+        assert odometry["child_frame_id"] == "base_link"
+        position = odometry["pose"]["pose"]["position"]
+        assert [round(position[axis], 6) for axis in "xyz"] == [1.0, -2.0, -0.7]
+        served.runtime.publish(
+            rows_block("imu", 0, (now, imu(attitude, rate=(0.1, 0.2, 0.3), force=(1.0, 2.0, -9.5))))
+        )
+        results: dict[str, Any] = {}
+        while len(results) < 3:
+            message = await client.next("publish")
+            if message["topic"] in ("/imu/data", "/pose", "/tf"):
+                results[message["topic"]] = message["msg"]
+        measured = results["/imu/data"]
+        assert _angles(measured["orientation"]) == pytest.approx((roll, -pitch, -yaw), abs=2e-4)
+        assert _vector(measured["angular_velocity"]) == pytest.approx((0.1, -0.2, -0.3), abs=2e-4)
+        assert _vector(measured["linear_acceleration"]) == pytest.approx((1.0, -2.0, 9.5), abs=1e-3)
+        stamp = measured["header"]["stamp"]
+        clock = served.container.clock
+        before, utc_ns, after = clock.now(), served.get(Doors).utc_ns(), clock.now()
+        age = (utc_ns - (stamp["sec"] * 10**9 + stamp["nanosec"])) / 1e9
+        assert before - now - 0.01 < age < after - now + 0.01
+        assert _angles(results["/pose"]["pose"]["orientation"])[2] == pytest.approx(-yaw, abs=2e-4)
+        (transform,) = results["/tf"]["transforms"]
+        assert _vector(transform["transform"]["translation"]) == pytest.approx((1.0, -2.0, -0.7))
 
 
-def test_pressure_temperature_and_beacons_have_their_standard_types(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        token = await make_token(served, "read")
-        async with open_rosbridge(served, token) as socket:
-            client = RosbridgeClient(socket)
-            for topic in ("/depth", "/pressure", "/temperature", "/beacon/left"):
-                await client.say(op="subscribe", topic=topic)
-            types = (await client.call("/rosapi/topic_type", {"topic": "/pressure"}))["values"]
-            assert types == {"type": "sensor_msgs/msg/FluidPressure"}
-            now = served.container.clock.now()
-            served.runtime.publish(
-                rows_block("depth", 0, (now, Depth(time=0, depth=0.7, pressure=108_000, temperature=18.5))),
-                rows_block("beacon", 0, (now, Beacon(time=0, right=0, left=1))),
-            )
-            found: dict[str, Any] = {}
-            while len(found) < 4:
-                message = await client.next("publish")
-                found[message["topic"]] = message["msg"]
-            assert found["/depth"] == {"data": pytest.approx(0.7)}
-            assert found["/pressure"]["fluid_pressure"] == 108_000
-            assert found["/temperature"]["temperature"] == pytest.approx(18.5)
-            assert found["/beacon/left"] == {"data": True}
-
-    play_open(settings, scenario)
+async def test_pressure_temperature_and_beacons_have_their_standard_types(served: Served) -> None:
+    token = await make_token(served, "read")
+    async with open_rosbridge(served, token) as socket:
+        client = RosbridgeClient(socket)
+        for topic in ("/depth", "/pressure", "/temperature", "/beacon/left"):
+            await client.say(op="subscribe", topic=topic)
+        types = (await client.call("/rosapi/topic_type", {"topic": "/pressure"}))["values"]
+        assert types == {"type": "sensor_msgs/msg/FluidPressure"}
+        now = served.container.clock.now()
+        served.runtime.publish(
+            rows_block("depth", 0, (now, Depth(time=0, depth=0.7, pressure=108_000, temperature=18.5))),
+            rows_block("beacon", 0, (now, Beacon(time=0, right=0, left=1))),
+        )
+        results: dict[str, Any] = {}
+        while len(results) < 4:
+            message = await client.next("publish")
+            results[message["topic"]] = message["msg"]
+        assert results["/depth"] == {"data": pytest.approx(0.7)}
+        assert results["/pressure"]["fluid_pressure"] == 108_000
+        assert results["/temperature"]["temperature"] == pytest.approx(18.5)
+        assert results["/beacon/left"] == {"data": True}
 
 
-def test_throttle_and_queue_length_hold_samples_back(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        token = await make_token(served, "read")
-        async with open_rosbridge(served, token) as socket:
-            client = RosbridgeClient(socket)
-            await client.say(op="subscribe", topic="/depth", throttle_rate=600_000)
-            await client.say(op="subscribe", topic="/mucat/depth", throttle_rate=1, queue_length=3)
-            await client.call("/rosapi/get_time")
-            rows = [
-                (1.0 + place, Depth(time=0, depth=place / 10, pressure=101_325, temperature=20))
-                for place in range(10)
-            ]
-            served.runtime.publish(rows_block("depth", 0, *rows))
-            first = await client.next("publish", topic="/depth")
-            assert first["msg"] == {"data": pytest.approx(0.9)}
-            depths = [
-                round((await client.next("publish", topic="/mucat/depth"))["msg"]["depth"], 3)
-                for _ in range(3)
-            ]
-            assert depths == [0.7, 0.8, 0.9]
-            served.runtime.publish(rows_block("depth", 10, *((time + 10, row) for time, row in rows)))
-            for _ in range(3):
-                assert (await client.next("publish"))["topic"] == "/mucat/depth"
-            await client.call("/rosapi/get_time")
-            await client.say(op="unsubscribe", topic="/depth")
-            await client.say(op="unsubscribe", topic="/mucat/depth")
-            await client.call("/rosapi/get_time")
-            (rosbridge, *_) = (await served.api.get("/doors")).json()
-            assert rosbridge["clients"][0]["topics"] == []
-
-    play_open(settings, scenario)
+async def test_throttle_and_queue_length_hold_samples_back(served: Served) -> None:
+    token = await make_token(served, "read")
+    async with open_rosbridge(served, token) as socket:
+        client = RosbridgeClient(socket)
+        await client.say(op="subscribe", topic="/depth", throttle_rate=600_000)
+        await client.say(op="subscribe", topic="/mucat/depth", throttle_rate=1, queue_length=3)
+        await client.call("/rosapi/get_time")
+        rows = [
+            (1.0 + position, Depth(time=0, depth=position / 10, pressure=101_325, temperature=20))
+            for position in range(10)
+        ]
+        served.runtime.publish(rows_block("depth", 0, *rows))
+        first = await client.next("publish", topic="/depth")
+        assert first["msg"] == {"data": pytest.approx(0.9)}
+        depths = [
+            round((await client.next("publish", topic="/mucat/depth"))["msg"]["depth"], 3) for _ in range(3)
+        ]
+        assert depths == [0.7, 0.8, 0.9]
+        served.runtime.publish(rows_block("depth", 10, *((time + 10, row) for time, row in rows)))
+        for _ in range(3):
+            assert (await client.next("publish"))["topic"] == "/mucat/depth"
+        await client.call("/rosapi/get_time")
+        await client.say(op="unsubscribe", topic="/depth")
+        await client.say(op="unsubscribe", topic="/mucat/depth")
+        await client.call("/rosapi/get_time")
+        (rosbridge, *_) = (await served.api.get("/doors")).json()
+        assert rosbridge["clients"][0]["topics"] == []
 
 
-def test_cbor_png_and_fragments_come_only_where_they_are_asked_for(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        token = await make_token(served, "read")
-        async with (
-            open_rosbridge(served, token) as in_cbor,
-            open_rosbridge(served, token) as in_png,
-            open_rosbridge(served, token) as in_parts,
+async def test_cbor_comes_where_it_is_asked_for_and_anything_else_as_plain_text(served: Served) -> None:
+    token = await make_token(served, "read")
+    async with open_rosbridge(served, token) as in_cbor, open_rosbridge(served, token) as in_text:
+        for socket, asked in (
+            (in_cbor, {"compression": "cbor"}),
+            (in_text, {"compression": "png", "fragment_size": 4096}),
         ):
-            for socket, asked in (
-                (in_cbor, {"compression": "cbor"}),
-                (in_png, {"compression": "png"}),
-                (in_parts, {"fragment_size": FRAGMENT_MIN}),
-            ):
-                client = RosbridgeClient(socket)
-                await client.say(op="subscribe", topic="/camera/image/compressed", **asked)
-                await client.call("/rosapi/get_time")
-            await served.heard("picture")
-            served.runtime.publish(picture_block(7, 9000))
-            jpeg = bytes([7]) * 9000
-            data = await in_cbor.recv()
-            assert isinstance(data, bytes)
-            assert jpeg in data
-            png = json.loads(await in_png.recv())
-            assert png["op"] == "png"
-            message = json.loads(_pixels(base64.b64decode(png["data"])))
-            assert base64.b64decode(message["msg"]["data"]) == jpeg
-            parts: list[str] = []
-            while not parts or len(parts) < json.loads(await in_parts.recv())["total"] - 1:
-                parts.append("")
-            await RosbridgeClient(in_parts).say(op="subscribe", topic="/depth", compression="cbor-raw")
-            refused = await RosbridgeClient(in_parts).next("status")
-            assert "cbor-raw" in refused["msg"]
-
-    play_open(settings, scenario)
+            client = RosbridgeClient(socket)
+            await client.say(op="subscribe", topic="/camera/image/compressed", **asked)
+            await client.call("/rosapi/get_time")
+        await served.heard("picture")
+        served.runtime.publish(picture_block(7, 9000))
+        jpeg = bytes([7]) * 9000
+        data = await in_cbor.recv()
+        assert isinstance(data, bytes)
+        assert jpeg in data
+        plain = await RosbridgeClient(in_text).next("publish")
+        assert base64.b64decode(plain["msg"]["data"]) == jpeg
+        await RosbridgeClient(in_text).say(op="subscribe", topic="/depth", compression="cbor-raw")
+        assert "cbor-raw" in (await RosbridgeClient(in_text).next("status"))["msg"]
 
 
-def test_a_program_drives_with_control_and_not_without(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        await served.api.post("/control/release")
-        token, reader = await make_token(served), await make_token(served, "read", "Reader")
-        twist = {"linear": {"x": 0.5, "y": 0.25, "z": -3.0}, "angular": {"x": 0.1, "y": 0.2, "z": 0.3}}
-        async with open_rosbridge(served, token) as socket, open_rosbridge(served, reader) as looking:
-            client, viewer = RosbridgeClient(socket), RosbridgeClient(looking)
-            await client.say(op="advertise", topic="/cmd_vel", type="geometry_msgs/Twist")
-            await client.say(op="publish", topic="/cmd_vel", msg=twist)
-            assert "Take control" in (await client.next("status"))["msg"]
-            await viewer.say(op="publish", topic="/cmd_vel", msg=twist)
-            assert "role of an operator" in (await viewer.next("status"))["msg"]
-            refused = await viewer.call("/mucat/take_control")
-            assert (refused["result"], "operator" in refused["values"]) == (False, True)
-            assert (await client.call("/mucat/arm", {"mode": "manual"}))["result"] is False
-            taken = await client.call("/mucat/take_control")
-            assert taken["values"]["success"] is True
-            assert (await client.call("/mucat/arm", {"mode": "manual"}))["result"] is True
-            assert served.runtime.asked[-1] == ("arm", {"mode": "manual"})
-            await client.say(op="publish", topic="/cmd_vel", msg=twist)
-            await until(lambda: served.runtime.driven, "the command")
-            assert served.runtime.driven[0]["axes"] == [0.5, -0.25, 1.0, 0.1, -0.2, -0.3]
-            await client.say(op="publish", topic="/cmd_vel", msg={"linear": {"x": "fast"}})
-            assert "numbers" in (await client.next("status"))["msg"]
-            await viewer.say(op="publish", topic="/mucat/stop", msg={})
-            await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
-            assert (await client.call("/mucat/release_control"))["result"] is True
-            assert served.get(ControlArbiter).lease.holder is None
-        expected = {
-            ("Program", "Take control", "done"),
-            ("Program", "arm", "done"),
-            ("Program", "arm", "refused"),
-            ("Program", "Drive", "done"),
-            ("Program", "Message drive", "refused"),
-            ("Reader", "Take control", "refused"),
-            ("Reader", "STOP", "done"),
-        }
-        # What the runtime has answered is written a moment later.
-        async with asyncio.timeout(SECONDS):
-            while missing := expected - await acts_of(served):
-                await asyncio.sleep(0.01)
-        assert not missing
-
-    play_open(settings, scenario)
+async def test_a_program_drives_with_control_and_not_without(served: Served) -> None:
+    await served.api.post("/control/release")
+    token, reader = await make_token(served), await make_token(served, "read", "Reader")
+    twist = {"linear": {"x": 0.5, "y": 0.25, "z": -3.0}, "angular": {"x": 0.1, "y": 0.2, "z": 0.3}}
+    async with open_rosbridge(served, token) as socket, open_rosbridge(served, reader) as looking:
+        client, viewer = RosbridgeClient(socket), RosbridgeClient(looking)
+        await client.say(op="advertise", topic="/cmd_vel", type="geometry_msgs/Twist")
+        await client.say(op="publish", topic="/cmd_vel", msg=twist)
+        assert "Take control" in (await client.next("status"))["msg"]
+        await viewer.say(op="publish", topic="/cmd_vel", msg=twist)
+        assert "role of an operator" in (await viewer.next("status"))["msg"]
+        refused = await viewer.call("/mucat/take_control")
+        assert (refused["result"], "operator" in refused["values"]) == (False, True)
+        assert (await client.call("/mucat/arm", {"mode": "manual"}))["result"] is False
+        taken = await client.call("/mucat/take_control")
+        assert taken["values"]["success"] is True
+        assert (await client.call("/mucat/arm", {"mode": "manual"}))["result"] is True
+        assert served.runtime.asked[-1] == ("arm", {"mode": "manual"})
+        await client.say(op="publish", topic="/cmd_vel", msg=twist)
+        await until(lambda: served.runtime.driven, "the command")
+        assert served.runtime.driven[0]["axes"] == [0.5, -0.25, 1.0, 0.1, -0.2, -0.3]
+        await client.say(op="publish", topic="/cmd_vel", msg={"linear": {"x": "fast"}})
+        assert "numbers" in (await client.next("status"))["msg"]
+        await viewer.say(op="publish", topic="/mucat/stop", msg={})
+        await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
+        assert (await client.call("/mucat/release_control"))["result"] is True
+        assert served.get(ControlArbiter).lease.holder is None
+    expected = {
+        ("Program", "Take control", "done"),
+        ("Program", "arm", "done"),
+        ("Program", "arm", "refused"),
+        ("Program", "Drive", "done"),
+        ("Program", "Message drive", "refused"),
+        ("Reader", "Take control", "refused"),
+        ("Reader", "STOP", "done"),
+    }
+    # What the runtime has answered is written a moment later.
+    async with asyncio.timeout(SECONDS):
+        while missing := expected - await acts_of(served):
+            await asyncio.sleep(0.01)
+    assert not missing
 
 
 UNUSABLE_NUMBERS = ("NaN", "-Infinity", "1e400", "null", '"0.5"', "true", "[0.5]", "{}", "9007199254740993")
 
 
-def test_what_is_no_usable_number_drives_nothing_and_is_answered_in_words(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        await served.api.post("/control/release")
-        async with open_rosbridge(served, await make_token(served)) as socket:
-            client = RosbridgeClient(socket)
-            await client.call("/mucat/take_control")
-            for number in UNUSABLE_NUMBERS:
-                await socket.send(
-                    f'{{"op": "publish", "topic": "/cmd_vel", "msg": {{"linear": {{"x": {number}}}}}}}'
-                )
-                assert (await client.next("status"))["msg"].endswith("."), number
-            await client.say(op="publish", topic="/cmd_vel", msg={})
-            await until(lambda: served.runtime.driven, "the neutral command")
-            assert [one["axes"] for one in served.runtime.driven] == [[0.0] * 6]
-
-    play_open(settings, scenario)
+async def test_what_is_no_usable_number_drives_nothing_and_is_answered_in_words(served: Served) -> None:
+    await served.api.post("/control/release")
+    async with open_rosbridge(served, await make_token(served)) as socket:
+        client = RosbridgeClient(socket)
+        await client.call("/mucat/take_control")
+        for number in UNUSABLE_NUMBERS:
+            await socket.send(
+                f'{{"op": "publish", "topic": "/cmd_vel", "msg": {{"linear": {{"x": {number}}}}}}}'
+            )
+            assert (await client.next("status"))["msg"].endswith("."), number
+        await client.say(op="publish", topic="/cmd_vel", msg={})
+        await until(lambda: served.runtime.driven, "the neutral command")
+        assert [command["axes"] for command in served.runtime.driven] == [[0.0] * 6]
 
 
 @pytest.mark.parametrize(
@@ -317,26 +277,23 @@ def test_what_is_no_usable_number_drives_nothing_and_is_answered_in_words(settin
     ],
     ids=["message", "service"],
 )
-def test_stop_goes_on_where_its_program_leaves_at_once(
-    settings: Settings, message: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+async def test_stop_goes_on_where_its_program_leaves_at_once(
+    message: dict[str, Any], monkeypatch: pytest.MonkeyPatch, served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        # The answer comes late, but not too late, however busy the computer is.
-        monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", SECONDS)
-        answered = served.runtime.gates["stop"]
-        answered.clear()
-        async with open_rosbridge(served, await make_token(served)) as socket:
-            await RosbridgeClient(socket).say(**message)
-        await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
-        async with asyncio.timeout(SECONDS):
-            while any(door["clients"] for door in (await served.api.get("/doors")).json()):
-                await asyncio.sleep(0.01)
-        answered.set()
-        async with asyncio.timeout(SECONDS):
-            while ("Program", "STOP", "done") not in await acts_of(served):
-                await asyncio.sleep(0.01)
-
-    play_open(settings, scenario)
+    # The answer comes late, but not too late, however busy the computer is.
+    monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", SECONDS)
+    answered = served.runtime.gates["stop"]
+    answered.clear()
+    async with open_rosbridge(served, await make_token(served)) as socket:
+        await RosbridgeClient(socket).say(**message)
+    await until(lambda: ("stop", {}) in served.runtime.asked, "STOP")
+    async with asyncio.timeout(SECONDS):
+        while any(door["clients"] for door in (await served.api.get("/doors")).json()):
+            await asyncio.sleep(0.01)
+    answered.set()
+    async with asyncio.timeout(SECONDS):
+        while ("Program", "STOP", "done") not in await acts_of(served):
+            await asyncio.sleep(0.01)
 
 
 @pytest.mark.parametrize(
@@ -346,127 +303,105 @@ def test_stop_goes_on_where_its_program_leaves_at_once(
         ("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"}, "parameters"),
     ],
 )
-def test_a_command_leaves_its_trace_where_its_program_leaves_before_the_answer(
-    settings: Settings,
-    service: str,
-    fields: dict[str, Any],
-    command: str,
-    monkeypatch: pytest.MonkeyPatch,
+async def test_a_command_leaves_its_trace_where_its_program_leaves_before_the_answer(
+    service: str, fields: dict[str, Any], command: str, monkeypatch: pytest.MonkeyPatch, served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        # The answer comes late, but not too late, however busy the computer is.
-        monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", SECONDS)
+    # The answer comes late, but not too late, however busy the computer is.
+    monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", SECONDS)
+    await served.api.post("/control/release")
+    served.runtime.answer = {"changed": {"depth.kp": [2.0, 2.5]}}
+    answered = served.runtime.gates[command]
+    answered.clear()
+    async with open_rosbridge(served, await make_token(served)) as socket:
+        client = RosbridgeClient(socket)
+        assert (await client.call("/mucat/take_control"))["result"] is True
+        await client.say(op="call_service", service=service, args=fields)
+        await until(lambda: command in [name for name, _ in served.runtime.asked], "the command")
+    async with asyncio.timeout(SECONDS):
+        while any(door["clients"] for door in (await served.api.get("/doors")).json()):
+            await asyncio.sleep(0.01)
+    answered.set()
+    async with asyncio.timeout(SECONDS):
+        while ("Program", command, "done") not in await acts_of(served):
+            await asyncio.sleep(0.01)
+    (change,) = (await served.api.get("/parameters/changes")).json()
+    assert (change["who"], change["values"][0]["name"]) == ("Program", "depth.kp")
+
+
+async def test_control_ends_with_the_connection(served: Served) -> None:
+    await served.api.post("/control/release")
+    async with open_rosbridge(served, await make_token(served)) as socket:
+        assert (await RosbridgeClient(socket).call("/mucat/take_control"))["result"] is True
+        assert served.get(ControlArbiter).lease.holder is not None
+    await until(lambda: served.get(ControlArbiter).lease.holder is None, "control to be free")
+
+
+async def test_a_revoked_token_ends_its_connection(served: Served) -> None:
+    async with open_rosbridge(served, await make_token(served)) as socket:
+        await RosbridgeClient(socket).call("/rosapi/get_time")
+        devices = (await served.api.get("/access/devices")).json()
+        (device,) = (device["id"] for device in devices if device["name"] == "Program")
+        (await served.api.delete(f"/access/devices/{device}")).raise_for_status()
+        with pytest.raises(ConnectionClosed) as closed:
+            await RosbridgeClient(socket).next("never")
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1008
+
+
+async def test_parameters_are_read_and_set(served: Served) -> None:
+    async with open_rosbridge(served, await make_token(served)) as socket:
+        client = RosbridgeClient(socket)
+        assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["result"] is False
         await served.api.post("/control/release")
-        served.runtime.answer = {"changed": {"depth.kp": [2.0, 2.5]}}
-        answered = served.runtime.gates[command]
-        answered.clear()
-        async with open_rosbridge(served, await make_token(served)) as socket:
-            client = RosbridgeClient(socket)
-            assert (await client.call("/mucat/take_control"))["result"] is True
-            await client.say(op="call_service", service=service, args=fields)
-            await until(lambda: command in [name for name, _ in served.runtime.asked], "the command")
-        async with asyncio.timeout(SECONDS):
-            while any(door["clients"] for door in (await served.api.get("/doors")).json()):
-                await asyncio.sleep(0.01)
-        answered.set()
-        async with asyncio.timeout(SECONDS):
-            while ("Program", command, "done") not in await acts_of(served):
-                await asyncio.sleep(0.01)
-        (change,) = (await served.api.get("/parameters/changes")).json()
-        assert (change["who"], change["values"][0]["name"]) == ("Program", "depth.kp")
-
-    play_open(settings, scenario)
+        await client.call("/mucat/take_control")
+        answer = await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"})
+        assert answer["result"] is True
+        assert served.runtime.asked[-1] == ("parameters", {"values": {"depth.kp": 2.5}})
+        listed = [{"name": "depth.kp", "type": "number", "value": 1.0}]
+        document = json.dumps([{"time": 1.0, "parameters": listed}]).encode()
+        served.runtime.publish(Block.of(BY_NAME["parameters"], 1, 0, document))
+        await until(lambda: served.get(Doors).parameters(), "the parameters")
+        assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["values"]["value"] == "1.0"
+        served.runtime.answer = {"changed": {"depth.kp": [1.0, 2.5]}}
+        await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"})
+        assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["values"]["value"] == "2.5"
+        wrong = await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "{"})
+        assert wrong["result"] is False
+        assert wrong["values"].startswith("value must be JSON: it is not JSON: Expecting property name")
+        deleted = await client.call("/rosapi/delete_param", {"name": "/depth.kp"})
+        assert (deleted["result"], "cannot be deleted" in deleted["values"]) == (False, True)
 
 
-def test_control_ends_with_the_connection(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        await served.api.post("/control/release")
-        async with open_rosbridge(served, await make_token(served)) as socket:
-            assert (await RosbridgeClient(socket).call("/mucat/take_control"))["result"] is True
-            assert served.get(ControlArbiter).lease.holder is not None
-        await until(lambda: served.get(ControlArbiter).lease.holder is None, "control to be free")
-
-    play_open(settings, scenario)
-
-
-def test_a_revoked_token_ends_its_connection(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        async with open_rosbridge(served, await make_token(served)) as socket:
-            await RosbridgeClient(socket).call("/rosapi/get_time")
-            devices = (await served.api.get("/access/devices")).json()
-            (device,) = (one["id"] for one in devices if one["name"] == "Program")
-            (await served.api.delete(f"/access/devices/{device}")).raise_for_status()
-            with pytest.raises(ConnectionClosed) as closed:
-                await RosbridgeClient(socket).next("never")
-            assert closed.value.rcvd is not None
-            assert closed.value.rcvd.code == 1008
-
-    play_open(settings, scenario)
-
-
-def test_parameters_are_read_and_set(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        async with open_rosbridge(served, await make_token(served)) as socket:
-            client = RosbridgeClient(socket)
-            assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["result"] is False
-            await served.api.post("/control/release")
-            await client.call("/mucat/take_control")
-            answer = await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"})
-            assert answer["result"] is True
-            assert served.runtime.asked[-1] == ("parameters", {"values": {"depth.kp": 2.5}})
-            listed = [{"name": "depth.kp", "type": "number", "value": 1.0}]
-            document = json.dumps([{"time": 1.0, "parameters": listed}]).encode()
-            served.runtime.publish(Block.of(BY_NAME["parameters"], 1, 0, document))
-            await until(lambda: served.get(Doors).parameters(), "the parameters")
-            assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["values"]["value"] == "1.0"
-            served.runtime.answer = {"changed": {"depth.kp": [1.0, 2.5]}}
-            await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "2.5"})
-            assert (await client.call("/rosapi/get_param", {"name": "/depth.kp"}))["values"]["value"] == "2.5"
-            wrong = await client.call("/rosapi/set_param", {"name": "/depth.kp", "value": "{"})
-            assert wrong["result"] is False
-            assert wrong["values"].startswith("value must be JSON: it is not JSON: Expecting property name")
-            deleted = await client.call("/rosapi/delete_param", {"name": "/depth.kp"})
-            assert (deleted["result"], "cannot be deleted" in deleted["values"]) == (False, True)
-
-    play_open(settings, scenario)
-
-
-def test_the_newest_state_comes_at_once_and_lines_of_text_are_the_log(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        served.runtime.publish(state_block(0, mode="manual"))
-        await until(lambda: served.get(Doors).document("state"), "the state")
-        async with open_rosbridge(served, await make_token(served, "read")) as socket:
-            client = RosbridgeClient(socket)
-            await client.say(op="subscribe", topic="/mucat/state")
-            assert (await client.next("publish"))["msg"]["mode"] == "manual"
-            await client.say(op="subscribe", topic="/rosout", type="rcl_interfaces/msg/Log")
-            await client.call("/rosapi/get_time")
-            served.runtime.publish(debug_block(0, "hello"))
+async def test_the_newest_state_comes_at_once_and_lines_of_text_are_the_log(served: Served) -> None:
+    served.runtime.publish(state_block(0, mode="manual"))
+    await until(lambda: served.get(Doors).document("state"), "the state")
+    async with open_rosbridge(served, await make_token(served, "read")) as socket:
+        client = RosbridgeClient(socket)
+        await client.say(op="subscribe", topic="/mucat/state")
+        assert (await client.next("publish"))["msg"]["mode"] == "manual"
+        await client.say(op="subscribe", topic="/rosout", type="rcl_interfaces/msg/Log")
+        await client.call("/rosapi/get_time")
+        served.runtime.publish(debug_block(0, "hello"))
+        line = await client.next("publish", topic="/rosout")
+        while line["msg"]["file"] != "debug":
             line = await client.next("publish", topic="/rosout")
-            while line["msg"]["file"] != "debug":
-                line = await client.next("publish", topic="/rosout")
-            assert (line["msg"]["msg"], line["msg"]["level"]) == ("hello", 20)
-
-    play_open(settings, scenario)
+        assert (line["msg"]["msg"], line["msg"]["level"]) == ("hello", 20)
 
 
-def test_everything_that_is_listed_can_be_subscribed(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        async with open_rosbridge(served, await make_token(served, "read")) as socket:
-            client = RosbridgeClient(socket)
-            listed = (await client.call("/rosapi/topics"))["values"]
-            assert len(listed["topics"]) == len(listed["types"])
-            for name, kind in zip(listed["topics"], listed["types"], strict=True):
-                if name not in ("/cmd_vel", "/mucat/stop"):
-                    await client.say(op="subscribe", topic=name, type=kind)
-            await client.call("/rosapi/nodes")
-            (rosbridge, *_) = (await served.api.get("/doors")).json()
-            assert set(rosbridge["clients"][0]["topics"]) == set(listed["topics"]) - {
-                "/cmd_vel",
-                "/mucat/stop",
-            }
-
-    play_open(settings, scenario)
+async def test_everything_that_is_listed_can_be_subscribed(served: Served) -> None:
+    async with open_rosbridge(served, await make_token(served, "read")) as socket:
+        client = RosbridgeClient(socket)
+        listed = (await client.call("/rosapi/topics"))["values"]
+        assert len(listed["topics"]) == len(listed["types"])
+        for name, kind in zip(listed["topics"], listed["types"], strict=True):
+            if name not in ("/cmd_vel", "/mucat/stop"):
+                await client.say(op="subscribe", topic=name, type=kind)
+        await client.call("/rosapi/nodes")
+        (rosbridge, *_) = (await served.api.get("/doors")).json()
+        assert set(rosbridge["clients"][0]["topics"]) == set(listed["topics"]) - {
+            "/cmd_vel",
+            "/mucat/stop",
+        }
 
 
 INVALID = (
@@ -476,7 +411,6 @@ INVALID = (
     '{"op": "subscribe", "topic": "/depth", "type": "a/B"}',
     '{"op": "subscribe", "topic": "/depth", "throttle_rate": -1}',
     '{"op": "subscribe", "topic": "/depth", "queue_length": 1e999}',
-    '{"op": "subscribe", "topic": "/depth", "fragment_size": 1}',
     '{"op": "fragment", "data": "x"}',
     '{"op": "publish", "topic": "/depth"}',
     '{"op": "publish", "topic": "/cmd_vel"}',
@@ -486,51 +420,45 @@ INVALID = (
 )
 
 
-def test_an_invalid_operation_is_answered_in_words(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        token = await make_token(served)
-        async with open_rosbridge(served, token) as socket:
-            client = RosbridgeClient(socket)
-            for message in INVALID:
-                await socket.send(message)
-                assert (await client.next("status"))["msg"].endswith((".", "?")), message
-                assert (await client.call("/rosapi/get_time"))["result"] is True
-            for _ in range(INVALID_MAX):
-                await socket.send("{")
-            with pytest.raises(ConnectionClosed):
-                await client.next("never")
-
-    play_open(settings, scenario)
+async def test_an_invalid_operation_is_answered_in_words(served: Served) -> None:
+    token = await make_token(served)
+    async with open_rosbridge(served, token) as socket:
+        client = RosbridgeClient(socket)
+        for message in INVALID:
+            await socket.send(message)
+            assert (await client.next("status"))["msg"].endswith((".", "?")), message
+            assert (await client.call("/rosapi/get_time"))["result"] is True
+        for _ in range(INVALID_MAX):
+            await socket.send("{")
+        with pytest.raises(ConnectionClosed):
+            await client.next("never")
 
 
-TRIFLES: tuple[dict[str, Any], ...] = ({"args": [{}]}, {"args": 7}, {"fragment_size": 100}, {"id": "x" * 201})
+TRIFLES: tuple[dict[str, Any], ...] = ({"args": [{}]}, {"args": 7}, {"id": "x" * 201})
 
 
-@pytest.mark.parametrize("trifle", TRIFLES, ids=lambda one: next(iter(one)))
-def test_an_invalid_call_is_answered_with_the_reason_and_stop_is_carried_out_nevertheless(
-    settings: Settings, trifle: dict[str, Any]
+@pytest.mark.parametrize("trifle", TRIFLES, ids=lambda item: next(iter(item)))
+async def test_an_invalid_call_is_answered_with_the_reason_and_stop_is_carried_out_nevertheless(
+    trifle: dict[str, Any], served: Served
 ) -> None:
-    async def scenario(served: Served) -> None:
-        async with open_rosbridge(served, await make_token(served)) as socket:
-            client = RosbridgeClient(socket)
-            called = {"op": "call_service", "id": "1", **trifle}
-            await client.say(op="set_level", level="none")
-            await client.say(service="/rosapi/nodes", **called)
-            refused = await client.next("service_response", id=called["id"])
-            assert (refused["result"], refused["values"].endswith(".")) == (False, True)
-            await client.say(service="/mucat/stop", **called)
-            assert (await client.next("service_response", id=called["id"]))["result"] is True
-            assert served.runtime.asked[-1] == ("stop", {})
-
-    play_open(settings, scenario)
+    async with open_rosbridge(served, await make_token(served)) as socket:
+        client = RosbridgeClient(socket)
+        called = {"op": "call_service", "id": "1", **trifle}
+        await client.say(op="set_level", level="none")
+        await client.say(service="/rosapi/nodes", **called)
+        refused = await client.next("service_response", id=called["id"])
+        assert (refused["result"], refused["values"].endswith(".")) == (False, True)
+        await client.say(service="/mucat/stop", **called)
+        assert (await client.next("service_response", id=called["id"]))["result"] is True
+        assert served.runtime.asked[-1] == ("stop", {})
 
 
-def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
+async def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     hurry(monkeypatch, "Stalled")
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         token, other = await make_token(served, "read"), await make_token(served, "read", "Stalled")
         async with (
             open_rosbridge(served, other, max_queue=1) as stalled,
@@ -550,16 +478,14 @@ def test_a_program_that_reads_nothing_is_disconnected_and_harms_nobody(
                 picture = await RosbridgeClient(well).next("publish")
                 assert picture["topic"] == "/camera/image/compressed"
                 await asyncio.sleep(0)
-            assert [one.identity.name for one in door.clients] == ["Program"]
+            assert [client.identity.name for client in door.clients] == ["Program"]
             # It would wait for the server's goodbye, which it does not read either.
             stalled.transport.abort()
-
-    play_open(settings, scenario)
 
 
 def _quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
     """Body to world, turned by yaw, then pitch, then roll."""
-    (cr, sr), (cp, sp), (cy, sy) = ((cos(one / 2), sin(one / 2)) for one in (roll, pitch, yaw))
+    (cr, sr), (cp, sp), (cy, sy) = ((cos(angle / 2), sin(angle / 2)) for angle in (roll, pitch, yaw))
     return (
         cr * cp * cy + sr * sp * sy,
         sr * cp * cy - cr * sp * sy,
@@ -579,17 +505,3 @@ def _angles(turn: dict[str, float]) -> tuple[float, float, float]:
 
 def _vector(values: dict[str, float]) -> tuple[float, float, float]:
     return values["x"], values["y"], values["z"]
-
-
-def _pixels(png: bytes) -> bytes:
-    """The samples of an RGB picture whose rows have no filter."""
-    at, packed, width = 8, b"", 0
-    while at < len(png):
-        (size,) = struct.unpack_from(">I", png, at)
-        kind, data = png[at + 4 : at + 8], png[at + 8 : at + 8 + size]
-        if kind == b"IHDR":
-            width = struct.unpack_from(">I", data)[0]
-        packed += data if kind == b"IDAT" else b""
-        at += 12 + size
-    raw, step = zlib.decompress(packed), 3 * width + 1
-    return b"".join(raw[place + 1 : place + step] for place in range(0, len(raw), step)).rstrip(b"\n")

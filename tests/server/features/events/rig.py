@@ -6,8 +6,7 @@ import shutil
 import socket
 import subprocess
 import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,16 +15,9 @@ from paho.mqtt.client import Client, MQTTMessage
 from paho.mqtt.enums import CallbackAPIVersion
 
 from tests.server.waiting import SECONDS
+from tests.waiting import wait_for
 
 BROKER = shutil.which("mosquitto") or "/usr/sbin/mosquitto"
-
-
-def wait_for(condition: Callable[[], object], what: str) -> None:
-    """Wait in this thread until the condition holds."""
-    end = time.monotonic() + SECONDS
-    while not condition():
-        assert time.monotonic() < end, f"waited {SECONDS:g} s in vain for {what}"
-        time.sleep(0.005)
 
 
 @contextmanager
@@ -45,12 +37,12 @@ def broker(folder: Path, port: int, *lines: str) -> Iterator[None]:
 
 
 def answers(port: int) -> bool:
-    """True where something accepts connections at this port."""
+    """Return True where something accepts connections at this port."""
     with socket.socket() as probe:
         return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
-class Listener:
+class MqttListener:
     """A program at the broker that keeps every message, in order."""
 
     def __init__(self, port: int, topic: str = "mucat/#", **login: str) -> None:
@@ -67,10 +59,10 @@ class Listener:
         assert subscribed.wait(SECONDS)
 
     def next(self, topic: str) -> Any:
-        """The JSON, or else the text, of the next message at this topic; others are passed over."""
+        """Return the JSON, or else the text, of the next message at this topic; others are passed over."""
         while True:
-            found, payload, _ = self.messages.get(timeout=SECONDS)
-            if found == topic:
+            result, payload, _ = self.messages.get(timeout=SECONDS)
+            if result == topic:
                 return payload.decode() if topic.endswith("status") else json.loads(payload)
 
     def close(self) -> None:

@@ -13,8 +13,6 @@ from robot_runtime.contract.published_events import PublishedEvent
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
 from server.features.events.announcer import EventAnnouncer
-from server.features.events.outlet import OutletCondition
-from server.platform.settings import Settings
 
 SCHEMA = json.loads(
     (Path(__file__).parents[4] / "robot_runtime/contract/published_events.schema.json").read_text()
@@ -27,13 +25,6 @@ class Notebook:
     def __init__(self) -> None:
         self.events: list[PublishedEvent] = []
         self.retained: dict[str, Any] = {}
-        self.state: OutletCondition = OutletCondition("ok", "Writes.")
-
-    def open(self) -> None:
-        pass
-
-    def close(self) -> None:
-        pass
 
     def publish(self, event: PublishedEvent) -> None:
         jsonschema_rs.validate(SCHEMA, asdict(event))
@@ -42,14 +33,13 @@ class Notebook:
     def retain(self, name: str, text: str) -> None:
         self.retained[name] = json.loads(text)
 
-    def condition(self) -> OutletCondition:
-        return self.state
-
     def take(self) -> list[tuple[str, str, str]]:
         """Kind, subject and state of the events since the last call."""
-        found: list[tuple[str, str, str]] = [(one.event, one.subject, one.state) for one in self.events]
+        results: list[tuple[str, str, str]] = [
+            (event.event, event.subject, event.state) for event in self.events
+        ]
         self.events.clear()
-        return found
+        return results
 
 
 @pytest.fixture
@@ -58,14 +48,14 @@ def outlet() -> Notebook:
 
 
 @pytest.fixture
-def announcer(settings: Settings, outlet: Notebook) -> EventAnnouncer:
-    return EventAnnouncer(settings, SimulatedClock(100.0), [outlet])
+def announcer(outlet: Notebook) -> EventAnnouncer:
+    return EventAnnouncer("tested", SimulatedClock(100.0), outlet)
 
 
 def alarm(fault: str, since: float, *, active: bool = True, severity: str = "alarm") -> dict[str, Any]:
-    words = {"what": "The battery is low.", "cause": "It is old.", "remedy": "Charge it."}
+    text = {"what": "The battery is low.", "cause": "It is old.", "remedy": "Charge it."}
     known = {"fault": fault, "since": since, "active": active, "severity": severity, "acknowledged": False}
-    return known | words
+    return known | text
 
 
 def block(topic: str, time: float = 100.0, **document: Any) -> Block:
@@ -96,7 +86,7 @@ def test_an_alarm_that_was_over_before_anybody_saw_it_is_still_told(
         ("alarm_ended", "board_reset", "over"),
     ]
     announcer.see_message({"op": "alarms", "alarms": [alarm("disk_low", 2.0, severity="caution")]})
-    assert [one["fault"] for one in outlet.retained["alarms"]] == ["leak", "disk_low"]
+    assert [alarm["fault"] for alarm in outlet.retained["alarms"]] == ["leak", "disk_low"]
     assert outlet.events[0].severity == "caution"
     assert outlet.events[0].text == "The battery is low. It is old. Charge it."
 
@@ -120,13 +110,13 @@ def test_sessions_begin_and_end(announcer: EventAnnouncer, outlet: Notebook) -> 
     first, second = {"id": 4, "name": "Dive"}, {"id": 5, "name": "Next"}
     for recording in (None, first, {**first, "name": "Renamed"}, second, None):
         announcer.see_message({"op": "session", "recording": recording})
-    assert [(one.event, one.subject, one.session) for one in outlet.events] == [
+    assert [(event.event, event.subject, event.session) for event in outlet.events] == [
         ("session_began", "Dive", 4),
         ("session_ended", "Renamed", 4),
         ("session_began", "Next", 5),
         ("session_ended", "Next", 5),
     ]
-    assert [one.number for one in outlet.events] == [1, 2, 3, 4]
+    assert [event.number for event in outlet.events] == [1, 2, 3, 4]
     assert outlet.retained["session"] is None
 
 
@@ -162,14 +152,6 @@ def test_a_mission_ends_once_and_an_old_one_is_no_news(announcer: EventAnnouncer
     outlet.take()
     for phase in ("running", "succeeded", "succeeded"):
         announcer.see(block("mission", time=101.0, phase=phase, **mission))
-    assert [(one.event, one.state, one.id, one.session) for one in outlet.events] == [
+    assert [(event.event, event.state, event.id, event.session) for event in outlet.events] == [
         ("mission_ended", "succeeded", 1, 4)
     ]
-
-
-def test_the_gravest_outlet_is_the_condition(settings: Settings) -> None:
-    first, second = Notebook(), Notebook()
-    announcer = EventAnnouncer(settings, SimulatedClock(), [first, second])
-    first.state = OutletCondition("failed", "The broker is away.")
-    assert announcer.condition() == ("failed", "The broker is away. Writes.")
-    assert EventAnnouncer(settings, SimulatedClock(), []).condition() is None

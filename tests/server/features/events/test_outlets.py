@@ -19,17 +19,18 @@ from robot_runtime.contract.published_events import PublishedEvent
 from server.features.events import mqtt
 from server.features.events.announcer import EventAnnouncer
 from server.features.events.config import EventsConfig
-from server.features.events.mqtt import MqttOutlet
-from server.features.events.outlet import WAITING_MAX, OutletCondition
+from server.features.events.mqtt import WAITING_MAX, MqttOutlet
+from server.features.events.outlet import OutletCondition
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import EndedRun
 from server.features.tuning.runner import TuningRunner
 from server.features.tuning.schemas import ControllerInForce, TuningRun
 from server.platform.settings import Settings
-from tests.server.features.events.rig import Listener, broker, wait_for
+from tests.server.features.events.rig import MqttListener, broker
 from tests.server.ports import reserved_port
-from tests.server.serving import Served, play
+from tests.server.serving import serve
 from tests.server.waiting import SECONDS, until
+from tests.waiting import wait_for
 
 EVENT = PublishedEvent(
     robot="tested",
@@ -82,22 +83,22 @@ def event(number: int) -> PublishedEvent:
 
 def to_broker(folder: Path, port: int, scheme: str = "mqtt", **entries: str) -> MqttOutlet:
     address = f"{scheme}://127.0.0.1:{port}"
-    return MqttOutlet("tested", "0" * 16, EventsConfig(mqtt=address, **entries), folder)
+    return MqttOutlet("tested", EventsConfig(mqtt=address, **entries), folder)
 
 
 def test_a_broker_gets_events_and_a_newcomer_finds_what_holds_now(tmp_path: Path, port: int) -> None:
     outlet = to_broker(tmp_path, port)
-    with broker(tmp_path, port), closing(Listener(port)) as listener:
+    with broker(tmp_path, port), closing(MqttListener(port)) as listener:
         outlet.retain("session", '{"id": 1, "name": "Dive"}')
         outlet.open()
         assert listener.next("mucat/tested/status") == "online"
         outlet.publish(EVENT)
-        found = listener.next("mucat/tested/event/session_ended")
-        assert found["subject"] == "Tauchgang µ"
+        result = listener.next("mucat/tested/event/session_ended")
+        assert result["subject"] == "Tauchgang µ"
         wait_for(lambda: outlet.condition().state == "ok", "the condition")
         assert outlet.condition().text.startswith(f"Broker mqtt://127.0.0.1:{port}: Connected.")
         for topic, value in (("session", {"id": 1, "name": "Dive"}), ("status", "online")):
-            with closing(Listener(port)) as newcomer:
+            with closing(MqttListener(port)) as newcomer:
                 assert newcomer.next(f"mucat/tested/{topic}") == value
         outlet.close()
         assert listener.next("mucat/tested/status") == "offline"
@@ -123,7 +124,7 @@ def test_what_is_set_while_it_connects_is_what_stays_at_the_broker(
         wait_for(lambda: setting.ident and not setting.is_alive(), "the new value to be set")
         monkeypatch.undo()
         outlet.close()
-        with closing(Listener(port)) as newcomer:
+        with closing(MqttListener(port)) as newcomer:
             assert newcomer.next("mucat/tested/session") == {"id": 2}
 
 
@@ -135,15 +136,15 @@ def test_what_waits_while_the_broker_is_away_comes_with_it(
     for number in range(WAITING_MAX + 40):
         outlet.publish(event(number))
     wait_for(lambda: outlet.condition().state == "failed", "the broker to be missed")
-    said = outlet.condition().text
-    assert "Cannot connect: Connection refused." in said
-    assert "lost: 40" in said
+    answer = outlet.condition().text
+    assert "Cannot connect: Connection refused." in answer
+    assert "lost: 40" in answer
     client, subscribed = outlet._client, threading.Event()
     assert client is not None
     reconnect = client.reconnect
     # What comes before somebody has subscribed, nobody gets.
     monkeypatch.setattr(client, "reconnect", lambda: subscribed.wait(SECONDS) and reconnect())
-    with broker(tmp_path, port), closing(Listener(port)) as listener:
+    with broker(tmp_path, port), closing(MqttListener(port)) as listener:
         subscribed.set()
         numbers = [listener.next("mucat/tested/event/session_ended")["number"] for _ in range(WAITING_MAX)]
         assert numbers == [*range(WAITING_MAX)]
@@ -152,7 +153,7 @@ def test_what_waits_while_the_broker_is_away_comes_with_it(
 
 def test_a_robot_that_vanishes_is_offline_by_its_last_will(tmp_path: Path, port: int) -> None:
     outlet = to_broker(tmp_path, port)
-    with broker(tmp_path, port), closing(Listener(port)) as listener:
+    with broker(tmp_path, port), closing(MqttListener(port)) as listener:
         outlet.open()
         assert listener.next("mucat/tested/status") == "online"
         client = outlet._client
@@ -172,7 +173,7 @@ def make_authority(folder: Path) -> None:
 
 
 def wait_to_start(outlet: MqttOutlet) -> OutletCondition:
-    """The condition after the first attempt."""
+    """Return the condition after the first attempt."""
     wait_for(lambda: outlet.condition().state != "starting", "the broker's answer")
     return outlet.condition()
 
@@ -190,16 +191,16 @@ def test_a_broker_with_tls_and_password(tmp_path: Path, port: int) -> None:
     tls = (f"certfile {tmp_path}/ca.pem", f"keyfile {tmp_path}/key.pem", f"password_file {known}")
     with broker(tmp_path, port, *tls, "allow_anonymous false"):
         trusted = {"mqtt_user": "turtle", "mqtt_password_file": str(secret), "ca_file": "ca.pem"}
-        for entries, state, words in (
+        for entries, state, message in (
             (trusted, "ok", "Connected."),
             (trusted | {"mqtt_password_file": str(other)}, "failed", "refuses the robot: Not authorized."),
             (trusted | {"ca_file": ""}, "failed", "its certificate is not trusted: self-signed certificate"),
         ):
             outlet = to_broker(tmp_path, port, "mqtts", **entries)
             outlet.open()
-            found = wait_to_start(outlet)
-            assert found.state == state
-            assert words in found.text
+            result = wait_to_start(outlet)
+            assert result.state == state
+            assert message in result.text
             outlet.close()
 
 
@@ -217,7 +218,7 @@ def test_a_secret_that_others_can_read_is_not_used(tmp_path: Path) -> None:
     assert "cannot be read" in absent.condition().text
 
 
-def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
+async def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Whoever waited for the broker would wait longer than any computer is busy.
@@ -239,7 +240,7 @@ def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
         port = server.getsockname()[1]
         mute = EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}")
 
-        async def scenario(served: Served) -> None:
+        async with serve(settings.with_section(mute)) as served:
             await until(connected.is_set, "the broker to be asked")
             announcer = served.get(EventAnnouncer)
             longest = 0.0
@@ -252,24 +253,21 @@ def test_a_broker_that_accepts_and_says_nothing_delays_neither_server_nor_stop(
             part = (await served.api.get("/health")).json()["parts"][-1]
             assert part["name"] == "events"
             assert f"mqtt://127.0.0.1:{port}" in part["text"]
-
-        play(settings.with_section(mute), scenario)
         server.shutdown(socket.SHUT_RDWR)
         thread.join()
-        for one in held:
-            one.close()
+        for holder in held:
+            holder.close()
 
 
-def test_a_server_tells_of_a_recording_from_its_start_to_its_end(
+async def test_a_server_tells_of_a_recording_from_its_start_to_its_end(
     settings: Settings, port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The last messages may take their time on a busy computer.
     monkeypatch.setattr(mqtt, "CLOSE_SECONDS", SECONDS)
     folder = settings.config.parent
     telling = EventsConfig(mqtt=f"mqtt://127.0.0.1:{port}")
-    with broker(folder, port), closing(Listener(port)) as listener:
-
-        async def scenario(served: Served) -> None:
+    with broker(folder, port), closing(MqttListener(port)) as listener:
+        async with serve(settings.with_section(telling)) as served:
             assert await asyncio.to_thread(listener.next, "mucat/tested/status") == "online"
             started = await served.api.post("/sessions", json={"name": "Dive"})
             session = started.raise_for_status().json()["id"]
@@ -282,8 +280,6 @@ def test_a_server_tells_of_a_recording_from_its_start_to_its_end(
             for kind in ("scenario", "tuning"):
                 ended = await asyncio.to_thread(listener.next, f"mucat/tested/event/{kind}_ended")
                 assert (ended["subject"], ended["state"]) == (kind, "complete")
-
-        play(settings.with_section(telling), scenario)
         # The server has ended, and the recording with it.
         assert listener.next("mucat/tested/event/session_ended")["subject"] == "Dive"
         assert listener.next("mucat/tested/status") == "offline"

@@ -2,7 +2,6 @@ import asyncio
 import hashlib
 import zipfile
 from contextlib import closing
-from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
@@ -14,6 +13,7 @@ from server.features.exports.command import FORMATS
 from server.features.exports.schemas import Format
 from server.platform.running_server import announce
 from server.platform.schema import prepare
+from server.platform.server_config import ServerConfig
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import depth_block
@@ -39,42 +39,39 @@ def test_a_session_is_exported_and_imported_by_shell_commands(
     path = tmp_path / "dive.zip"
     assert run(settings, "export", str(session), "--format", "archive", "-o", str(path)) == 0
     assert hashlib.sha256(path.read_bytes()).hexdigest() in capsys.readouterr().out
-    assert [one.name for one in tmp_path.iterdir()] == ["dive.zip"]
+    assert [file.name for file in tmp_path.iterdir()] == ["dive.zip"]
     assert run(settings, "import", str(path), data=tmp_path / "other") == 0
     assert capsys.readouterr().out == "session 1: Dive no. 1: Öresund/../x\n"
     assert run(settings, "import", str(path), data=tmp_path / "other") == 1
     assert "is here already, as number 1" in capsys.readouterr().err
     tables = tmp_path / "tables.zip"
-    wanted = ["--format", "csv", "--topics", "depth", "--start", "0.6", "--end", "0.7"]
-    assert run(settings, "export", "1", *wanted, "-o", str(tables), data=tmp_path / "other") == 0
+    expected = ["--format", "csv", "--topics", "depth", "--start", "0.6", "--end", "0.7"]
+    assert run(settings, "export", "1", *expected, "-o", str(tables), data=tmp_path / "other") == 0
     assert len(zipfile.ZipFile(tables).read("depth.csv").splitlines()) == 7
 
 
-def test_the_import_command_uses_a_running_server(
+async def test_the_import_command_uses_a_running_server(
     settings: Settings, session: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "dive.zip"
     assert run(settings, "export", str(session), "--format", "archive", "-o", str(path)) == 0
 
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            lock = settings.data.lock.open("w")
-            import fcntl
+    async with serve(settings) as served:
+        lock = settings.data.lock.open("w")
+        import fcntl
 
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            announce(served.settings)
-            assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
-            assert "is here already, as number 1" in capsys.readouterr().err
-            announce(replace(settings, port=1))
-            assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
-            assert "does not answer at http://127.0.0.1:1" in capsys.readouterr().err
-            lock.close()
-
-    asyncio.run(scenario())
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        announce(served.settings)
+        assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
+        assert "is here already, as number 1" in capsys.readouterr().err
+        announce(settings.with_section(ServerConfig(port=1)))
+        assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
+        assert "does not answer at http://127.0.0.1:1" in capsys.readouterr().err
+        lock.close()
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "message"),
     [
         (["export", "9"], "There is no session 9"),
         (["export", "1", "--topics", "x"], "no topic x"),
@@ -87,11 +84,11 @@ def test_the_import_command_uses_a_running_server(
     ],
 )
 def test_impossible_requests_are_refused_with_the_reason(
-    settings: Settings, session: int, arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+    settings: Settings, session: int, arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert session == 1
     assert run(settings, *arguments) == 1
-    assert words in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_the_shell_knows_every_format() -> None:

@@ -26,22 +26,22 @@ from robot_runtime.transport.blocks import Block, pack_documents, row
 from server.features.exports import grid
 from server.features.exports.archive_reader import examine
 from server.features.exports.formats import KINDS, check
-from server.features.exports.mcap_schemas import WELL_KNOWN
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
-from server.features.sessions.session import find_row
+from server.interchange.mcap_schemas import WELL_KNOWN
 from server.platform.models import BookmarkRow
 from server.platform.settings import Settings
 from server.platform.store import Store
-from tests.server.blocks import debug_block, depth_block, state_block
+from server.recording.session import find_row
+from tests.server.blocks import debug_block, depth_block, snapshot_block, state_block
 from tests.server.features.exports.recordings import record
-from tests.server.features.sessions.missions import TEXT, mission_blocks
+from tests.server.library.missions import TEXT, mission_blocks
 
 AWKWARD = 'say "hi", then\nbreak; é, nan'
 
 
 def rows_block(topic: str, period: float, *records: Record) -> Block:
-    rows = b"".join(row(100 + period * place, one.to_bytes()) for place, one in enumerate(records))
+    rows = b"".join(row(100 + period * index, record.to_bytes()) for index, record in enumerate(records))
     return Block.of(BY_NAME[topic], len(records), 0, rows)
 
 
@@ -73,7 +73,7 @@ def session(store: Store, settings: Settings) -> int:
         [
             depth_block(0, 50),
             rows_block("imu", 0.01, *map(imu, range(100))),
-            rows_block("truth", 0.05, *(truth(place / 10) for place in range(20))),
+            rows_block("truth", 0.05, *(truth(position / 10) for position in range(20))),
         ],
         [
             depth_block(50, 50),
@@ -88,9 +88,9 @@ def session(store: Store, settings: Settings) -> int:
     return number
 
 
-def write(store: Store, session: int, **wanted: Any) -> io.BytesIO:
+def write(store: Store, session: int, **expected: Any) -> io.BytesIO:
     row = find_row(store, session)
-    chosen, output = ExportOptions(**wanted), io.BytesIO()
+    chosen, output = ExportOptions(**expected), io.BytesIO()
     check(chosen).write(store, ExportSelection(store, row, chosen), output)
     output.seek(0)
     return output
@@ -128,20 +128,24 @@ def test_parquet_keeps_numbers_types_and_units(store: Store, session: int) -> No
 
 def test_a_mission_is_exported_with_its_document_and_every_change(store: Store, settings: Settings) -> None:
     blocks = mission_blocks()
-    told = [document for block in blocks for document in json.loads(block.payload)]
+    notices = [document for block in blocks for document in json.loads(block.payload)]
     session = record(store, settings, blocks)
     messages = [
-        json.loads(one.data)
-        for _, _, one in make_reader(write(store, session, format="mcap")).iter_messages(topics=["/mission"])
+        json.loads(message.data)
+        for _, _, message in make_reader(write(store, session, format="mcap")).iter_messages(
+            topics=["/mission"]
+        )
     ]
-    assert [one["steps"] for one in messages] == [one["steps"] for one in told]
-    assert [one["document"] for one in messages] == [TEXT, "", "", "", "", TEXT]
+    assert [document["steps"] for document in messages] == [document["steps"] for document in notices]
+    assert [message["document"] for message in messages] == [TEXT, "", "", "", "", TEXT]
     parquet = zipfile.ZipFile(write(store, session, format="parquet")).read("mission.parquet")
     table = pyarrow.parquet.read_table(io.BytesIO(parquet))
-    assert [json.loads(one) for one in table.column("steps").to_pylist()] == [one["steps"] for one in told]
+    assert [json.loads(document) for document in table.column("steps").to_pylist()] == [
+        document["steps"] for document in notices
+    ]
     csv = zipfile.ZipFile(write(store, session, format="csv")).read("mission.csv")
-    assert [json.loads(one) for one in pandas.read_csv(io.BytesIO(csv))["steps"]] == [
-        one["steps"] for one in told
+    assert [json.loads(text) for text in pandas.read_csv(io.BytesIO(csv))["steps"]] == [
+        document["steps"] for document in notices
     ]
 
 
@@ -176,15 +180,17 @@ def test_mcap_holds_every_sample_and_the_topics_that_foxglove_panels_use(store: 
     last = 0
     for schema, channel, message in reader.iter_messages(log_time_order=False):
         assert schema is not None
-        told = json.loads(message.data)
-        assert set(json.loads(schema.data).get("required", [])) <= set(told)
+        report = json.loads(message.data)
+        assert set(json.loads(schema.data).get("required", [])) <= set(report)
         assert message.log_time >= last
         last = message.log_time
-        messages.setdefault(channel.topic, []).append(told)
-    assert [one["depth"] for one in messages["/depth"]] == pytest.approx([n / 1000 for n in range(100)])
+        messages.setdefault(channel.topic, []).append(report)
+    assert [message["depth"] for message in messages["/depth"]] == pytest.approx(
+        [n / 1000 for n in range(100)]
+    )
     assert messages["/imu"][0]["attitude"] == [1, 0, 0, 0]
-    assert [one.get("latency") for one in messages["/control"]] == [pytest.approx(0.01), None, None]
-    log = {one["message"]: (one["name"], one["level"]) for one in messages["/log"]}
+    assert [message.get("latency") for message in messages["/control"]] == [pytest.approx(0.01), None, None]
+    log = {message["message"]: (message["name"], message["level"]) for message in messages["/log"]}
     assert log == {
         AWKWARD: ("debug", 2),
         "b": ("debug", 2),
@@ -197,7 +203,9 @@ def test_mcap_holds_every_sample_and_the_topics_that_foxglove_panels_use(store: 
     about = {record.name: record.metadata for record in reader.iter_metadata()}
     assert about["session"]["identifier"] == row.identifier
     assert about["configuration"]["robot.toml"] == row.configuration
-    attached = next(one for one in reader.iter_attachments() if one.name == "session.json")
+    attached = next(
+        attachment for attachment in reader.iter_attachments() if attachment.name == "session.json"
+    )
     assert json.loads(attached.data)["marks"][0]["text"] == "here it turned"
 
 
@@ -214,7 +222,7 @@ def test_mcap_has_schemas_that_foxglove_can_read(store: Store, session: int) -> 
 def _look_at(schema: dict[str, Any]) -> None:
     """Check that a schema stays within the subset that Foxglove's parser reads."""
     if "oneOf" in schema:
-        assert all(isinstance(one["const"], int) for one in schema["oneOf"])
+        assert all(isinstance(option["const"], int) for option in schema["oneOf"])
         return
     assert schema["type"] in ("boolean", "string", "number", "integer", "array", "object")
     if schema["type"] == "array":
@@ -231,7 +239,7 @@ def test_mcap_without_truth_has_depth_and_attitude(store: Store, settings: Setti
     )
     reader = make_reader(write(store, number, format="mcap"))
     places = [json.loads(message.data) for _, _, message in reader.iter_messages(topics=["/tf"])]
-    assert [place["translation"] for place in places] == [{"x": 0, "y": 0, "z": 0.007}]
+    assert [position["translation"] for position in places] == [{"x": 0, "y": 0, "z": 0.007}]
 
 
 def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings) -> None:
@@ -241,17 +249,17 @@ def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings)
         [depth_block(0, 50), rows_block("control", 0.25, control(0.1), control(0.2))],
         [depth_block(100, 50)],
     )
-    wanted = ["control.latency", "depth.depth"]
-    output = write(store, number, format="csv-grid", columns=wanted, period=0.1, start=0.5, end=3.5)
+    expected = ["control.latency", "depth.depth"]
+    output = write(store, number, format="csv-grid", columns=expected, period=0.1, start=0.5, end=3.5)
     archive = zipfile.ZipFile(output)
     table = pandas.read_csv(archive.open("grid.csv"))
     assert list(table) == ["time [s]", "utc", "control.latency [s]", "depth.depth [m]"]
     assert len(table) == 31
     depth = table["depth.depth [m]"].tolist()
     # Samples every 0.02 s from 0.5 to 1.48 s and from 2.5 to 3.48 s; older than 0.04 s is too old.
-    assert depth[:10] == pytest.approx([place * 0.005 for place in range(10)])
+    assert depth[:10] == pytest.approx([position * 0.005 for position in range(10)])
     assert all(map(math.isnan, depth[11:20]))
-    assert depth[20:30] == pytest.approx([0.1 + place * 0.005 for place in range(10)])
+    assert depth[20:30] == pytest.approx([0.1 + position * 0.005 for position in range(10)])
     assert table["control.latency [s]"].tolist()[:9] == pytest.approx(
         [0.1] * 3 + [0.2] * 5 + [math.nan], nan_ok=True
     )
@@ -262,7 +270,7 @@ def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings)
 
 
 @pytest.mark.parametrize(
-    ("wanted", "words"),
+    ("options", "message"),
     [
         ({"start": -5.0}, "The start, -5 s, lies outside of the session: it begins at 0 s"),
         ({"end": 99999.0}, "The end, 99999 s, lies outside of the session: it ends at 1.9 s"),
@@ -271,12 +279,12 @@ def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings)
     ],
 )
 def test_a_range_outside_of_the_session_is_refused(
-    store: Store, session: int, wanted: dict[str, Any], words: str
+    store: Store, session: int, options: dict[str, Any], message: str
 ) -> None:
     row = find_row(store, session)
     row.duration = 1.9
-    with pytest.raises(ExportRequestError, match=words):
-        ExportSelection(store, row, ExportOptions(format="csv", **wanted))
+    with pytest.raises(ExportRequestError, match=message):
+        ExportSelection(store, row, ExportOptions(format="csv", **options))
     ExportSelection(store, row, ExportOptions(format="csv", start=0.0, end=2.0))
 
 
@@ -299,7 +307,7 @@ def test_an_export_is_limited_to_its_range_and_topics(store: Store, session: int
 
 
 @pytest.mark.parametrize(
-    ("wanted", "words"),
+    ("options", "message"),
     [
         ({"format": "csv", "topics": ["dephts"]}, "no topic dephts; it has imu, depth"),
         ({"format": "csv", "start": 2, "end": 1}, "must be after the start"),
@@ -312,10 +320,10 @@ def test_an_export_is_limited_to_its_range_and_topics(store: Store, session: int
     ],
 )
 def test_an_impossible_export_is_refused_with_the_reason(
-    store: Store, session: int, wanted: dict[str, Any], words: str
+    store: Store, session: int, options: dict[str, Any], message: str
 ) -> None:
-    with pytest.raises(ExportRequestError, match=words):
-        write(store, session, **wanted)
+    with pytest.raises(ExportRequestError, match=message):
+        write(store, session, **options)
 
 
 # Parquet's writer and the report add the time of writing.
@@ -341,9 +349,21 @@ def test_the_report_needs_no_network_and_names_its_figures(store: Store, session
     assert re.search(r"<(script|link)[^>]+(src|href)=", text) is None
 
 
+def test_a_snapshot_has_its_values_beside_it(store: Store, settings: Settings) -> None:
+    number = record(store, settings, [depth_block(0, 60), snapshot_block(0, 101.0, b"jpeg")])
+    archive = zipfile.ZipFile(write(store, number, format="csv"))
+    (jpeg, side) = (name for name in archive.namelist() if name.startswith("snapshot/"))
+    assert archive.read(jpeg) == b"jpeg"
+    assert side == jpeg.replace(".jpg", ".json")
+    values = json.loads(archive.read(side))
+    assert (values["depth"], values["heading"], values["position"]) == (pytest.approx(0.05), None, None)
+
+
 def test_pictures_are_exported(store: Store, settings: Settings, tmp_path: Path) -> None:
     topic = BY_NAME["thumbnail"]
-    blocks = [Block.of(topic, 1, place, row(100 + place, b"jpeg %d" % place)) for place in range(3)]
+    blocks = [
+        Block.of(topic, 1, position, row(100 + position, b"jpeg %d" % position)) for position in range(3)
+    ]
     number = record(store, settings, [depth_block(0, 1)], blocks)
     archive = zipfile.ZipFile(write(store, number, format="csv"))
     assert archive.read("thumbnail/000001.500.jpg") == b"jpeg 1"
@@ -351,11 +371,11 @@ def test_pictures_are_exported(store: Store, settings: Settings, tmp_path: Path)
     table = pyarrow.parquet.read_table(io.BytesIO(tables.read("thumbnail.parquet")))
     assert table.column("jpeg").to_pylist() == [b"jpeg 0", b"jpeg 1", b"jpeg 2"]
     reader = make_reader(write(store, number, format="mcap"))
-    found = [
+    results = [
         (schema, json.loads(message.data)) for schema, _, message in reader.iter_messages(topics="/camera")
     ]
-    assert [base64.b64decode(image["data"]) for _, image in found] == [b"jpeg 0", b"jpeg 1", b"jpeg 2"]
-    schema, image = found[0]
+    assert [base64.b64decode(image["data"]) for _, image in results] == [b"jpeg 0", b"jpeg 1", b"jpeg 2"]
+    schema, image = results[0]
     assert schema is not None
     assert (schema.name, image["format"]) == ("foxglove.CompressedImage", "jpeg")
     whole = tmp_path / "whole"

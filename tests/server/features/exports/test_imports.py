@@ -20,26 +20,27 @@ from sqlalchemy import Connection, insert, text, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.archive import CHECKSUMS, HEAD, SESSION
 from robot_runtime.errors import RefusedError
 from server.features.exports import imports
-from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
+from server.features.exports.archive import write_archive
 from server.features.exports.archive_models import GAPS_STORED, ArchivedGap
 from server.features.exports.archive_reader import ArchiveError, examine, merge_gaps
 from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
-from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.retention import RetentionWorker
-from server.features.sessions.session import IMPORTING, REMOVING, UnknownSessionError, find_row
+from server.library.catalogue import Catalogue
+from server.library.retention import RetentionWorker
 from server.platform.disk_space import SPARE_BYTES, FileWriteError
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import FULL, Reader, Store, StoreError
+from server.recording.session import IMPORTING, REMOVING, UnknownSessionError, find_row
 from tests.server.blocks import debug_block, depth_block, state_block
-from tests.server.features.exports.recordings import record
-from tests.server.features.sessions.missions import mission_blocks
+from tests.server.features.exports.recordings import record, record_batches
+from tests.server.library.missions import mission_blocks
 from tests.server.serving import serve
 
 Members = dict[str, bytes]
@@ -73,42 +74,39 @@ def archive(store: Store, session: int, tmp_path: Path) -> Path:
 
 
 def contents(store: Reader, number: int) -> dict[str, Any]:
-    """All that is stored of a session, but its number and origin."""
+    """Return all that is stored of a session, but its number and origin."""
     with store.read() as database:
         row = database.get(SessionRow, number)
         assert row is not None
-        told = row.model_dump(exclude={"id", "origin"})
-        told["topics"], told["robot_state"] = json.loads(row.topics), json.loads(row.robot_state)
+        report = row.model_dump(exclude={"id", "origin"})
+        report["topics"], report["robot_state"] = json.loads(row.topics), json.loads(row.robot_state)
         for table in (Chunk, Gap, BookmarkRow, SessionTag):
             rows = database.exec(select(table).where(col(table.session_id) == number))
-            values = [one.model_dump(exclude={"id", "session_id"}) for one in rows]
-            told[table.__name__] = sorted(values, key=repr)
-    return told
+            values = [row.model_dump(exclude={"id", "session_id"}) for row in rows]
+            report[table.__name__] = sorted(values, key=repr)
+    return report
 
 
-def test_a_session_imported_elsewhere_is_unchanged(
+async def test_a_session_imported_elsewhere_is_unchanged(
     store: Store, settings: Settings, session: int, archive: Path, tmp_path: Path
 ) -> None:
     folder = DataFolder(tmp_path / "other")
     make_folders(folder)
     prepare(folder)
     with closing(Store(folder.database)) as elsewhere:
-        record(elsewhere, settings, [depth_block(0, 1)])
+        await record_batches(elsewhere, settings, [depth_block(0, 1)])
 
-    async def scenario() -> None:
-        async with serve(replace(settings, data=folder)) as served:
-            answer = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
-            assert answer.status_code == 201, answer.text
-            assert (answer.json()["id"], answer.json()["samples"]) == (2, 108)
-            again = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
-            assert again.status_code == 409
-            assert "is here already, as number 2" in again.json()["detail"]
-            bad = await served.api.post("/imports", content=archive.read_bytes()[:-100], timeout=60)
-            assert (bad.status_code, "cut off" in bad.json()["detail"]) == (422, True)
-            assert len((await served.api.get("/sessions")).json()) == 2
-            assert list(folder.imports.iterdir()) == []
-
-    asyncio.run(scenario())
+    async with serve(replace(settings, data=folder)) as served:
+        answer = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
+        assert answer.status_code == 201, answer.text
+        assert (answer.json()["id"], answer.json()["samples"]) == (2, 108)
+        again = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
+        assert again.status_code == 409
+        assert "is here already, as number 2" in again.json()["detail"]
+        bad = await served.api.post("/imports", content=archive.read_bytes()[:-100], timeout=60)
+        assert (bad.status_code, "cut off" in bad.json()["detail"]) == (422, True)
+        assert len((await served.api.get("/sessions")).json()) == 2
+        assert list(folder.imports.iterdir()) == []
     with closing(Reader(folder.database)) as brought:
         assert contents(brought, 2) == contents(store, session)
         row = find_row(brought, 2)
@@ -130,7 +128,7 @@ def change(path: Path, edit: Callable[[Members], None], *, summed: bool = True) 
 
 
 def repack(path: Path, folder: str, *others: tuple[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> Path:
-    """The archive in a folder, as macOS packs it again."""
+    """Return the archive in a folder, as macOS packs it again."""
     packed = path.with_name("packed.zip")
     added = [
         ("__MACOSX/dive/._session.json", b"\0\5"),
@@ -148,10 +146,10 @@ def tell(**changes: Any) -> Callable[[Members], None]:
     """Change entries of `session.json`, of the archive or of the session."""
 
     def edit(members: Members) -> None:
-        told = json.loads(members[SESSION])
+        message = json.loads(members[SESSION])
         for name, value in changes.items():
-            (told if name in told else told["session"])[name] = value
-        members[SESSION] = json.dumps(told).encode()
+            (message if name in message else message["session"])[name] = value
+        members[SESSION] = json.dumps(message).encode()
 
     return edit
 
@@ -208,12 +206,12 @@ def endless(members: Members) -> None:
 BAD = {
     "a checksum that is another": (flip, False, "chunks/depth is damaged: its checksum"),
     "a chunk that does not unpack": (flip, True, "Chunk 0 of depth is damaged"),
-    "a chunk that is cut": (cut, True, "Chunk 1 of depth is cut off"),
+    "a chunk that is cut": (cut, True, "chunks of depth are damaged: number 1 is cut off"),
     "too many samples": (count, True, "Chunk 0 of depth is damaged: it holds 50 samples instead of 51"),
     "a bomb": (bomb, True, "Chunk 0 of debug is damaged: it unpacks to more than 16000000 bytes"),
     "a bomb of rows": (row_bomb, True, "Chunk 0 of depth is damaged: it unpacks to more than 16000000 bytes"),
     "documents that are none": (nonsense, True, "Chunk 0 of debug is damaged: a document lacks level"),
-    "a time that is none": (endless, True, "Chunk 0 of debug has an invalid time"),
+    "a time that is none": (endless, True, "chunks of debug are damaged: number 0 has an invalid time"),
     "a newer format": (tell(version=2), True, "It has format 2; this version of µ-CAT reads format 1"),
     "another program's": (tell(format="x"), True, "is not that of an archive"),
     "no JSON": (lambda members: members.update({SESSION: b"{"}), True, "session.json is not JSON"),
@@ -234,9 +232,9 @@ BAD = {
 
 @pytest.mark.parametrize("name", BAD)
 def test_a_bad_archive_is_refused_with_the_reason(archive: Path, name: str) -> None:
-    edit, summed, words = BAD[name]
+    edit, summed, message = BAD[name]
     change(archive, edit, summed=summed)
-    with pytest.raises(ArchiveError, match=words):
+    with pytest.raises(ArchiveError, match=message):
         examine(archive, archive.with_suffix(".rows"))
 
 
@@ -296,35 +294,32 @@ def test_a_session_that_records_is_not_archived(store: Store, session: int) -> N
         write_archive(store, ExportSelection(store, row, ExportOptions(format="archive")), io.BytesIO())
 
 
-def test_a_failed_import_leaves_nothing_and_is_never_visible(
+async def test_a_failed_import_leaves_nothing_and_is_never_visible(
     store: Store, settings: Settings, session: int, archive: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     change(archive, tell(identifier="f" * 32))
     seen: list[int] = []
 
-    async def scenario() -> None:
-        imports = Imports(settings.data, store)
-        real = store.execute
+    imports = Imports(settings.data, store)
+    real = store.execute
 
-        async def failing(change: Any, rows: Any = None) -> int:
-            count = await real(change, rows)
-            seen.extend(one.id for one in Catalogue(store).page().sessions)
-            if change.table.name == "chunk":
-                raise StoreError("the disk is full")
-            return count
+    async def failing(change: Any, rows: Any = None) -> int:
+        count = await real(change, rows)
+        seen.extend(session.id for session in Catalogue(store).page().sessions)
+        if change.table.name == "chunk":
+            raise StoreError("the disk is full")
+        return count
 
-        monkeypatch.setattr(store, "execute", failing)
-        with pytest.raises(StoreError):
-            await imports.take(archive)
-
-    asyncio.run(scenario())
+    monkeypatch.setattr(store, "execute", failing)
+    with pytest.raises(StoreError):
+        await imports.take(archive)
     assert set(seen) == {session}
     with store.read() as database:
         states = database.exec(select(SessionRow.state).order_by(col(SessionRow.id))).all()
     assert states == ["complete", REMOVING]
 
 
-def test_an_import_whose_failure_could_not_be_stored_does_not_block_the_next(
+async def test_an_import_whose_failure_could_not_be_stored_does_not_block_the_next(
     store: Store, settings: Settings, session: int, archive: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     change(archive, tell(identifier="f" * 32))
@@ -332,28 +327,25 @@ def test_an_import_whose_failure_could_not_be_stored_does_not_block_the_next(
     async def fail(*_: object, **__: object) -> int:
         raise StoreError(FULL)
 
-    async def scenario() -> None:
-        imports = Imports(settings.data, store)
-        with monkeypatch.context() as full:
-            full.setattr(imports, "_fill_chunks", fail)
-            drop, marked = imports._drop_unfinished, 0
+    imports = Imports(settings.data, store)
+    with monkeypatch.context() as full:
+        full.setattr(imports, "_fill_chunks", fail)
+        drop, marked = imports._drop_unfinished, 0
 
-            async def drop_first() -> None:
-                nonlocal marked
-                marked += 1
-                if marked > 1:
-                    raise StoreError(FULL)
-                await drop()
+        async def drop_first() -> None:
+            nonlocal marked
+            marked += 1
+            if marked > 1:
+                raise StoreError(FULL)
+            await drop()
 
-            full.setattr(imports, "_drop_unfinished", drop_first)
-            with pytest.raises(StoreError):
-                await imports.take(archive)
-        with pytest.raises(RefusedError, match="is being removed"):
+        full.setattr(imports, "_drop_unfinished", drop_first)
+        with pytest.raises(StoreError):
             await imports.take(archive)
-        await RetentionWorker(store, settings, Notices(clock := SimulatedClock(), print), clock).apply(1e9)
-        assert await imports.take(archive) > session
-
-    asyncio.run(scenario())
+    with pytest.raises(RefusedError, match="is being removed"):
+        await imports.take(archive)
+    await RetentionWorker(store, settings, Notices(clock := SimulatedClock(), print), clock).apply(1e9)
+    assert await imports.take(archive) > session
 
 
 def test_an_archive_larger_than_the_free_space_is_refused_before_reading(
@@ -366,7 +358,7 @@ def test_an_archive_larger_than_the_free_space_is_refused_before_reading(
     imports = Imports(settings.data, store)
     with pytest.raises(FileWriteError, match="Free some space"):
         asyncio.run(imports.take(archive))
-    assert [one.id for one in Catalogue(store).page().sessions] == [session]
+    assert [session.id for session in Catalogue(store).page().sessions] == [session]
     disk.free += 1
     asyncio.run(imports.take(archive))
     assert len(Catalogue(store).page().sessions) == 2
@@ -389,15 +381,15 @@ def test_a_half_imported_session_of_a_killed_server_is_removed(
 
 def test_gaps_beyond_what_can_be_shown_are_merged_and_nothing_of_them_is_lost() -> None:
     gaps = [
-        ArchivedGap(topic=topic, kind="missed", time=100.0 + place, missed=2)
-        for place in range(15_000)
+        ArchivedGap(topic=topic, kind="missed", time=100.0 + position, missed=2)
+        for position in range(15_000)
         for topic in ("depth", "imu")
     ]
     merged = merge_gaps(gaps)
     assert len(merged) <= GAPS_STORED
     for topic in ("depth", "imu"):
-        own = [one for one in merged if one.topic == topic]
-        assert sum(one.missed for one in own) == 30_000
+        own = [gap for gap in merged if gap.topic == topic]
+        assert sum(gap.missed for gap in own) == 30_000
         assert own[0].time == 100.0
     few = gaps[:GAPS_STORED]
     assert merge_gaps(few) == few

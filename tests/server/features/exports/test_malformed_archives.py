@@ -11,20 +11,20 @@ from typing import Any
 
 import pytest
 
-from server.features.comparison.comparer import Comparer
-from server.features.comparison.schemas import ComparisonQuery
+from robot_runtime.contract.archive import CHUNKS, HEAD, SESSION
+from server.analysis.comparer import Comparer
+from server.analysis.schemas import ComparisonQuery
 from server.features.exports import archive_reader, imports
-from server.features.exports.archive import CHUNKS, HEAD, SESSION
 from server.features.exports.archive_reader import ROWS_AT_ONCE, ArchiveError, examine
 from server.features.exports.export_process import ExportProcessError
 from server.features.exports.imports import Imports
-from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.recording import Recording, RecordingError, reading_content
-from server.features.sessions.replay import RANGE_MAX, read_blocks_between
-from server.features.sessions.session import find_row
-from server.features.sessions.timeline import read_timeline
+from server.library.catalogue import Catalogue
+from server.library.content import Recording, RecordingError, reading_content
+from server.library.replay import RANGE_MAX, read_blocks_between
+from server.library.timeline import read_timeline
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.recording.session import find_row
 from tests.released import ARCHIVE, RELEASED, SIGNALS
 from tests.server.features.exports.test_imports import Members, change, tell
 
@@ -55,12 +55,12 @@ def restate(topic: str, edit: Callable[[Document], object]) -> Edit:
     return restated
 
 
-def announce(place: int, value: Any) -> Edit:
+def announce(position: int, value: Any) -> Edit:
     """Change an entry of the head of the first chunk of depth."""
 
     def announced(members: Members) -> None:
         head = list(HEAD.unpack_from(members[CHUNKS + "depth"]))
-        head[place] = value
+        head[position] = value
         members[CHUNKS + "depth"] = HEAD.pack(*head) + members[CHUNKS + "depth"][HEAD.size :]
 
     return announced
@@ -79,14 +79,20 @@ MALFORMED = {
     "a gap of another century": (gap(time=1e15), "far from the session"),
     "a bookmark made in another age": (mark(made=1e15), "markers.0.made"),
     "a bookmark of another century": (mark(time=1e14), "far from the session"),
-    "an event without a kind": (restate("event", lambda one: one.pop("kind")), "a document lacks kind"),
-    "an odd severity": (restate("event", lambda one: one.update(severity="odd")), "'odd' is no"),
-    "a time in words": (restate("state", lambda one: one.update(time="5")), "'5' is no"),
-    "a time that is true": (restate("debug", lambda one: one.update(time=True)), "True is no"),
-    "a time that is no number": (restate("debug", lambda one: one.update(time=float("nan"))), "holds NaN"),
+    "an event without a kind": (
+        restate("event", lambda document: document.pop("kind")),
+        "a document lacks kind",
+    ),
+    "an odd severity": (restate("event", lambda item: item.update(severity="odd")), "'odd' is no"),
+    "a time in words": (restate("state", lambda entry: entry.update(time="5")), "'5' is no"),
+    "a time that is true": (restate("debug", lambda element: element.update(time=True)), "True is no"),
+    "a time that is no number": (
+        restate("debug", lambda member: member.update(time=float("nan"))),
+        "holds NaN",
+    ),
     "other times than announced": (announce(1, -1.0), "other times than it announces"),
-    "odd controllers": (restate("state", lambda one: one["loops"][0].update(controllers=5)), "5 is no"),
-    "odd parameters": (restate("parameters", lambda one: one.update(parameters="odd")), "'odd' is no"),
+    "odd controllers": (restate("state", lambda fields: fields["loops"][0].update(controllers=5)), "5 is no"),
+    "odd parameters": (restate("parameters", lambda fields: fields.update(parameters="odd")), "'odd' is no"),
     "an odd state at the start": (tell(robot_state={"time": "x"}), "'x' is no"),
     "a long state at the start": (tell(robot_state={"x": "y" * 1_100_000}), "robot_state is longer than"),
 }
@@ -94,15 +100,15 @@ MALFORMED = {
 
 @pytest.mark.parametrize("name", MALFORMED)
 def test_a_malformed_archive_is_refused_with_the_reason(archive: Path, name: str) -> None:
-    edit, words = MALFORMED[name]
+    edit, text = MALFORMED[name]
     examine(archive, archive.with_suffix(".rows"))
     change(archive, edit)
-    with pytest.raises(ArchiveError, match=words):
+    with pytest.raises(ArchiveError, match=text):
         examine(archive, archive.with_suffix(".rows"))
 
 
 def read_all(store: Store, number: int) -> Iterator[Callable[[], object]]:
-    """The readings of a session that pages ask for."""
+    """Yield the readings of a session that pages ask for."""
     row = find_row(store, number)
     recording = Recording(store, row)
     start = row.started_steady
@@ -157,11 +163,11 @@ def mutate(value: Any, chance: random.Random) -> Any:
     if isinstance(value, dict) and value and chance.random() < 0.95:
         name = chance.choice(list(value))
         if chance.random() < 0.1:
-            return {key: one for key, one in value.items() if key != name}
+            return {key: content for key, content in value.items() if key != name}
         return value | {name: mutate(value[name], chance)}
     if isinstance(value, list) and value and chance.random() < 0.95:
-        place = chance.randrange(len(value))
-        return [*value[:place], mutate(value[place], chance), *value[place + 1 :]]
+        position = chance.randrange(len(value))
+        return [*value[:position], mutate(value[position], chance), *value[position + 1 :]]
     return chance.choice(STRANGE)
 
 
@@ -206,9 +212,9 @@ def test_a_mutated_archive_is_refused_or_readable(
 
 
 STORED = {
-    "an event without a kind": ("event", lambda one: one.pop("kind")),
-    "odd controllers": ("state", lambda one: one["loops"][0].update(controllers=5)),
-    "odd parameters": ("parameters", lambda one: one.update(parameters=[5])),
+    "an event without a kind": ("event", lambda fields: fields.pop("kind")),
+    "odd controllers": ("state", lambda fields: fields["loops"][0].update(controllers=5)),
+    "odd parameters": ("parameters", lambda fields: fields.update(parameters=[5])),
 }
 """Content that earlier versions let in."""
 
@@ -235,9 +241,9 @@ def test_stored_content_that_is_not_expected_is_reported(
 def test_a_server_reads_no_session_of_an_archive_in_its_own_process(
     settings: Settings, store: Store, archive: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    one = {"topic": "depth", "kind": "missed", "time": 1.5, "missed": 1}
+    item = {"topic": "depth", "kind": "missed", "time": 1.5, "missed": 1}
     count = 2 * ROWS_AT_ONCE + 1
-    change(archive, tell(gaps=[one] * count))
+    change(archive, tell(gaps=[item] * count))
     monkeypatch.setattr(archive_reader, "Archive", None)
     stored: list[int] = []
     execute = store.execute

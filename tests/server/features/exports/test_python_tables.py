@@ -15,9 +15,9 @@ from robot_runtime.transport.blocks import Block, pack_documents
 from server.features.exports.formats import KINDS
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
-from server.features.sessions.session import find_row
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.recording.session import find_row
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.doors.rig import imu, rows_block
 from tests.server.features.exports.recordings import record
@@ -35,7 +35,9 @@ def record_every_kind(store: Store, settings: Settings) -> int:
     """Rows with numbers of every kind, NaN among them, lines of text and a document of everything."""
     alarm = Event(time=100.25, kind="leak", severity="alarm", text="water in the hull")
     latencies = (0.01, math.nan, math.inf)
-    ticks = [Control(set_point=0.5, depth=0.25, error=0.25, output=-1, latency=one) for one in latencies]
+    ticks = [
+        Control(set_point=0.5, depth=0.25, error=0.25, output=-1, latency=latency) for latency in latencies
+    ]
     return record(
         store,
         settings,
@@ -45,7 +47,7 @@ def record_every_kind(store: Store, settings: Settings) -> int:
         ],
         [
             depth_block(50, 50),
-            rows_block("control", 0, *((100 + place / 10, one) for place, one in enumerate(ticks))),
+            rows_block("control", 0, *((100 + index / 10, tick) for index, tick in enumerate(ticks))),
             debug_block(0, "12", "it's wet"),
             state_block(0),
             Block.of(BY_NAME["event"], 1, 0, pack_documents([alarm])),
@@ -69,18 +71,20 @@ def write(store: Store, session: int, tmp_path: Path) -> Callable[[Any], Path]:
 def test_a_file_gives_the_tables_of_the_data_folder(
     settings: Settings, session: int, write: Callable[[Any], Path], kind: str
 ) -> None:
-    kept = FolderSessions(settings.data.path).load(session)
+    stored = FolderSessions(settings.data.path).load(session)
     exported = Sessions.read(write(kind))
-    assert set(exported.topics) == set(kept.topics) >= {"depth", "imu", "control", "state", "debug", "event"}
+    assert (
+        set(exported.topics) == set(stored.topics) >= {"depth", "imu", "control", "state", "debug", "event"}
+    )
     for name in ("identifier", "name", "robot", "version", "configuration"):
-        assert exported.about[name] == kept.about[name]
-    for topic in kept.topics:
-        one, other = kept.pandas(topic), exported.pandas(topic)
-        assert kept.units(topic) == exported.units(topic)
+        assert exported.about[name] == stored.about[name]
+    for topic in stored.topics:
+        first, other = stored.pandas(topic), exported.pandas(topic)
+        assert stored.units(topic) == exported.units(topic)
         # JSON has no infinity.
         if kind == "mcap":
-            one = one.replace(math.inf, math.nan)
-        pandas.testing.assert_frame_equal(one, other, rtol=1e-9, check_dtype=False, check_like=True)
+            first = first.replace(math.inf, math.nan)
+        pandas.testing.assert_frame_equal(first, other, rtol=1e-9, check_dtype=False, check_like=True)
         assert exported.polars(topic).columns == [*other]
 
 

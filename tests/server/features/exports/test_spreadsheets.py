@@ -19,10 +19,10 @@ from server.features.exports import workbook
 from server.features.exports.formats import KINDS, check
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
-from server.features.sessions.session import find_row
 from server.platform.csv_cells import FORMULA, STYLES, Spreadsheet, escape_formula
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.recording.session import find_row
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.exports.recordings import record
 from tests.server.features.exports.test_python_tables import record_every_kind
@@ -36,19 +36,19 @@ def session(store: Store, settings: Settings) -> int:
     return record_every_kind(store, settings)
 
 
-def write(store: Store, number: int, output: Any, **wanted: Any) -> None:
-    options = ExportOptions(**wanted)
+def write(store: Store, number: int, output: Any, **expected: Any) -> None:
+    options = ExportOptions(**expected)
     check(options).write(store, ExportSelection(store, find_row(store, number), options), output)
 
 
 def cells_in_excel(data: bytes, decimal: str) -> list[list[str]]:
-    """The cells as a double click shows them: without a mark the text is taken for Windows-1252."""
+    """Return the cells as a double click shows them: without a mark the text is taken for Windows-1252."""
     text = data[3:].decode() if data.startswith(b"\xef\xbb\xbf") else data.decode("cp1252", "replace")
     return list(csv.reader(io.StringIO(text, newline=""), delimiter=";" if decimal == "," else ","))
 
 
 def number_in_excel(cell: str, decimal: str) -> float:
-    """Raises ValueError where a spreadsheet of this country sees a text, a date, or another number."""
+    """Raise ValueError where a spreadsheet of this country sees a text, a date, or another number."""
     other = "." if decimal == "," else ","
     if other in cell:
         raise ValueError(cell)
@@ -76,9 +76,9 @@ def test_a_spreadsheet_reads_the_recorded_numbers_and_units(
     for there, known in zip(cells, lines, strict=True):
         moment = datetime.strptime(there[1].replace(decimal, "."), "%Y-%m-%d %H:%M:%S.%f").replace(tzinfo=UTC)
         assert moment == datetime.fromisoformat(known[1])
-        for place in (0, *range(2, len(known))):
-            assert (number_in_excel(there[place], decimal) if there[place] else None) == (
-                float(known[place]) if known[place] not in ("", "nan", "inf") else None
+        for position in (0, *range(2, len(known))):
+            assert (number_in_excel(there[position], decimal) if there[position] else None) == (
+                float(known[position]) if known[position] not in ("", "nan", "inf") else None
             )
 
 
@@ -95,10 +95,10 @@ def test_python_reads_each_of_them_back(
             write(store, session, output, format="csv", spreadsheet=style)
     plain, sheet = map(Sessions.read, paths)
     for topic in plain.topics:
-        one, other = plain.pandas(topic), sheet.pandas(topic)
+        first, other = plain.pandas(topic), sheet.pandas(topic)
         if spreadsheet != "none":
-            one = one.replace([math.inf, -math.inf], math.nan)
-        pandas.testing.assert_frame_equal(one, other, check_dtype=False)
+            first = first.replace([math.inf, -math.inf], math.nan)
+        pandas.testing.assert_frame_equal(first, other, check_dtype=False)
         assert plain.units(topic) == sheet.units(topic)
 
 
@@ -123,11 +123,11 @@ def test_an_apostrophe_can_be_told_from_one_that_was_there(beginning: str) -> No
 
 
 def sheets(data: bytes) -> dict[str, list[dict[str, Any]]]:
-    """The cells of each sheet by their column: numbers, texts, true and false; read as the format says."""
+    """Return the cells of each sheet by column: numbers, texts, true and false."""
     with zipfile.ZipFile(io.BytesIO(data)) as files:
         assert files.testzip() is None
         names = re.findall(r'<sheet name="([^"]*)"', files.read("xl/workbook.xml").decode())
-        texts = [files.read(f"xl/worksheets/sheet{place + 1}.xml") for place in range(len(names))]
+        texts = [files.read(f"xl/worksheets/sheet{position + 1}.xml") for position in range(len(names))]
     return {
         name: [
             {cell.attrib["r"].rstrip("0123456789"): _value(cell) for cell in line}
@@ -152,14 +152,14 @@ def _value(cell: ElementTree.Element) -> Any:
 def test_a_workbook_has_real_numbers_dates_and_texts(store: Store, session: int) -> None:
     output = io.BytesIO()
     write(store, session, output, format="xlsx")
-    found = sheets(output.getvalue())
+    result = sheets(output.getvalue())
     row = find_row(store, session)
     source = ExportSelection(store, row, ExportOptions(format="csv"))
-    assert [*found] == [
+    assert [*result] == [
         "session",
         *(name for name in source.names if source.topics[name]["kind"] != "picture"),
     ]
-    head, first, *rest = found["depth"]
+    head, first, *rest = result["depth"]
     assert (head["A"], head["B"], head["C"]) == ("time [s]", "utc", "time [µs]")
     assert len(rest) == 99
     date = datetime(1899, 12, 30, tzinfo=UTC) + timedelta(days=first["B"])
@@ -168,9 +168,9 @@ def test_a_workbook_has_real_numbers_dates_and_texts(store: Store, session: int)
     expected = read_csv_export(_csv(store, session)).pandas("depth")
     assert values["depth [m]"] == pytest.approx(expected["depth"][0], rel=1e-12)
     # NaN and infinity are no cells.
-    latency = next(letter for letter, title in found["control"][0].items() if title.startswith("latency"))
-    assert [latency in line for line in found["control"][1:]] == [True, False, False]
-    assert [line["D"] for line in found["debug"][2:3]] == ["it's wet"] or found["debug"]
+    latency = next(letter for letter, title in result["control"][0].items() if title.startswith("latency"))
+    assert [latency in line for line in result["control"][1:]] == [True, False, False]
+    assert [line["D"] for line in result["debug"][2:3]] == ["it's wet"] or result["debug"]
     assert output.getvalue() == _again(store, session)
 
 
@@ -191,9 +191,9 @@ def test_texts_of_a_workbook_are_no_formulas_and_no_links(store: Store, settings
     number = record(store, settings, [debug_block(0, *texts)])
     output = io.BytesIO()
     write(store, number, output, format="xlsx")
-    found = sheets(output.getvalue())["debug"]
-    (column,) = [letter for letter, title in found[0].items() if title == "text"]
-    assert [line[column].replace("_x0001_", "\x01") for line in found[1:]] == texts
+    result = sheets(output.getvalue())["debug"]
+    (column,) = [letter for letter, title in result[0].items() if title == "text"]
+    assert [line[column].replace("_x0001_", "\x01") for line in result[1:]] == texts
     with zipfile.ZipFile(io.BytesIO(output.getvalue())) as files:
         assert not any("<f>" in files.read(name).decode() for name in files.namelist())
 

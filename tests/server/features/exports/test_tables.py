@@ -19,17 +19,17 @@ from server.features.exports.description import file_name
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.exports.tables import write_tables
-from server.features.sessions.recording import CHUNKS_AT_ONCE, RecordingError
-from server.features.sessions.session import find_row
+from server.library.content import CHUNKS_AT_ONCE, RecordingError
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.recording.session import find_row
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.exports.recordings import STARTED_STEADY, record
 
 
-def make(store: Store, session: int, **wanted: Any) -> ExportSelection:
+def make(store: Store, session: int, **expected: Any) -> ExportSelection:
     row = find_row(store, session)
-    return ExportSelection(store, row, ExportOptions(**{"format": "csv", **wanted}))
+    return ExportSelection(store, row, ExportOptions(**{"format": "csv", **expected}))
 
 
 def unpack(store: Store, source: ExportSelection) -> zipfile.ZipFile:
@@ -82,11 +82,11 @@ def test_exported_numbers_equal_the_recorded_ones(store: Store, settings: Settin
         struct.pack("<f", value) for value in single
     ]
     lines = table(archive, "depth")
-    assert [int(one["time [µs]"]) for one in lines] == list(range(30))
-    assert [float(one["depth [m]"]) for one in lines] == pytest.approx(
+    assert [int(line["time [µs]"]) for line in lines] == list(range(30))
+    assert [float(line["depth [m]"]) for line in lines] == pytest.approx(
         [n / 1000 for n in range(30)], abs=1e-12
     )
-    assert [int(one["pressure [Pa]"]) for one in lines] == [101_325 + n for n in range(30)]
+    assert [int(line["pressure [Pa]"]) for line in lines] == [101_325 + n for n in range(30)]
 
 
 def test_the_header_gives_units_and_two_times(store: Store, settings: Settings) -> None:
@@ -105,7 +105,7 @@ def test_documents_are_tables_too(store: Store, settings: Settings) -> None:
     archive = unpack(
         store, make(store, record(store, settings, [debug_block(0, awkward, "b"), state_block(0)]))
     )
-    assert [(one["level"], one["text"]) for one in table(archive, "debug")] == [("1", awkward), ("1", "b")]
+    assert [(line["level"], line["text"]) for line in table(archive, "debug")] == [("1", awkward), ("1", "b")]
     (state,) = table(archive, "state")
     assert (state["armed"], state["armed_since"], state["port"]) == ("false", "", "board.tty")
     assert json.loads(state["colours"]) == ["yellow"]
@@ -114,7 +114,7 @@ def test_documents_are_tables_too(store: Store, settings: Settings) -> None:
 def test_each_chunk_is_exported_once_and_in_order(store: Store, settings: Settings) -> None:
     batches = [[depth_block(3 * number, 3)] for number in range(CHUNKS_AT_ONCE * 2 + 1)]
     archive = unpack(store, make(store, record(store, settings, *batches)))
-    numbers = [int(one["time [µs]"]) for one in table(archive, "depth")]
+    numbers = [int(line["time [µs]"]) for line in table(archive, "depth")]
     assert numbers == list(range(3 * len(batches)))
 
 
@@ -124,13 +124,13 @@ def test_an_export_holds_the_recorded_topics_and_the_session_s_description(
     session = record(store, settings, [depth_block(0, 1), depth_block(5, 1)])
     archive = unpack(store, make(store, session))
     assert set(archive.namelist()) == {"session.json", "depth.csv"}
-    told: dict[str, Any] = json.loads(archive.read("session.json"))
-    assert (told["id"], told["note"], told["state"]) == (session, "calm", "complete")
-    assert told["configuration"] == settings.config.read_text()
-    assert told["robot_state"] == {"mode": "disarmed"}
-    assert told["gaps"] == [{"topic": "depth", "kind": "missed", "time": 0.0, "missed": 4}]
-    assert told["topics"]["depth"]["fields"][1]["unit"] == "m"
-    assert datetime.fromisoformat(told["started"]).tzinfo == UTC
+    message: dict[str, Any] = json.loads(archive.read("session.json"))
+    assert (message["id"], message["note"], message["state"]) == (session, "calm", "complete")
+    assert message["configuration"] == settings.config.read_text()
+    assert message["robot_state"] == {"mode": "disarmed"}
+    assert message["gaps"] == [{"topic": "depth", "kind": "missed", "time": 0.0, "missed": 4}]
+    assert message["topics"]["depth"]["fields"][1]["unit"] == "m"
+    assert datetime.fromisoformat(message["started"]).tzinfo == UTC
 
 
 def test_a_recording_is_read_by_its_own_definitions(store: Store, settings: Settings) -> None:

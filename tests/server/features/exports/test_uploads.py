@@ -22,7 +22,7 @@ async def hang() -> AsyncIterator[bytes]:
 
 
 async def linger() -> AsyncIterator[bytes]:
-    """Hangs for a second, which comes after a limit of none however slow the computer is."""
+    """Hang for a second, which comes after a limit of none however slow the computer is."""
     yield b"PK"
     await asyncio.sleep(1)
 
@@ -40,21 +40,18 @@ def left_over(settings: Settings) -> list[Path]:
     return list(settings.data.imports.glob("*"))
 
 
-def test_an_upload_that_hangs_does_not_hold_up_others(settings: Settings, store: Store) -> None:
-    async def run() -> None:
-        arrivals = Imports(settings.data, store)
-        hanging = [asyncio.create_task(arrivals.receive(hang(), None)) for _ in range(UPLOADS_MAX - 1)]
-        await asyncio.sleep(0)
-        assert await arrivals.receive(send(), None) == 1
-        hanging.append(asyncio.create_task(arrivals.receive(hang(), None)))
-        await asyncio.sleep(0)
-        with pytest.raises(RefusedError, match=f"{UPLOADS_MAX} archives are being uploaded"):
-            await arrivals.receive(send(), None)
-        for task in hanging:
-            task.cancel()
-        await asyncio.gather(*hanging, return_exceptions=True)
-
-    asyncio.run(run())
+async def test_an_upload_that_hangs_does_not_hold_up_others(settings: Settings, store: Store) -> None:
+    arrivals = Imports(settings.data, store)
+    hanging = [asyncio.create_task(arrivals.receive(hang(), None)) for _ in range(UPLOADS_MAX - 1)]
+    await asyncio.sleep(0)
+    assert await arrivals.receive(send(), None) == 1
+    hanging.append(asyncio.create_task(arrivals.receive(hang(), None)))
+    await asyncio.sleep(0)
+    with pytest.raises(RefusedError, match=f"{UPLOADS_MAX} archives are being uploaded"):
+        await arrivals.receive(send(), None)
+    for task in hanging:
+        task.cancel()
+    await asyncio.gather(*hanging, return_exceptions=True)
     assert left_over(settings) == []
 
 

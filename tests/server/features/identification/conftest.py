@@ -42,7 +42,7 @@ def record(folder: Path) -> RecordedTrials:
     (folder / "robot.toml").write_text("")
     text = _shipped()["sea_trial"].replace("duration = 120", f"duration = {SECONDS}")
     head, *events = text.split("[[events]]")
-    early = [one for one in events if float(one.split("at = ")[1].split()[0]) < SECONDS]
+    early = [event for event in events if float(event.split("at = ")[1].split()[0]) < SECONDS]
     data = DataFolder(folder / "data")
     for seed in (1, 2):
         path = folder / f"trial{seed}.toml"

@@ -24,7 +24,7 @@ def test_a_fit_that_predicts_worse_is_not_called_better() -> None:
     assert describe_improvement(0.5) == "2.0 times worse"
 
 
-class Robot:
+class DisarmedRobot:
     """A disarmed robot without a simulator of its own; records the gains that it gets."""
 
     def __init__(self) -> None:
@@ -41,32 +41,29 @@ class Robot:
 
 
 @pytest.fixture
-def robot() -> Robot:
-    return Robot()
+def robot() -> DisarmedRobot:
+    return DisarmedRobot()
 
 
 @pytest.fixture
-def adoption(settings: Settings, robot: Robot) -> CraftAdoption:
+def adoption(settings: Settings, robot: DisarmedRobot) -> CraftAdoption:
     part = cast(Any, robot)
     return CraftAdoption(settings, part, part, part)
 
 
-def test_a_second_adoption_of_the_same_craft_leaves_the_one_before_to_be_restored(
+async def test_a_second_adoption_of_the_same_craft_leaves_the_one_before_to_be_restored(
     settings: Settings, adoption: CraftAdoption
 ) -> None:
-    async def work() -> None:
-        await adoption.adopt(LIGHT, "")
-        await adoption.adopt(HEAVY, "")
-        assert await adoption.adopt(HEAVY, "") == ["Nothing: it is the craft in force."]
-        assert settings.data.craft.read_text() == HEAVY
-        await adoption.undo("")
-
-    asyncio.run(work())
+    await adoption.adopt(LIGHT, "")
+    await adoption.adopt(HEAVY, "")
+    assert await adoption.adopt(HEAVY, "") == ["Nothing: it is the craft in force."]
+    assert settings.data.craft.read_text() == HEAVY
+    await adoption.undo("")
     assert settings.data.craft.read_text() == LIGHT
 
 
 def test_an_adoption_follows_the_configuration_in_force_and_not_its_file(
-    settings: Settings, robot: Robot
+    settings: Settings, robot: DisarmedRobot
 ) -> None:
     part = cast(Any, robot)
     in_force = "[control.gains.predictive]\nthrust = 0.3\n"
@@ -81,17 +78,14 @@ def test_an_adoption_follows_the_configuration_in_force_and_not_its_file(
 @pytest.mark.parametrize(
     ("why", "restart"), [(SIMULATION_ELSEWHERE, True), ("The emulated robot lies on a workbench.", False)]
 )
-def test_only_a_simulator_on_another_computer_must_be_started_again(
+async def test_only_a_simulator_on_another_computer_must_be_started_again(
     settings: Settings, why: str, restart: bool
 ) -> None:
     asleep = (sys.executable, "-c", "import time; time.sleep(600)")
 
-    async def scenario() -> None:
-        simulator = ProcessCommand("simulator", "simulator", asleep)
-        async with serve(replace(settings, mode="hil"), [simulator]) as served:
-            await served.get(ProcessSupervisor).pause("simulator", why)
-            effects = " ".join(await served.get(CraftAdoption).adopt(HEAVY, ""))
-            assert ("must be started again with this craft" in effects) == restart
-            assert "was started again" not in effects
-
-    asyncio.run(scenario())
+    simulator = ProcessCommand("simulator", "simulator", asleep)
+    async with serve(replace(settings, robot=replace(settings.robot, mode="hil")), [simulator]) as served:
+        await served.get(ProcessSupervisor).pause("simulator", why)
+        effects = " ".join(await served.get(CraftAdoption).adopt(HEAVY, ""))
+        assert ("must be started again with this craft" in effects) == restart
+        assert "was started again" not in effects

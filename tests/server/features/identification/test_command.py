@@ -20,15 +20,15 @@ def test_recorded_sessions_give_a_craft_file_and_a_report(
 ) -> None:
     out, report = tmp_path / "craft.toml", tmp_path / "report.html"
     assert run(trials, "1", "--leave-out", "2", "--out", str(out), "--report", str(report)) == 0
-    said = capsys.readouterr()
-    assert "Thrust coefficient of the fins" in said.out
-    assert "not seen in these sessions: it needs swimming sideways" in said.out
-    assert "Prediction of Sea trial, which was left out: the error is" in said.out
-    assert "Fitting" in said.err
-    found = load_craft(out)
-    assert found.title == "Fitted to Sea trial"
-    assert found.craft.fin_drag == pytest.approx(0.22, rel=0.05)
-    assert found.craft.buoyancy_height == pytest.approx(0.0085, rel=0.05)
+    output = capsys.readouterr()
+    assert "Thrust coefficient of the fins" in output.out
+    assert "not seen in these sessions: it needs swimming sideways" in output.out
+    assert "Prediction of Sea trial, which was left out: the error is" in output.out
+    assert "Fitting" in output.err
+    craft = load_craft(out)
+    assert craft.title == "Fitted to Sea trial"
+    assert craft.craft.fin_drag == pytest.approx(0.22, rel=0.05)
+    assert craft.craft.buoyancy_height == pytest.approx(0.0085, rel=0.05)
     text = report.read_text()
     assert "Not seen in these sessions" in text
     # The chart of measured over predicted signals, and the library that draws it.

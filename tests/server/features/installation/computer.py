@@ -42,12 +42,12 @@ class Computer:
     def run(
         self, command: Sequence[str], _environment: Mapping[str, str], _seconds: float
     ) -> "subprocess.CompletedProcess[str]":
-        words = " ".join(command)
-        self.commands.append(words)
-        problem = next((text for part, text in self.broken.items() if part in words), "")
+        message = " ".join(command)
+        self.commands.append(message)
+        problem = next((text for part, text in self.broken.items() if part in message), "")
         if problem:
             return subprocess.CompletedProcess(command, 1, "", problem)
-        answer = next((text for part, text in self.answers.items() if part in words), None)
+        answer = next((text for part, text in self.answers.items() if part in message), None)
         if answer is None:
             answer = self._carry_out(command) or ""
         return subprocess.CompletedProcess(command, 0, answer, "")
@@ -61,10 +61,10 @@ class Computer:
         elif program == "usermod":
             chosen = rest[2].split(",")
             lines = [line.split(":") for line in (etc / "group").read_text().splitlines()]
-            for one in lines:
-                if one[0] in chosen:
-                    one[-1] = ",".join(filter(None, [*one[-1].split(","), rest[-1]]))
-            (etc / "group").write_text("".join(":".join(one) + "\n" for one in lines))
+            for item in lines:
+                if item[0] in chosen:
+                    item[-1] = ",".join(filter(None, [*item[-1].split(","), rest[-1]]))
+            (etc / "group").write_text("".join(":".join(fields) + "\n" for fields in lines))
         elif program == "install":
             Path(rest[-1]).mkdir(parents=True)
         elif rest[:2] == ["-m", "venv"]:
@@ -80,13 +80,13 @@ class Computer:
         return None
 
     def effects(self, cut: int = -1, *, dry: bool = False) -> Effects:
-        """Its effects; the power is cut before the one of number `cut`."""
-        left = [cut]
+        """Return its effects; the power is cut before the one of number `cut`."""
+        remaining = [cut]
 
         def before(_: str) -> None:
-            if left[0] == 0:
+            if remaining[0] == 0:
                 raise PowerCutError
-            left[0] -= 1
+            remaining[0] -= 1
 
         return Effects(self.lines.append, dry=dry, run=self.run, before=before)
 
@@ -94,22 +94,22 @@ class Computer:
         return Installer(self.places, effects, lambda _: yes)
 
     def tree(self) -> dict[str, str]:
-        """Every file with its text, every link with its target, and every folder, but of /run."""
+        """Return every file with its text, every link with its target, and every folder, but of /run."""
         root = self.places.root
-        found = {}
+        results = {}
         for path in sorted(root.rglob("*")):
             name = str(path.relative_to(root))
             if name.partition("/")[0] == "run":
                 continue
             if path.is_symlink():
-                found[name] = f"link to {path.readlink()}"
+                results[name] = f"link to {path.readlink()}"
             else:
-                found[name] = path.read_text() if path.is_file() else "folder"
-        return found
+                results[name] = path.read_text() if path.is_file() else "folder"
+        return results
 
 
 def place_release(folder: Path, version: str = "1.0.0") -> Path:
-    """A folder with wheels of this version, which hold nothing."""
+    """Return a folder with wheels of this version, which hold nothing."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name in (f"mucat-{version}-py3-none-any.whl", "numpy-2.0-cp311-cp311-linux_x86_64.whl"):
@@ -118,7 +118,7 @@ def place_release(folder: Path, version: str = "1.0.0") -> Path:
 
 
 def place_version(computer: Computer, version: str) -> Path:
-    """A complete environment."""
+    """Return a complete environment."""
     environment = computer.places.version(version)
     (environment / "bin").mkdir(parents=True)
     (environment / COMPLETE).write_text(f"{version}\n")

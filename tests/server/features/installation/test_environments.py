@@ -17,7 +17,7 @@ EXTRAS = ('paho-mqtt; extra == "mqtt"', 'rosbags; extra == "ros2"', 'pyarrow; ex
 
 
 def can_build() -> bool:
-    """True where Debian's package python3-venv is there."""
+    """Return True where Debian's package python3-venv is there."""
     try:
         done = subprocess.run(
             ["/usr/bin/python3", "-c", "import ensurepip"], capture_output=True, check=False
@@ -28,11 +28,11 @@ def can_build() -> bool:
 
 
 def place_wheel(folder: Path, name: str, version: str, *needs: str, extras: tuple[str, ...] = ()) -> str:
-    """Write a wheel without modules; returns the name of its file."""
+    """Write a wheel without modules; return the name of its file."""
     folder.mkdir(parents=True, exist_ok=True)
     info = f"{name}-{version}.dist-info"
-    needed = "".join(f"Requires-Dist: {one}\n" for one in needs)
-    needed += "".join(f"Provides-Extra: {one}\n" for one in extras)
+    needed = "".join(f"Requires-Dist: {need}\n" for need in needs)
+    needed += "".join(f"Provides-Extra: {extra}\n" for extra in extras)
     file = f"{name}-{version}-py3-none-any.whl"
     with zipfile.ZipFile(folder / file, "w") as wheel:
         wheel.writestr(
@@ -59,8 +59,8 @@ def test_an_environment_has_the_release_s_versions_and_stores_nothing_else(tmp_p
         place_wheel(release, "paho_mqtt", "1.0"),
     }
     environment = build_environment(Effects(lambda _: None), places, read_release(release))
-    found = {one.name for one in environment.glob("lib/python*/site-packages/*.dist-info")}
-    assert {"mucat-1.0.0.dist-info", "a_library-1.0.dist-info", "Another.Library-1.0.dist-info"} <= found
+    results = {file.name for file in environment.glob("lib/python*/site-packages/*.dist-info")}
+    assert {"mucat-1.0.0.dist-info", "a_library-1.0.dist-info", "Another.Library-1.0.dist-info"} <= results
     # The release brings one extra, the version in use has another, and nobody has the third.
-    assert {"paho_mqtt-1.0.dist-info", "rosbags-1.0.dist-info"} <= found
-    assert {one.name for one in (environment / WHEELS).iterdir()} == own | shared
+    assert {"paho_mqtt-1.0.dist-info", "rosbags-1.0.dist-info"} <= results
+    assert {file.name for file in (environment / WHEELS).iterdir()} == own | shared

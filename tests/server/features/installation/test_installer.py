@@ -49,8 +49,8 @@ def test_an_installation_is_whole(tmp_path: Path, release: Path) -> None:
     config = load(places.config)
     assert (config.robot.mode, config.vision.camera) == ("robot", "pi")
     settings = read_settings(places.config, None, None, None, {})
-    assert (settings.host, settings.tls) == ("0.0.0.0", True)
-    assert {one.name for one in places.units.iterdir()} == set(write_units(places))
+    assert (settings.server.host, settings.server.tls) == ("0.0.0.0", True)
+    assert {file.name for file in places.units.iterdir()} == set(write_units(places))
     assert places.command.stat().st_mode & 0o777 == 0o755
     assert "SystemMaxUse=100M" in places.journal_limit.read_text()
     assert (places.current / "wheels/numpy-2.0-cp311-cp311-linux_x86_64.whl").exists()
@@ -66,9 +66,11 @@ def test_done_again_it_changes_nothing(tmp_path: Path, release: Path) -> None:
     install(computer, release)
     assert computer.tree() == before | {"etc/mucat/robot.toml": before["etc/mucat/robot.toml"] + "# mine\n"}
     assert not [
-        one for one in computer.commands if one.startswith(("useradd", "usermod", "/usr/bin/python3"))
+        command
+        for command in computer.commands
+        if command.startswith(("useradd", "usermod", "/usr/bin/python3"))
     ]
-    assert any(one.startswith("systemctl start") for one in computer.commands)
+    assert any(command.startswith("systemctl start") for command in computer.commands)
 
 
 def test_cut_off_at_any_effect_it_is_done_again_to_the_same_end(tmp_path: Path, release: Path) -> None:
@@ -82,8 +84,8 @@ def test_cut_off_at_any_effect_it_is_done_again_to_the_same_end(tmp_path: Path, 
             install(computer, release, cuts)
         except PowerCutError:
             install(computer, release)
-            found = {name: text.replace(f"/{cuts}/", "/N/") for name, text in computer.tree().items()}
-            assert found == expected, f"cut {cuts}: {computer.lines}"
+            results = {name: text.replace(f"/{cuts}/", "/N/") for name, text in computer.tree().items()}
+            assert results == expected, f"cut {cuts}: {computer.lines}"
             cuts += 1
         else:
             break
@@ -157,7 +159,7 @@ def test_an_armed_robot_is_not_restarted(tmp_path: Path, release: Path) -> None:
     with pytest.raises(SetupError, match="Disarm it first"):
         install(computer, release)
     assert computer.tree() == before
-    assert not any(one.startswith("systemctl") for one in computer.commands)
+    assert not any(command.startswith("systemctl") for command in computer.commands)
 
 
 def test_a_dry_run_says_all_and_changes_nothing(tmp_path: Path, release: Path) -> None:
@@ -169,14 +171,14 @@ def test_a_dry_run_says_all_and_changes_nothing(tmp_path: Path, release: Path) -
     dry = [line.removeprefix("would ") for line in computer.lines if line.startswith("would ")]
     install(computer, release)
     done = [line for line in computer.lines if not line.startswith("would ")]
-    assert [one for one in dry if one not in done and "-c from" not in one] == []
+    assert [line for line in dry if line not in done and "-c from" not in line] == []
 
 
 def test_boot_settings_change_only_if_that_is_confirmed(tmp_path: Path, release: Path) -> None:
     computer = Computer(tmp_path / "pi")
     computer.installer(computer.effects(), yes=False).install(read_release(release))
     boot = tmp_path / "pi/boot/firmware"
-    assert sorted(one.name for one in boot.iterdir()) == ["cmdline.txt", "config.txt"]
+    assert sorted(file.name for file in boot.iterdir()) == ["cmdline.txt", "config.txt"]
     assert (boot / "config.txt").read_text() == CONFIG_TXT
     assert any("+dtoverlay=disable-bt" in line for line in computer.lines)
     install(computer, release)
@@ -217,12 +219,14 @@ def test_it_is_removed_without_the_data(tmp_path: Path, release: Path) -> None:
     assert not places.command.exists()
     assert not places.journal_limit.exists()
     assert list(places.units.iterdir()) == []
-    assert any("systemctl disable --quiet --now mucat-runtime.service" in one for one in computer.commands)
+    assert any(
+        "systemctl disable --quiet --now mucat-runtime.service" in command for command in computer.commands
+    )
     computer.installer(computer.effects()).uninstall()
 
 
 @pytest.mark.parametrize(
-    ("stderr", "words"),
+    ("stderr", "message"),
     [
         (
             "ERROR: Could not find a version\nERROR: No matching distribution found for numpy",
@@ -233,11 +237,11 @@ def test_it_is_removed_without_the_data(tmp_path: Path, release: Path) -> None:
     ],
 )
 def test_an_environment_that_cannot_be_built_is_one_line_and_nothing_half_done(
-    tmp_path: Path, release: Path, stderr: str, words: str
+    tmp_path: Path, release: Path, stderr: str, message: str
 ) -> None:
     computer = Computer(tmp_path / "pi")
     computer.broken[" install --quiet"] = stderr
-    with pytest.raises(SetupError, match=words) as caught:
+    with pytest.raises(SetupError, match=message) as caught:
         install(computer, release)
     assert "\n" not in str(caught.value)
     assert not computer.places.version("1.0.0").exists()
@@ -266,9 +270,9 @@ def test_with_32_bits_some_packages_are_those_of_the_system(
     assert not computer.places.software.exists()
     (tmp_path / "pi/usr/lib/python3/dist-packages/pydantic").mkdir()
     install(computer, release)
-    (made,) = [one for one in computer.commands if "-m venv" in one]
+    (made,) = [command for command in computer.commands if "-m venv" in command]
     assert "--system-site-packages" in made
-    (installed,) = [one for one in computer.commands if " install --quiet" in one]
+    (installed,) = [command for command in computer.commands if " install --quiet" in command]
     assert installed.startswith("linux32 ")
 
 
@@ -318,7 +322,7 @@ def test_the_default_configuration_is_adapted_and_stays_valid(tmp_path: Path) ->
     path.write_text(adapt_config(DEFAULT_CONFIG.read_text(), robot=False))
     config = load(path)
     assert (config.robot.mode, config.vision.camera) == ("emulated", "scene")
-    assert read_settings(path, None, None, None, {}).host == "0.0.0.0"
+    assert read_settings(path, None, None, None, {}).server.host == "0.0.0.0"
 
 
 def test_no_service_comes_before_a_path_unit() -> None:
@@ -364,15 +368,15 @@ def test_only_what_changes_the_installation_is_run_by_root(tmp_path: Path) -> No
     places.command.write_text(write_command(places))
     places.command.chmod(0o755)
 
-    def said(*words: str) -> str:
+    def output_of(*arguments: str) -> str:
         path = {"PATH": f"{tmp_path}/bin:/usr/bin:/bin"}
-        command = [str(places.command), *words]
+        command = [str(places.command), *arguments]
         return subprocess.run(command, env=path, capture_output=True, text=True, check=True).stdout.strip()
 
     for name in ("install", "uninstall", "update", "rollback"):
-        assert said(name, "--help") == f"root: {name} --help"
+        assert output_of(name, "--help") == f"root: {name} --help"
     for name in ("doctor", "sessions"):
-        assert said(name, "--help") == f"mucat: {name} --help"
+        assert output_of(name, "--help") == f"mucat: {name} --help"
 
 
 def place_program(path: Path, text: str) -> None:

@@ -83,27 +83,27 @@ def test_what_cannot_be_done_is_refused_in_one_line_and_changes_nothing(
     tmp_path: Path, keys: Path, release: Path, name: str
 ) -> None:
     computer = installed(tmp_path / "pi", keys)
-    prepare, words = REFUSED[name]
+    prepare, message = REFUSED[name]
     prepare(release, computer)
     before = computer.tree()
-    with pytest.raises(SetupError, match=words) as caught:
+    with pytest.raises(SetupError, match=message) as caught:
         update(computer, release)
     assert "\n" not in str(caught.value)
     shutil.rmtree(computer.places.version("2.0.0"), ignore_errors=name != "the version in use")
     if name == "the version in use":
-        before = {one: text for one, text in before.items() if "versions/2.0.0" not in one}
+        before = {path: text for path, text in before.items() if "versions/2.0.0" not in path}
     assert computer.tree() == before
 
 
 @pytest.mark.parametrize(
-    ("content", "words"), [(b"PK\3\4 cut", "no whole ZIP file"), (b"", "no whole ZIP file")]
+    ("content", "message"), [(b"PK\3\4 cut", "no whole ZIP file"), (b"", "no whole ZIP file")]
 )
-def test_a_cut_zip_file_is_refused(tmp_path: Path, keys: Path, content: bytes, words: str) -> None:
+def test_a_cut_zip_file_is_refused(tmp_path: Path, keys: Path, content: bytes, message: str) -> None:
     computer = installed(tmp_path / "pi", keys)
     path = tmp_path / "release.zip"
     path.write_bytes(content)
     before = computer.tree()
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(SetupError, match=message):
         update(computer, path)
     assert computer.tree() == before
 

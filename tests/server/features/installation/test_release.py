@@ -33,10 +33,10 @@ def cut(folder: Path) -> None:
 
 
 def sign_by_another(folder: Path) -> None:
-    place = folder.parent / "other"
-    place.mkdir()
-    make_keys(place)
-    sign(folder, place / "secret.pem")
+    path = folder.parent / "other"
+    path.mkdir()
+    make_keys(path)
+    sign(folder, path / "secret.pem")
 
 
 def swap_sums(folder: Path) -> None:
@@ -61,9 +61,9 @@ FAULTS: dict[str, tuple[Callable[[Path], object], str]] = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_release_with_a_fault_is_refused_in_one_line(fault: str, signed: Path, tmp_path: Path) -> None:
-    spoil, words = FAULTS[fault]
+    spoil, text = FAULTS[fault]
     spoil(signed)
-    with pytest.raises(SetupError, match=words) as caught:
+    with pytest.raises(SetupError, match=text) as caught:
         check_signature(read_release(signed), tmp_path / "release.pem")
     assert "\n" not in str(caught.value)
 

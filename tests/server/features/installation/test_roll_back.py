@@ -54,13 +54,13 @@ def test_cut_off_at_any_effect_the_way_back_is_gone_to_its_end(
         try:
             Updater(computer.places, computer.effects(cuts)).roll_back()
         except PowerCutError:
-            words = f"cut {cuts}: {computer.lines[-1]}"
+            text = f"cut {cuts}: {computer.lines[-1]}"
             computer.boot()
             # Before the journal is written, nothing has happened.
-            assert computer.running == ("1.0.0" if cuts else "2.0.0"), words
-            assert computer.database.read_text() == f"{computer.schemas[computer.running]} {DIVES}", words
-            assert computer.board == computer.firmware[computer.running], words
-            assert not computer.places.journal.exists(), words
+            assert computer.running == ("1.0.0" if cuts else "2.0.0"), text
+            assert computer.database.read_text() == f"{computer.schemas[computer.running]} {DIVES}", text
+            assert computer.board == computer.firmware[computer.running], text
+            assert not computer.places.journal.exists(), text
             cuts += 1
         else:
             break
@@ -127,8 +127,8 @@ def test_the_way_back_from_an_update_that_was_ended_goes_back_once(
 def end_before_it_is_healthy(computer: UpdatableComputer, release: Path) -> None:
     """Begin an update; it is ended after the switch, when its version runs already."""
 
-    def end(words: str) -> None:
-        if words.startswith(f"write {computer.places.last_switch}"):
+    def end(message: str) -> None:
+        if message.startswith(f"write {computer.places.last_switch}"):
             raise PowerCutError
 
     with pytest.raises(PowerCutError):

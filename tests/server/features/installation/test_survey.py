@@ -9,7 +9,7 @@ from server.health.monitor import HealthMonitor
 from server.platform.running_server import announce
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
-from tests.server.serving import Served, play
+from tests.server.serving import Served
 from tests.server.waiting import until
 
 
@@ -24,19 +24,16 @@ async def arm(served: Served) -> None:
     await until(is_armed, "the state")
 
 
-def test_a_damaged_database_does_not_hide_an_armed_robot(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        await arm(served)
-        with closing(sqlite3.connect(served.settings.data.database)) as database, database:
-            database.execute("DROP TABLE session")
-        found = await asyncio.to_thread(survey, served.settings)
-        assert (found.armed, found.recording) == (True, False)
-        assert found.problem
-
-    play(settings, scenario)
+async def test_a_damaged_database_does_not_hide_an_armed_robot(served: Served) -> None:
+    await arm(served)
+    with closing(sqlite3.connect(served.settings.data.database)) as database, database:
+        database.execute("DROP TABLE session")
+    result = await asyncio.to_thread(survey, served.settings)
+    assert (result.armed, result.recording) == (True, False)
+    assert result.problem
 
 
 def test_without_a_server_nobody_can_say_whether_the_robot_is_armed(settings: Settings) -> None:
-    found = survey(settings)
-    assert (found.running, found.armed) == ("", None)
-    assert "No server works on" in found.problem
+    result = survey(settings)
+    assert (result.running, result.armed) == ("", None)
+    assert "No server works on" in result.problem

@@ -93,16 +93,16 @@ def test_cut_off_at_any_effect_one_version_runs_with_all_dives_and_it_can_be_don
         try:
             update(computer, release, cuts)
         except PowerCutError:
-            words = f"cut {cuts}: {computer.lines[-1]}"
+            text = f"cut {cuts}: {computer.lines[-1]}"
             computer.boot()
             ends.add(computer.running)
-            assert computer.running in ({"1.0.0"} if sick else {"1.0.0", "2.0.0"}), words
-            assert computer.database.read_text() == f"{computer.schemas[computer.running]} {DIVES}", words
-            assert computer.board == computer.firmware[computer.running], words
+            assert computer.running in ({"1.0.0"} if sick else {"1.0.0", "2.0.0"}), text
+            assert computer.database.read_text() == f"{computer.schemas[computer.running]} {DIVES}", text
+            assert computer.board == computer.firmware[computer.running], text
             computer.sick.clear()
             if computer.running == "1.0.0":
                 update(computer, release)
-            assert (computer.running, computer.database.read_text()) == ("2.0.0", f"2 {DIVES}"), words
+            assert (computer.running, computer.database.read_text()) == ("2.0.0", f"2 {DIVES}"), text
             cuts += 1
         except SetupError:
             assert sick
@@ -151,8 +151,8 @@ def test_without_a_runtime_an_update_mends_what_cannot_look_at_itself(
     computer = installed(tmp_path / "pi", keys)
     computer.broken["current/bin/python -I -m server.features.installation.survey"] = "Killed"
 
-    def mend(words: str) -> None:
-        if words.startswith(f"link {computer.places.current} "):
+    def mend(message: str) -> None:
+        if message.startswith(f"link {computer.places.current} "):
             computer.broken.clear()
 
     effects = Effects(computer.lines.append, run=computer.run, before=mend)
@@ -200,7 +200,7 @@ def test_two_versions_are_kept(tmp_path: Path, keys: Path, release: Path) -> Non
     update(computer, release)
     computer.schemas["3.0.0"] = 2
     update(computer, signed(tmp_path / "third", keys, "3.0.0"))
-    assert sorted(one.name for one in computer.places.versions.iterdir()) == ["2.0.0", "3.0.0"]
+    assert sorted(file.name for file in computer.places.versions.iterdir()) == ["2.0.0", "3.0.0"]
 
 
 def test_updates_that_come_to_nothing_do_not_fill_the_card(tmp_path: Path, keys: Path) -> None:
@@ -211,19 +211,19 @@ def test_updates_that_come_to_nothing_do_not_fill_the_card(tmp_path: Path, keys:
         folder = signed(tmp_path / version, keys, version)
         with pytest.raises(SetupError, match="OpenCV"):
             update(computer, folder)
-        assert {one.name for one in computer.places.versions.iterdir()} == {"1.0.0", version}
+        assert {file.name for file in computer.places.versions.iterdir()} == {"1.0.0", version}
 
 
 def test_the_report_tells_how_it_goes_and_how_it_ended(tmp_path: Path, keys: Path, release: Path) -> None:
     computer = installed(tmp_path / "pi", keys)
-    told: list[str] = []
+    notices: list[str] = []
 
     def look(_: str) -> None:
-        if computer.places.report.exists() and (words := report_of(computer)[1]) not in told[-1:]:
-            told.append(words)
+        if computer.places.report.exists() and (text := report_of(computer)[1]) not in notices[-1:]:
+            notices.append(text)
 
     Updater(computer.places, Effects(look, run=computer.run, before=look)).update(release)
-    assert told == [
+    assert notices == [
         "The release is checked.",
         "µ-CAT 2.0.0 is built beside 1.0.0. The robot can be used meanwhile.",
         "The doctor of 2.0.0 looks at this computer.",
@@ -247,8 +247,8 @@ def test_the_start_after_a_power_cut_reports_the_way_back(tmp_path: Path, keys: 
             break
     computer.places.report.unlink()
     computer.boot()
-    words = "The update to 2.0.0 was cut off: 1.0.0 is in use again."
-    assert report_of(computer) == ("failed", words)
+    text = "The update to 2.0.0 was cut off: 1.0.0 is in use again."
+    assert report_of(computer) == ("failed", text)
     computer.places.report.unlink()
     computer.boot()
     assert not computer.places.report.exists()

@@ -65,8 +65,8 @@ class UpdatableComputer(Computer):
         """As the server does: with a copy from before."""
         if self.database.exists():
             self.copy(self.schema).write_text(self.database.read_text())
-        kept = self.database.read_text().partition(" ")[2] if self.database.exists() else "no sessions"
-        self.database.write_text(f"{self.schema_of(version)} {kept}")
+        stored = self.database.read_text().partition(" ")[2] if self.database.exists() else "no sessions"
+        self.database.write_text(f"{self.schema_of(version)} {stored}")
 
     def copy(self, schema: int) -> Path:
         folder = self.places.data / "backups"
@@ -79,33 +79,33 @@ class UpdatableComputer(Computer):
         answered = super().run(command, environment, seconds)
         if answered.returncode != 0:
             return answered
-        words = list(command)
-        if words[0] == "systemctl" and set(SERVICES) <= set(words):
+        text = list(command)
+        if text[0] == "systemctl" and set(SERVICES) <= set(text):
             self.running = ""
-            if words[1] != "stop":
+            if text[1] != "stop":
                 self.start()
-        if words[0] == "runuser":
-            answered.stdout = self._answer(Path(words[4]).parents[1].name, words[5:])
-        elif words[-1].endswith("installation.services"):
-            version = Path(words[0]).parents[1].name
+        if text[0] == "runuser":
+            answered.stdout = self._answer(Path(text[4]).parents[1].name, text[5:])
+        elif text[-1].endswith("installation.services"):
+            version = Path(text[0]).parents[1].name
             for name in write_units(self.places):
                 (self.places.units / name).write_text(f"{name} of {version}")
         return answered
 
-    def _answer(self, link: str, words: list[str]) -> str:
+    def _answer(self, link: str, message: list[str]) -> str:
         version = self.places.version_of(self.places.current) if link == "current" else link
-        if words[0] == "doctor":
+        if message[0] == "doctor":
             findings = [{"name": "python", "text": "It is 3.13.", "verdict": "ok"}]
             if text := self.wrong.get(version):
                 findings.append({"name": text, "text": text, "verdict": "wrong"})
             return json.dumps(findings)
-        if words[0] == "upload":
+        if message[0] == "upload":
             self.board = self.firmware.get(version, "")
-        elif words[0] == "restore":
-            self.database.write_text(Path(words[1]).read_text())
+        elif message[0] == "restore":
+            self.database.write_text(Path(message[1]).read_text())
         else:
             reads = self.schema <= self.schema_of(version)
-            copies = [one for one in range(self.schema_of(version), 0, -1) if self.copy(one).exists()]
+            copies = [item for item in range(self.schema_of(version), 0, -1) if self.copy(item).exists()]
             running = "" if self.silent else self.running
             problem = "" if running else "No server works on it."
             return json.dumps(
@@ -132,7 +132,7 @@ def signed(folder: Path, keys: Path, version: str) -> Path:
 
 
 def installed(root: Path, keys: Path) -> UpdatableComputer:
-    """A computer on which 1.0.0 runs, with dives; 2.0.0 has another schema and other firmware."""
+    """Return a computer on which 1.0.0 runs, with dives; 2.0.0 has another schema and other firmware."""
     computer = UpdatableComputer(root)
     computer.schemas, computer.firmware = {"1.0.0": 1, "2.0.0": 2}, {"1.0.0": "old", "2.0.0": "new"}
     folder = place_release(root.parent / "first", "1.0.0")

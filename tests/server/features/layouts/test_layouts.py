@@ -1,6 +1,5 @@
 """Layouts of panels: stored by name, refused where invalid."""
 
-import asyncio
 from typing import Any
 
 import pytest
@@ -11,9 +10,8 @@ from robot_runtime.errors import RefusedError
 from server.features.layouts.document import LayoutDocument
 from server.features.layouts.library import LAYOUTS_MOST, Layouts, UnknownLayoutError
 from server.platform.models import LayoutRow
-from server.platform.settings import Settings
 from server.platform.store import Store
-from tests.server.serving import serve
+from tests.server.serving import Served
 
 SHELL = "the shell of this computer"
 CAMERA = {"id": "camera", "panel": "camera", "x": 0, "y": 0, "width": 17, "height": 11}
@@ -36,72 +34,58 @@ def document(*panels: dict[str, Any]) -> LayoutDocument:
     return LayoutDocument.model_validate(layout(*panels))
 
 
-def test_a_layout_is_stored_and_listed(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            whole = layout(CAMERA, CHART)
-            kept = await served.api.post("/layouts", json={"name": " Pool day ", "document": whole})
-            assert kept.status_code == 201
-            assert kept.json()["name"] == "Pool day"
-            assert (await served.api.get("/layouts")).json() == [kept.json()]
-            path = f"/layouts/{kept.json()['id']}"
-            assert (await served.api.get(path)).json() == kept.json() | {"document": whole}
-            assert (await served.api.delete(path)).status_code == 204
-            for gone in (await served.api.get(path), await served.api.delete(path)):
-                assert gone.status_code == 404
-                assert "no layout 1" in gone.json()["detail"]
-
-    asyncio.run(scenario())
+async def test_a_layout_is_stored_and_listed(served: Served) -> None:
+    whole = layout(CAMERA, CHART)
+    stored = await served.api.post("/layouts", json={"name": " Pool day ", "document": whole})
+    assert stored.status_code == 201
+    assert stored.json()["name"] == "Pool day"
+    assert (await served.api.get("/layouts")).json() == [stored.json()]
+    path = f"/layouts/{stored.json()['id']}"
+    assert (await served.api.get(path)).json() == stored.json() | {"document": whole}
+    assert (await served.api.delete(path)).status_code == 204
+    for gone in (await served.api.get(path), await served.api.delete(path)):
+        assert gone.status_code == 404
+        assert "no layout 1" in gone.json()["detail"]
 
 
-def test_saving_under_the_same_name_replaces(store: Store) -> None:
-    async def scenario() -> None:
-        layouts = Layouts(store)
-        first = await layouts.save("pool", document(CAMERA))
-        other = await layouts.save("Lab", document())
-        again = await layouts.save("pool", document(CHART))
-        assert again.id == first.id
-        assert [one.id for one in layouts.list()] == [other.id, first.id]
-        assert layouts.get(first.id).document["panels"] == [CHART]
-
-    asyncio.run(scenario())
+async def test_saving_under_the_same_name_replaces(store: Store) -> None:
+    layouts = Layouts(store)
+    first = await layouts.save("pool", document(CAMERA))
+    other = await layouts.save("Lab", document())
+    again = await layouts.save("pool", document(CHART))
+    assert again.id == first.id
+    assert [layout.id for layout in layouts.list()] == [other.id, first.id]
+    assert layouts.get(first.id).document["panels"] == [CHART]
 
 
-def test_a_layout_that_somebody_has_saved_meanwhile_is_not_replaced_unasked(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served:
+async def test_a_layout_that_somebody_has_saved_meanwhile_is_not_replaced_unasked(served: Served) -> None:
 
-            async def save(*panels: Any, **more: Any) -> Any:
-                body = {"name": "pool", "document": layout(*panels), **more}
-                return await served.api.post("/layouts", json=body)
+    async def save(*panels: Any, **more: Any) -> Any:
+        body = {"name": "pool", "document": layout(*panels), **more}
+        return await served.api.post("/layouts", json=body)
 
-            first = (await save(CAMERA, base=0)).json()
-            assert (first["version"], first["author"]) == (1, SHELL)
-            assert (await save(CHART, base=1)).json()["version"] == 2
-            for base in (0, 1):
-                refused = await save(base=base)
-                assert (refused.status_code, refused.json()["kind"]) == (409, "changed")
-                assert f"“pool” was saved by {SHELL} since you opened it" in refused.json()["detail"]
-            assert (await save(base=2)).json() | {"saved": ""} == first | {"version": 3, "saved": ""}
-            await served.api.delete(f"/layouts/{first['id']}")
-            assert "was deleted" in (await save(base=3)).json()["detail"]
-            assert (await save(base=0)).json()["id"] > first["id"]
-
-    asyncio.run(scenario())
+    first = (await save(CAMERA, base=0)).json()
+    assert (first["version"], first["author"]) == (1, SHELL)
+    assert (await save(CHART, base=1)).json()["version"] == 2
+    for base in (0, 1):
+        refused = await save(base=base)
+        assert (refused.status_code, refused.json()["kind"]) == (409, "changed")
+        assert f"“pool” was saved by {SHELL} since you opened it" in refused.json()["detail"]
+    assert (await save(base=2)).json() | {"saved": ""} == first | {"version": 3, "saved": ""}
+    await served.api.delete(f"/layouts/{first['id']}")
+    assert "was deleted" in (await save(base=3)).json()["detail"]
+    assert (await save(base=0)).json()["id"] > first["id"]
 
 
-def test_the_number_of_layouts_is_limited(store: Store) -> None:
-    async def scenario() -> None:
-        layouts = Layouts(store)
-        rows = [{"name": f"n{one}", "document": "{}", "saved": 0.0} for one in range(LAYOUTS_MOST)]
-        await store.write(lambda connection: connection.execute(insert(LayoutRow), rows))
-        with pytest.raises(RefusedError, match="Delete one"):
-            await layouts.save("one more", document())
-        assert (await layouts.save("n3", document())).name == "n3"
-        with pytest.raises(UnknownLayoutError):
-            await layouts.delete(LAYOUTS_MOST + 1)
-
-    asyncio.run(scenario())
+async def test_the_number_of_layouts_is_limited(store: Store) -> None:
+    layouts = Layouts(store)
+    rows = [{"name": f"n{number}", "document": "{}", "saved": 0.0} for number in range(LAYOUTS_MOST)]
+    await store.write(lambda connection: connection.execute(insert(LayoutRow), rows))
+    with pytest.raises(RefusedError, match="Delete one"):
+        await layouts.save("one more", document())
+    assert (await layouts.save("n3", document())).name == "n3"
+    with pytest.raises(UnknownLayoutError):
+        await layouts.delete(LAYOUTS_MOST + 1)
 
 
 @pytest.mark.parametrize(
@@ -122,7 +106,7 @@ def test_the_number_of_layouts_is_limited(store: Store) -> None:
         (layout(CHART | {"chart": {"signals": [], "seconds": float("nan")}}), "finite number"),
         (layout(CHART | {"chart": {"signals": ["a"] * 13, "seconds": 60}}), "at most 12"),
         (layout(CHART | {"chart": {"signals": ["a", "b", "a"], "seconds": 60}}), "names a signal twice"),
-        (layout(*({**CAMERA, "id": str(one)} for one in range(41))), "at most 40"),
+        (layout(*({**CAMERA, "id": str(number)} for number in range(41))), "at most 40"),
         ([], "valid dictionary"),
     ],
 )
@@ -132,13 +116,9 @@ def test_an_invalid_layout_is_refused_with_the_reason(given: object, why: str) -
     assert why in refused.value.errors()[0]["msg"]
 
 
-def test_a_layout_of_another_version_is_refused_and_changes_nothing(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            wanted = {"name": "pool", "document": layout(CAMERA, version=2)}
-            answer = await served.api.post("/layouts", json=wanted)
-            assert answer.status_code == 422
-            assert "This layout is of version 2; this program reads version 1." in answer.json()["detail"]
-            assert (await served.api.get("/layouts")).json() == []
-
-    asyncio.run(scenario())
+async def test_a_layout_of_another_version_is_refused_and_changes_nothing(served: Served) -> None:
+    request = {"name": "pool", "document": layout(CAMERA, version=2)}
+    answer = await served.api.post("/layouts", json=request)
+    assert answer.status_code == 422
+    assert "This layout is of version 2; this program reads version 1." in answer.json()["detail"]
+    assert (await served.api.get("/layouts")).json() == []

@@ -1,17 +1,16 @@
 """Marks of missions become bookmarks of the session that records: once each, at their own moment."""
 
-import asyncio
 import json
 
 from robot_runtime.contract.documents import MISSION_MARK
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
 from server.features.missions.marks import MissionMarks
-from server.features.sessions.bookmarks import Bookmarks
-from server.features.sessions.catalogue import Catalogue
+from server.library.bookmarks import Bookmarks
+from server.library.catalogue import Catalogue
 from server.platform.settings import Settings
 from server.platform.store import Store
-from tests.server.features.sessions.recorder_rig import RecorderRig
+from tests.server.recording.recorder_rig import RecorderRig
 
 
 def _block(*marks: tuple[float, str]) -> Block:
@@ -28,42 +27,38 @@ class _MarksRig(RecorderRig):
         self.marks = MissionMarks(self.recorder, Bookmarks(store, self.clock, self.recorder), self.catalogue)
 
     async def see(self, *marks: tuple[float, str]) -> None:
-        """Takes a block of these marks, and waits until they are stored."""
+        """Take a block of these marks, and wait until they are stored."""
         self.marks.see(_block(*marks))
         await self.marks.close()
 
     def stored(self, session: int) -> list[tuple[float, str]]:
         """Times, s since the session's start, and texts."""
-        return [(one.time, one.text) for one in self.catalogue.detail(session).marks]
+        return [(mark.time, mark.text) for mark in self.catalogue.detail(session).marks]
 
 
-def test_a_mark_is_a_bookmark_at_its_own_moment_and_the_pages_are_told(
+async def test_a_mark_is_a_bookmark_at_its_own_moment_and_the_pages_are_told(
     store: Store, settings: Settings
 ) -> None:
     rig = _MarksRig(store, settings)
 
-    async def run() -> None:
-        session = await rig.start()
-        rig.clock.forward(20.0)
-        await rig.see((57.0, "here"), (62.5, "there"))
-        assert rig.stored(session) == [(7.0, "here"), (12.5, "there")]
-        assert rig.recorder.session is not None
-        assert rig.recorder.session.markers == 2
-        await rig.recorder.stop(session)
-
-    asyncio.run(run())
+    session = await rig.start()
+    rig.clock.forward(20.0)
+    await rig.see((57.0, "here"), (62.5, "there"))
+    assert rig.stored(session) == [(7.0, "here"), (12.5, "there")]
+    assert rig.recorder.session is not None
+    assert rig.recorder.session.markers == 2
+    await rig.recorder.stop(session)
 
 
-def test_a_backlog_repeats_no_mark_and_adds_those_that_were_missed(store: Store, settings: Settings) -> None:
+async def test_a_backlog_repeats_no_mark_and_adds_those_that_were_missed(
+    store: Store, settings: Settings
+) -> None:
     rig = _MarksRig(store, settings)
 
-    async def run() -> None:
-        session = await rig.start()
-        rig.clock.forward(20.0)
-        await rig.see((57.0, "here"))
-        rig.clock.forward(60.0)
-        await rig.see((49.0, "before the session"), (57.0, "here"), (80.0, "here"))
-        assert rig.stored(session) == [(7.0, "here"), (30.0, "here")]
-        await rig.recorder.stop(session)
-
-    asyncio.run(run())
+    session = await rig.start()
+    rig.clock.forward(20.0)
+    await rig.see((57.0, "here"))
+    rig.clock.forward(60.0)
+    await rig.see((49.0, "before the session"), (57.0, "here"), (80.0, "here"))
+    assert rig.stored(session) == [(7.0, "here"), (30.0, "here")]
+    await rig.recorder.stop(session)

@@ -1,8 +1,8 @@
 """Missions over HTTP: the library with versions, problems by entry, kinds of steps, and trials."""
 
-import asyncio
 import errno
 import json
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Barrier
@@ -17,19 +17,18 @@ from robot_runtime.missions.leaf import NODES
 from robot_runtime.missions.library import SHIPPED
 from server.cli import main
 from server.features.missions import library as library_module
-from server.features.missions import trials as trials_module
 from server.features.missions.library import VERSIONS_MAX, MissionLibrary, UnknownMissionError
 from server.features.missions.nodes import list_node_kinds
 from server.features.missions.trials import MissionTrials
-from server.features.sessions.auto_recording import AutoRecorder
-from server.features.sessions.recorder import Recorder
 from server.platform.disk_space import FileWriteError
 from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.platform.runs import RunOverError
 from server.platform.settings import Settings
+from server.recording.auto_recording import AutoRecorder
+from server.recording.recorder import Recorder
 from tests.runtime.missions.water import DIVE, HOLD, mission
 from tests.server.blocks import state_block
-from tests.server.serving import Served, play, serve
+from tests.server.serving import Served
 from tests.server.waiting import until
 
 OWN = mission(DIVE, HOLD)
@@ -37,18 +36,18 @@ OWN = mission(DIVE, HOLD)
 
 def test_a_mission_is_kept_with_its_versions(tmp_path: Path) -> None:
     library = MissionLibrary(tmp_path / "missions", MissionLimits())
-    assert [one.name for one in library.describe()] == list(SHIPPED)
+    assert [mission.name for mission in library.describe()] == list(SHIPPED)
     library.keep(OWN)
     library.keep(OWN)
     later = mission(HOLD, DIVE)
     library.keep(later)
     assert library.texts()["test"] == later
-    assert [(one.version, one.text) for one in library.versions("test")] == [(2, later), (1, OWN)]
+    assert [(version.version, version.text) for version in library.versions("test")] == [(2, later), (1, OWN)]
     own = library.describe()[-1]
     assert (own.name, own.shipped, own.versions) == ("test", False, 2)
     for number in range(VERSIONS_MAX):
         library.keep(OWN + f"# {number}\n")
-    assert [one.version for one in library.versions("test")][-1] == 3
+    assert [version.version for version in library.versions("test")][-1] == 3
     assert len(library.versions("test")) == VERSIONS_MAX
 
 
@@ -64,8 +63,8 @@ def test_two_who_store_a_mission_at_once_make_two_versions(tmp_path: Path) -> No
     with ThreadPoolExecutor(len(texts)) as people:
         list(people.map(keep, texts))
     versions = MissionLibrary(tmp_path / "missions", MissionLimits()).versions("test")
-    assert [one.version for one in versions] == [8, 7, 6, 5, 4, 3, 2, 1]
-    assert {one.text for one in versions} == {*texts}
+    assert [version.version for version in versions] == [8, 7, 6, 5, 4, 3, 2, 1]
+    assert {version.text for version in versions} == {*texts}
 
 
 def test_a_version_that_somebody_has_stored_meanwhile_is_not_replaced_unasked(tmp_path: Path) -> None:
@@ -79,7 +78,7 @@ def test_a_version_that_somebody_has_stored_meanwhile_is_not_replaced_unasked(tm
     with pytest.raises(ChangedMeanwhileError):
         library.keep(mine, "Ann", base="")
     library.keep(mine, "Ann", base=library.describe()[-1].mark)
-    assert [one.author for one in library.versions("test")] == ["Ann", "Ben", "Ann"]
+    assert [version.author for version in library.versions("test")] == ["Ann", "Ben", "Ann"]
     opened = library.describe()[-1].mark
     library.delete("test")
     with pytest.raises(ChangedMeanwhileError, match="was deleted"):
@@ -106,9 +105,9 @@ def test_a_mission_deleted_while_it_is_stored_is_there_whole_or_not_at_all(tmp_p
     with ThreadPoolExecutor(9) as people:
         assert all(people.map(change, range(9)))
     folder = tmp_path / "missions" / "test"
-    found = sorted(int(path.stem) for path in folder.glob("*.toml")) if folder.exists() else []
-    assert found == list(range(1, len(found) + 1))
-    assert [path.name for path in folder.parent.iterdir()] == (["test"] if found else [])
+    results = sorted(int(path.stem) for path in folder.glob("*.toml")) if folder.exists() else []
+    assert results == list(range(1, len(results) + 1))
+    assert [path.name for path in folder.parent.iterdir()] == (["test"] if results else [])
 
 
 def test_a_full_disk_is_told_as_such(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -163,7 +162,7 @@ def test_what_is_not_valid_or_ships_is_not_kept(tmp_path: Path) -> None:
 
 
 def test_every_leaf_and_branch_is_listed_with_its_limits() -> None:
-    kinds = {one.do: one for one in list_node_kinds()}
+    kinds = {kind.do: kind for kind in list_node_kinds()}
     assert kinds.keys() == NODES.keys()
     depth = kinds["dive"].fields[0]
     assert (depth.name, depth.kind, depth.minimum, depth.maximum, depth.unit) == (
@@ -176,111 +175,94 @@ def test_every_leaf_and_branch_is_listed_with_its_limits() -> None:
     assert kinds["turn"].fields[0].minimum == pytest.approx(-3.1416, abs=1e-4)
     assert kinds["repeat"].branch
     assert kinds["set"].fields[1].kind == "value"
-    assert all(one.meaning for one in kinds.values())
+    assert all(kind.meaning for kind in kinds.values())
 
 
-def test_the_page_is_told_problems_by_entry_and_keeps_missions(settings: Settings) -> None:
-    async def run() -> None:
-        async with serve(settings) as served:
-            check: dict[str, Any] = (await served.api.post("/missions/check", json={"text": OWN})).json()
-            assert check["problems"] == []
-            assert [one["path"] for one in check["summary"]["steps"]] == ["", "1", "2"]
-            bad = mission("{ do = 'repeat', times = 0, steps = [{ do = 'fly' }] }")
-            check = (await served.api.post("/missions/check", json={"text": bad})).json()
-            paths = [one["path"] for one in check["problems"]]
-            assert paths == [["mission", "steps", 0, "times"], ["mission", "steps", 0, "steps", 0, "do"]]
-            assert (await served.api.post("/missions", json={"text": OWN})).status_code == 201
-            versions = (await served.api.get("/missions/versions/test")).json()
-            assert [one["text"] for one in versions] == [OWN]
-            assert (await served.api.get("/missions/state")).json() is None
-            started = await served.api.post("/missions/start", json={"text": bad})
-            assert started.status_code == 422
-
-    asyncio.run(run())
+async def test_the_page_is_told_problems_by_entry_and_keeps_missions(served: Served) -> None:
+    check: dict[str, Any] = (await served.api.post("/missions/check", json={"text": OWN})).json()
+    assert check["problems"] == []
+    assert [step["path"] for step in check["summary"]["steps"]] == ["", "1", "2"]
+    bad = mission("{ do = 'repeat', times = 0, steps = [{ do = 'fly' }] }")
+    check = (await served.api.post("/missions/check", json={"text": bad})).json()
+    paths = [problem["path"] for problem in check["problems"]]
+    assert paths == [["mission", "steps", 0, "times"], ["mission", "steps", 0, "steps", 0, "do"]]
+    assert (await served.api.post("/missions", json={"text": OWN})).status_code == 201
+    versions = (await served.api.get("/missions/versions/test")).json()
+    assert [version["text"] for version in versions] == [OWN]
+    assert (await served.api.get("/missions/state")).json() is None
+    started = await served.api.post("/missions/start", json={"text": bad})
+    assert started.status_code == 422
 
 
-def test_a_trial_tells_the_outcome_of_each_seed(settings: Settings) -> None:
-    async def run() -> None:
-        trials = MissionTrials(settings)
-        trials.start("test", mission(DIVE, "{ do = 'wait_for', sees = 'red', timeout = 1 }"), {}, 2)
-        with pytest.raises(RefusedError, match="A trial is running"):
-            trials.start("test", OWN, {}, 1)
-        await trials.wait()
-        state = trials.state()
-        assert (state.running, state.problem) == (False, "")
-        assert [(one.seed, one.phase, one.failed) for one in state.results] == [
-            (1, "failed", "2"),
-            (2, "failed", "2"),
-        ]
-        assert all(0.5 < one.deepest < 0.75 for one in state.results)
-        assert all(2 * one.elapsed == pytest.approx(len(one.curve), abs=2) for one in state.results)
-        assert all(max(one.curve) == pytest.approx(one.deepest, abs=0.06) for one in state.results)
-        trials.start("test", OWN + "[trial]\nseed = 4\n", {}, 1)
-        await trials.wait()
-        assert "trial.seed is the trial's own" in trials.state().problem
-        earlier = trials.state().run
-        trials.start("test", OWN, {}, 100)
-        with pytest.raises(RunOverError, match="This trial is over"):
-            trials.cancel(earlier)
-        trials.cancel(trials.state().run)
-        await trials.wait()
-        assert trials.state().problem == "It was cancelled."
-        with pytest.raises(RefusedError, match="No trial is running"):
-            trials.cancel()
-        json.loads(trials.state().model_dump_json())
-
-    asyncio.run(run())
-
-
-def test_a_trial_that_fails_says_so(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
-    # A line that is longer cannot be read.
-    monkeypatch.setattr(trials_module, "LINE_BYTES_MAX", 20)
-
-    async def run() -> None:
-        trials = MissionTrials(settings)
+async def test_a_trial_tells_the_outcome_of_each_seed(settings: Settings) -> None:
+    trials = MissionTrials(settings)
+    trials.start("test", mission(DIVE, "{ do = 'wait_for', sees = 'red', timeout = 1 }"), {}, 2)
+    with pytest.raises(RefusedError, match="A trial is running"):
         trials.start("test", OWN, {}, 1)
-        await trials.wait()
-        assert trials.state().problem == "An error in the software ended it; see the server's log."
-        assert not trials.state().running
+    await trials.wait()
+    state = trials.state()
+    assert (state.running, state.problem) == (False, "")
+    assert [(result.seed, result.phase, result.failed) for result in state.results] == [
+        (1, "failed", "2"),
+        (2, "failed", "2"),
+    ]
+    assert all(0.5 < result.deepest < 0.75 for result in state.results)
+    assert all(2 * result.elapsed == pytest.approx(len(result.curve), abs=2) for result in state.results)
+    assert all(max(result.curve) == pytest.approx(result.deepest, abs=0.06) for result in state.results)
+    trials.start("test", OWN + "[trial]\nseed = 4\n", {}, 1)
+    await trials.wait()
+    assert "trial.seed is the trial's own" in trials.state().problem
+    earlier = trials.state().run
+    trials.start("test", OWN, {}, 100)
+    with pytest.raises(RunOverError, match="This trial is over"):
+        trials.cancel(earlier)
+    trials.cancel(trials.state().run)
+    await trials.wait()
+    assert trials.state().problem == "It was cancelled."
+    with pytest.raises(RefusedError, match="No trial is running"):
+        trials.cancel()
+    json.loads(trials.state().model_dump_json())
 
-    asyncio.run(run())
+
+async def test_a_trial_that_fails_says_so(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+
+    trials = MissionTrials(settings)
+    trials.start("test", OWN, {}, 1)
+    await trials.wait()
+    assert trials.state().problem == "The simulation has ended with exit status 1."
+    assert not trials.state().running
 
 
-def test_the_session_that_a_mission_starts_names_who_started_it(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        started = await served.api.post("/missions/start", json={"text": OWN})
-        assert (started.status_code, served.runtime.asked[-1][0]) == (201, "mission")
-        served.runtime.publish(state_block(0, armed=True))
-        recorder = served.get(Recorder)
-        await until(lambda: recorder.session is not None, "the session to begin")
-        await served.get(AutoRecorder).close()
-        assert recorder.session is not None
-        session = recorder.session.id
-        await recorder.stop(session)
-        timeline = (await served.api.get(f"/sessions/{session}/timeline")).json()
-        said = "“the shell of this computer” started a mission."
-        assert said in [one["text"] for one in timeline["events"]]
-
-    play(settings, scenario)
+async def test_the_session_that_a_mission_starts_names_who_started_it(served: Served) -> None:
+    started = await served.api.post("/missions/start", json={"text": OWN})
+    assert (started.status_code, served.runtime.asked[-1][0]) == (201, "mission")
+    served.runtime.publish(state_block(0, armed=True))
+    recorder = served.get(Recorder)
+    await until(lambda: recorder.session is not None, "the session to begin")
+    await served.get(AutoRecorder).close()
+    assert recorder.session is not None
+    session = recorder.session.id
+    await recorder.stop(session)
+    timeline = (await served.api.get(f"/sessions/{session}/timeline")).json()
+    answer = "“the shell of this computer” started a mission."
+    assert answer in [event["text"] for event in timeline["events"]]
 
 
-def test_a_check_names_what_the_robot_s_vision_settings_cannot_see(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        async def unseen(text: str) -> list[str]:
-            answer = (await served.api.post("/missions/check", json={"text": text})).json()
-            assert answer["problems"] == []
-            return list(answer["unseen"])
+async def test_a_check_names_what_the_robot_s_vision_settings_cannot_see(served: Served) -> None:
+    async def unseen(text: str) -> list[str]:
+        answer = (await served.api.post("/missions/check", json={"text": text})).json()
+        assert answer["problems"] == []
+        return list(answer["unseen"])
 
-        typo = mission("{ do = 'wait_for', sees = 'purpel', timeout = 9 }")
-        (said,) = await unseen(typo)
-        assert said.startswith("Step 1: Nothing is called 'purpel'; there are red,")
-        assert await unseen(mission("{ do = 'wait_for', sees = 'red', timeout = 9 }")) == []
-        assert await unseen(OWN) == []
-        # Those in force decide, not those of a file.
-        served.runtime.vision["colours"]["purpel"] = served.runtime.vision["colours"]["red"]
-        assert await unseen(typo) == []
-
-    play(settings, scenario)
+    typo = mission("{ do = 'wait_for', sees = 'purpel', timeout = 9 }")
+    (output,) = await unseen(typo)
+    assert output.startswith("Step 1: Nothing is called 'purpel'; there are red,")
+    assert await unseen(mission("{ do = 'wait_for', sees = 'red', timeout = 9 }")) == []
+    assert await unseen(OWN) == []
+    # Those in force decide, not those of a file.
+    served.runtime.vision["colours"]["purpel"] = served.runtime.vision["colours"]["red"]
+    assert await unseen(typo) == []
 
 
 def test_the_shell_s_check_names_what_the_camera_would_never_see(

@@ -16,7 +16,7 @@ LONG = mission("{ do = 'hold', seconds = 150, within = 9 }")
 
 
 def start(stack: Stack, folder: Path, text: str) -> "subprocess.Popen[str]":
-    """Starts the command on a mission of this text."""
+    """Start the command on a mission of this text."""
     file = folder / "test.toml"
     file.write_text(text)
     environment = {**os.environ, "MUCAT_DATA": str(stack.data), "PYTHONUNBUFFERED": "1"}
@@ -27,29 +27,29 @@ def start(stack: Stack, folder: Path, text: str) -> "subprocess.Popen[str]":
 
 
 def swim(stack: Stack, folder: Path) -> str:
-    """Runs the command on a short mission to its end; returns what it printed."""
+    """Run the command on a short mission to its end; return what it printed."""
     with start(stack, folder, SHORT) as command:
         try:
-            said, _ = command.communicate(timeout=60)
+            output, _ = command.communicate(timeout=60)
         finally:
             command.kill()
-    assert command.returncode == 0, said
-    assert said.splitlines()[-1] == "succeeded: It is done."
+    assert command.returncode == 0, output
+    assert output.splitlines()[-1] == "succeeded: It is done."
     wait(lambda: not stack.api.get("/robot").json()["armed"], "the robot to be disarmed")
-    return said
+    return output
 
 
 def _is_ready_after(stack: Stack, run: str) -> bool:
-    """True where another runtime than this one can arm."""
+    """Return True where another runtime than this one can arm."""
     answer = stack.api.get("/robot")
     return answer.is_success and answer.json()["run"] != run and not answer.json()["refusals"]
 
 
 @pytest.mark.stack
 def test_a_mission_is_followed_to_its_end(shared_stack: Stack, tmp_path: Path) -> None:
-    said = swim(shared_stack, tmp_path)
-    assert "test begins." in said
-    assert "1 Hold the depth for 1 s: done" in said
+    answer = swim(shared_stack, tmp_path)
+    assert "test begins." in answer
+    assert "1 Hold the depth for 1 s: done" in answer
 
 
 @pytest.mark.stack
@@ -68,7 +68,7 @@ def test_a_killed_runtime_ends_it_with_words(shared_stack: Stack, tmp_path: Path
         assert command.stdout is not None
         assert any("running" in line for line in command.stdout)
         shared_stack.part("runtime").kill()
-        said, _ = command.communicate(timeout=60)
-    assert command.returncode == 1, said
-    assert "runtime" in said
+        output, _ = command.communicate(timeout=60)
+    assert command.returncode == 1, output
+    assert "runtime" in output
     shared_stack.wait_ready()

@@ -1,6 +1,5 @@
 """Own panels: the files that count as panels, and the frame that isolates them."""
 
-import asyncio
 import os
 import re
 import subprocess
@@ -14,7 +13,7 @@ from server.features.panels import scripts
 from server.features.panels.frame import FRAME
 from server.features.panels.scripts import SCRIPT_BYTES_MAX, UnknownPanelError, list_panels, read_panel
 from server.platform.settings import Settings
-from tests.server.serving import serve
+from tests.server.serving import Served, serve
 
 
 def put(folder: Path, name: str, script: bytes = b"export default () => () => {}") -> None:
@@ -30,8 +29,8 @@ def test_scripts_in_the_folder_are_panels(tmp_path: Path) -> None:
     put(folder, "large.js", b" " * (SCRIPT_BYTES_MAX + 1))
     put(folder, "latin.js", "// °".encode("latin-1"))
     (folder / "gone.js").symlink_to(folder / "nowhere")
-    found = {one.name: one.problem for one in list_panels(folder)}
-    assert found == {
+    panels = {panel.name: panel.problem for panel in list_panels(folder)}
+    assert panels == {
         "Climb rate": "",
         "gone": "gone.js cannot be read: No such file or directory.",
         "large": "large.js has more than 200 kB.",
@@ -46,7 +45,7 @@ def test_a_list_of_panels_has_an_end(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(scripts, "PANELS_SHOWN", 2)
     for name in ("c.js", "a.js", "b.js"):
         put(tmp_path / "panels", name)
-    assert [one.name for one in list_panels(tmp_path / "panels")] == ["a", "b"]
+    assert [panel.name for panel in list_panels(tmp_path / "panels")] == ["a", "b"]
     assert read_panel(tmp_path / "panels", "c").name == "c"
 
 
@@ -75,44 +74,37 @@ def test_webrtc_is_gone_before_a_panel_opens() -> None:
     assert done.stdout == "ready XRTC\n"
 
 
-def test_panels_are_listed_and_served(settings: Settings) -> None:
+async def test_panels_are_listed_and_served(settings: Settings) -> None:
     put(settings.data.panels, "Climb rate.js", b"// hello")
     # From an archive whose names are in Latin-1.
     put(settings.data.panels, os.fsdecode(b"tief\xe4.js"))
 
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            fine, odd = (await served.api.get("/panels")).json()
-            assert fine == {"name": "Climb rate", "problem": ""}
-            assert (odd["name"], "needs another name" in odd["problem"]) == ("tief\ufffd", True)
-            script = await served.api.get("/panels/own/Climb%20rate")
-            assert script.json() == {"name": "Climb rate", "script": "// hello"}
-            gone = await served.api.get("/panels/own/nothing")
-            assert gone.status_code == 404
-            assert "There is no panel “nothing”" in gone.json()["detail"]
-
-    asyncio.run(scenario())
+    async with serve(settings) as served:
+        fine, odd = (await served.api.get("/panels")).json()
+        assert fine == {"name": "Climb rate", "problem": ""}
+        assert (odd["name"], "needs another name" in odd["problem"]) == ("tief\ufffd", True)
+        script = await served.api.get("/panels/own/Climb%20rate")
+        assert script.json() == {"name": "Climb rate", "script": "// hello"}
+        gone = await served.api.get("/panels/own/nothing")
+        assert gone.status_code == 404
+        assert "There is no panel “nothing”" in gone.json()["detail"]
 
 
-def test_only_the_panel_s_frame_has_its_own_content_policy(settings: Settings) -> None:
-    async def scenario() -> None:
-        async with serve(settings) as served:
-            frame = await served.api.get("/panels/frame")
-            policy = frame.headers["content-security-policy"]
-            assert "sandbox allow-scripts;" in policy
-            assert "allow-same-origin" not in policy
-            assert "default-src 'none'" in policy
-            assert "frame-ancestors 'self'" in policy
-            assert "connect-src" not in policy  # by default-src
-            (script,) = re.findall(r"<script>(.*?)</script>", frame.text, re.DOTALL)
-            assert f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'" in policy
-            assert frame.headers["x-frame-options"] == "SAMEORIGIN"
-            assert frame.headers["x-content-type-options"] == "nosniff"
-            other = await served.api.get("/panels")
-            assert "frame-ancestors 'none'" in other.headers["content-security-policy"]
-            assert other.headers["x-frame-options"] == "DENY"
-            nobody = await served.api.get("/panels/frame", auth=None, headers={"authorization": ""})
-            assert nobody.status_code == 401
-            assert "frame-ancestors 'none'" in nobody.headers["content-security-policy"]
-
-    asyncio.run(scenario())
+async def test_only_the_panel_s_frame_has_its_own_content_policy(served: Served) -> None:
+    frame = await served.api.get("/panels/frame")
+    policy = frame.headers["content-security-policy"]
+    assert "sandbox allow-scripts;" in policy
+    assert "allow-same-origin" not in policy
+    assert "default-src 'none'" in policy
+    assert "frame-ancestors 'self'" in policy
+    assert "connect-src" not in policy  # by default-src
+    (script,) = re.findall(r"<script>(.*?)</script>", frame.text, re.DOTALL)
+    assert f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'" in policy
+    assert frame.headers["x-frame-options"] == "SAMEORIGIN"
+    assert frame.headers["x-content-type-options"] == "nosniff"
+    other = await served.api.get("/panels")
+    assert "frame-ancestors 'none'" in other.headers["content-security-policy"]
+    assert other.headers["x-frame-options"] == "DENY"
+    nobody = await served.api.get("/panels/frame", auth=None, headers={"authorization": ""})
+    assert nobody.status_code == 401
+    assert "frame-ancestors 'none'" in nobody.headers["content-security-policy"]

@@ -19,4 +19,4 @@ def test_one_more_scenario_than_there_may_be_is_refused_and_a_stored_one_may_cha
     with pytest.raises(RefusedError, match="There are 2 scenarios already"):
         keep_scenario(tmp_path, text.replace(f'"{SHIPPED[0]}"', '"three"', 1))
     keep_scenario(tmp_path, text.replace(f'"{SHIPPED[0]}"', '"two"', 1) + "# changed\n")
-    assert [one.name for one in list_scenarios(tmp_path) if not one.shipped] == ["one", "two"]
+    assert [scenario.name for scenario in list_scenarios(tmp_path) if not scenario.shipped] == ["one", "two"]

@@ -2,8 +2,8 @@
 
 import asyncio
 import sqlite3
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, closing
+from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
@@ -15,19 +15,16 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water.surroundings import Current
-from server.features.parameters.changes import Send
-from server.features.scenarios import live_run, recording
 from server.features.scenarios.live_run import LiveExecutor
-from server.features.scenarios.live_setup import LiveSetup, SavedState
-from server.features.scenarios.run import RunFailedError, RunRecord
-from server.features.sessions.session import new_row
+from server.features.scenarios.live_setup import SavedState
 from server.platform.settings import Settings
-from server.platform.store import Store, StoreError
-from tests.server.features.scenarios.direct_bridge import SCENARIO, STATE, DirectBridge
-from tests.server.features.sessions.recorder_rig import RecorderRig
+from server.platform.store import Store
+from server.recording.session import new_row
+from tests.server.features.scenarios.direct_bridge import STATE, DirectBridge
+from tests.server.recording.recorder_rig import RecorderRig
 
 
-class Monitor:
+class ScriptedMonitor:
     """Returns these states one after the other, and then the last of them."""
 
     def __init__(self, *states: dict[str, Any] | None) -> None:
@@ -42,7 +39,7 @@ class Monitor:
         """A state that comes is a present one."""
 
 
-def executor(settings: Settings, monitor: Monitor) -> LiveExecutor:
+def executor(settings: Settings, monitor: ScriptedMonitor) -> LiveExecutor:
     nobody = cast(Any, None)
     clock = SimulatedClock(100.0)
     return LiveExecutor(
@@ -52,85 +49,23 @@ def executor(settings: Settings, monitor: Monitor) -> LiveExecutor:
 
 def test_a_state_from_before_the_start_may_lack_the_last_change_and_is_not_taken(settings: Settings) -> None:
     before, after = {"time": 99.9, "set_point_default": 0.3}, {"time": 100.1, "set_point_default": 0.9}
-    live = executor(settings, Monitor(None, before, before, after))
+    live = executor(settings, ScriptedMonitor(None, before, before, after))
     assert asyncio.run(live._next_state()) == after
-
-
-def test_a_runtime_that_does_not_tell_its_state_is_an_error_in_words(
-    settings: Settings, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(live_run, "STATE_SECONDS", 0.01)
-    live = executor(settings, Monitor({"time": 99.9}))
-    with pytest.raises(RefusedError, match="does not tell its state"):
-        asyncio.run(live._next_state())
-
-
-class Prepared:
-    """A live run with every part in this process; `pids` are those of the robot's processes."""
-
-    def __init__(self, store: Store, settings: Settings) -> None:
-        self.bridge = DirectBridge(Simulator(SimulationParameters(), seed=1))
-        self.rig = RecorderRig(store, settings)
-        self.pids = {"board": 1, "runtime": 2, "simulator": 3}
-        self.run = RunRecord("a run", SCENARIO, "", "live", "host")
-        now = {"time": 60.0, "run": "one", "armed": False, "mode": "disarmed", "connected": True}
-        self.live = LiveExecutor(
-            settings,
-            store,
-            self.rig.recorder,
-            cast(Any, self.bridge),
-            cast(Any, self),
-            cast(Any, Monitor({**STATE, **now})),
-            cast(Any, SimpleNamespace(get=lambda name: SimpleNamespace(pid=self.pids[name]))),
-            self.rig.clock,
-            notify=lambda *_: None,
-        )
-        self.live._setup = LiveSetup(cast(Any, self.bridge), None)
-
-    @asynccontextmanager
-    async def together(self, *_: str) -> AsyncIterator[Send]:
-        yield self.bridge.send
-
-
-def test_a_simulator_that_restarts_while_the_scenario_is_prepared_fails_the_run(
-    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    prepared = Prepared(store, settings)
-
-    async def restart(*_: object) -> None:
-        prepared.pids["simulator"] = 4
-
-    monkeypatch.setattr(prepared.live._setup, "prepare", restart)
-    with pytest.raises(RunFailedError, match="The simulator ended during the run"):
-        asyncio.run(prepared.live.perform(prepared.run))
-    assert prepared.rig.recorder.session is None
-
-
-def test_a_run_whose_older_sessions_cannot_be_read_records_nothing(
-    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fail(*_: object) -> None:
-        raise StoreError("the database is damaged")
-
-    prepared = Prepared(store, settings)
-    monkeypatch.setattr(recording, "_find_before", fail)
-    with pytest.raises(StoreError):
-        asyncio.run(prepared.live.perform(prepared.run))
-    assert prepared.rig.recorder.session is None
 
 
 class Killed:
     """A server after one that was killed during a scenario with a current."""
 
     def __init__(self, store: Store, settings: Settings) -> None:
-        self.settings = replace(settings, mode="robot")  # no emulated board, whose line would be cleaned
+        # A real board: an emulated one's line would be cleaned.
+        self.settings = replace(settings, robot=replace(settings.robot, mode="robot"))
         self.simulator = Simulator(SimulationParameters(), seed=1)
         self.bridge = DirectBridge(self.simulator)
         self.rig = RecorderRig(store, settings)
         self.notices: list[tuple[str, ...]] = []
 
     async def recover(self, run: str = "the same") -> list[tuple[str, ...]]:
-        """Recover beside this run of the runtime; returns the notices."""
+        """Recover beside this run of the runtime; return the notices."""
         water = await self.bridge.ask_simulator("surroundings", {})
         SavedState({**STATE, "run": "the same"}, water, None).write(self.settings.data.scenario_before)
         self.simulator.set_current(Current(north=0.2))
@@ -143,10 +78,10 @@ class Killed:
             self.rig.recorder,
             cast(Any, self.bridge),
             cast(Any, SimpleNamespace(put_back=self.bridge.send)),
-            cast(Any, Monitor({"run": run})),
+            cast(Any, ScriptedMonitor({"run": run})),
             cast(Any, None),
             self.rig.clock,
-            notify=lambda *words: self.notices.append(words),
+            notify=lambda *arguments: self.notices.append(arguments),
         )
         await live.recover()
         return self.notices

@@ -1,6 +1,5 @@
 """A scenario's set-up of water, line and robot, and its undoing."""
 
-import asyncio
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -39,8 +38,8 @@ def board() -> Iterator[EmulatorProcess]:
         tty, socket = Path(name) / "tty", Path(name) / "socket"
         with EmulatorProcess(
             build / "board", firmware_path(build, 250_000, ".elf"), tty, socket, "--paused"
-        ) as one:
-            yield one
+        ) as visitor:
+            yield visitor
 
 
 @pytest.fixture
@@ -48,12 +47,11 @@ def surroundings(bridge: DirectBridge, board: EmulatorProcess) -> LiveSetup:
     return LiveSetup(cast(Bridge, bridge), board.socket)
 
 
-def test_everything_is_set_up(surroundings: LiveSetup, simulator: Simulator, bridge: DirectBridge) -> None:
-    async def work() -> None:
-        await surroundings.prepare(SCENARIO, await surroundings.read(STATE), bridge.send)
-
+async def test_everything_is_set_up(
+    surroundings: LiveSetup, simulator: Simulator, bridge: DirectBridge
+) -> None:
     simulator.set_fault("battery", SimulatedFault(kind="drift", speed=0.1))
-    asyncio.run(work())
+    await surroundings.prepare(SCENARIO, await surroundings.read(STATE), bridge.send)
     now = simulator.surroundings()
     assert (now.basin, now.current, now.waves) == (
         SCENARIO.scene.basin,
@@ -74,20 +72,18 @@ def test_everything_is_set_up(surroundings: LiveSetup, simulator: Simulator, bri
     assert bridge.sight["targets"] == {"targets": [target]}
 
 
-def test_everything_is_undone(
+async def test_everything_is_undone(
     surroundings: LiveSetup, simulator: Simulator, bridge: DirectBridge, board: EmulatorProcess
 ) -> None:
-    async def work() -> list[str]:
-        before = await surroundings.read(STATE)
-        await surroundings.prepare(SCENARIO, before, bridge.send)
-        for event in SCENARIO.events:
-            await surroundings.apply(event, bridge.send)
-        bridge.commands.clear()
-        return await surroundings.put_back(before, bridge.send)
-
     simulator.set_fault("battery", SimulatedFault(kind="drift", speed=0.1))
     was, seen = simulator.surroundings(), dict(bridge.sight)
-    assert asyncio.run(work()) == []
+    before = await surroundings.read(STATE)
+    await surroundings.prepare(SCENARIO, before, bridge.send)
+    for event in SCENARIO.events:
+        await surroundings.apply(event, bridge.send)
+    bridge.commands.clear()
+    problems = await surroundings.put_back(before, bridge.send)
+    assert problems == []
     assert bridge.sight == seen
     assert simulator.surroundings() == was
     assert bridge.commands == [
@@ -107,36 +103,21 @@ def test_everything_is_undone(
         assert line.stats()["to_board_cuts"] == before_run
 
 
-def test_a_failed_step_of_the_undoing_is_reported_and_the_rest_is_done(
+async def test_a_failed_step_of_the_undoing_is_reported_and_the_rest_is_done(
     simulator: Simulator, bridge: DirectBridge
 ) -> None:
-    async def work() -> list[str]:
-        surroundings = LiveSetup(cast(Bridge, bridge), Path("/nowhere/socket"))
-        before = await surroundings.read(STATE)
-        with pytest.raises(RefusedError, match="The emulated board: no emulated board answers"):
-            await surroundings.prepare(SCENARIO, before, bridge.send)
-        return await surroundings.put_back(before, bridge.send)
-
     was = simulator.surroundings()
-    (problem,) = asyncio.run(work())
+    surroundings = LiveSetup(cast(Bridge, bridge), Path("/nowhere/socket"))
+    before = await surroundings.read(STATE)
+    with pytest.raises(RefusedError, match="The emulated board: no emulated board answers"):
+        await surroundings.prepare(SCENARIO, before, bridge.send)
+    (problem,) = await surroundings.put_back(before, bridge.send)
     assert "no emulated board answers" in problem
     assert simulator.surroundings() == was
     assert bridge.commands[-1] == ("card", {"colour": "red"})
 
 
-def test_a_step_without_an_answer_is_tried_again(simulator: Simulator, bridge: DirectBridge) -> None:
-    async def work() -> list[str]:
-        surroundings = LiveSetup(cast(Bridge, bridge), None)
-        before = await surroundings.read(STATE)
-        await surroundings.prepare(SCENARIO, before, bridge.send)
-        bridge.commands.clear()
-        bridge.silent = 1
-        await surroundings.disarm()
-        bridge.silent = 1
-        problems = await surroundings.put_back(before, silent_once)
-        assert not silences
-        return problems
-
+async def test_a_step_without_an_answer_is_tried_again(simulator: Simulator, bridge: DirectBridge) -> None:
     silences = ["set_points", "card"]
 
     async def silent_once(command: RobotCommand) -> None:
@@ -146,7 +127,16 @@ def test_a_step_without_an_answer_is_tried_again(simulator: Simulator, bridge: D
         await bridge.send(command)
 
     was = simulator.surroundings()
-    assert asyncio.run(work()) == []
+    surroundings = LiveSetup(cast(Bridge, bridge), None)
+    before = await surroundings.read(STATE)
+    await surroundings.prepare(SCENARIO, before, bridge.send)
+    bridge.commands.clear()
+    bridge.silent = 1
+    await surroundings.disarm()
+    bridge.silent = 1
+    problems = await surroundings.put_back(before, silent_once)
+    assert not silences
+    assert problems == []
     assert simulator.surroundings() == was
     names = [name for name, _ in bridge.commands]
     assert names == [
@@ -161,15 +151,13 @@ def test_a_step_without_an_answer_is_tried_again(simulator: Simulator, bridge: D
     ]
 
 
-def test_a_runtime_that_stays_silent_is_given_up_and_reported(bridge: DirectBridge) -> None:
-    async def work() -> list[str]:
-        surroundings = LiveSetup(cast(Bridge, bridge), None, patience=0.3)
-        before = await surroundings.read(STATE)
-        bridge.silent = 10_000
-        with pytest.raises(RuntimeSilentError):
-            await surroundings.disarm()
-        return await surroundings.put_back(before, bridge.send)
-
-    assert asyncio.run(work()) == ["The robot's runtime does not answer."]
+async def test_a_runtime_that_stays_silent_is_given_up_and_reported(bridge: DirectBridge) -> None:
+    surroundings = LiveSetup(cast(Bridge, bridge), None, patience=0.3)
+    before = await surroundings.read(STATE)
+    bridge.silent = 10_000
+    with pytest.raises(RuntimeSilentError):
+        await surroundings.disarm()
+    problems = await surroundings.put_back(before, bridge.send)
+    assert problems == ["The robot's runtime does not answer."]
     assert 10_000 - bridge.silent < 30
     assert bridge.commands == []

@@ -73,13 +73,13 @@ def wait(condition: Callable[[], object], what: str, why: Callable[[], object] =
 
 
 def state(stack: Stack) -> dict[str, Any]:
-    found: dict[str, Any] = stack.api.get("/scenarios/state").json()
-    return found
+    answer: dict[str, Any] = stack.api.get("/scenarios/state").json()
+    return answer
 
 
 def robot(stack: Stack) -> dict[str, Any]:
-    found: dict[str, Any] = stack.api.get("/robot").json()
-    return found
+    answer: dict[str, Any] = stack.api.get("/robot").json()
+    return answer
 
 
 def start(stack: Stack, text: str) -> None:
@@ -106,7 +106,7 @@ def begin_long(stack: Stack) -> None:
 
 
 def simulator_answers(stack: Stack) -> bool:
-    """True where the simulator answers; its process was running a moment before."""
+    """Return True where the simulator answers; its process was running a moment before."""
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
     with join("turtle", [runtime]) as messages, suppress(NoAnswerError):
         messages.query("simulator/surroundings", {})
@@ -115,10 +115,10 @@ def simulator_answers(stack: Stack) -> bool:
 
 
 def settings_of(stack: Stack) -> dict[str, Any]:
-    """The robot's settings that a scenario may change."""
+    """Return the robot's settings that a scenario may change."""
     names = ["loops", "set_point_default", "set_point_detected", "vision_rate"]
-    found = robot(stack)
-    return {name: found[name] for name in [*names, "vision_colour", "card", "armed"]}
+    result = robot(stack)
+    return {name: result[name] for name in [*names, "vision_colour", "card", "armed"]}
 
 
 def query(stack: Stack, question: str) -> list[Any]:
@@ -127,21 +127,24 @@ def query(stack: Stack, question: str) -> list[Any]:
 
 
 def test_the_shipped_scenarios_are_listed_and_valid(stack: Stack) -> None:
-    found = stack.api.get("/scenarios").json()
-    assert found[0]["name"] == "figure_14"
-    assert len(found) == 6
-    for one in found:
-        checked = stack.api.post("/scenarios/check", json={"text": one["text"]}).json()
-        assert checked == {"problems": [], "summary": one["summary"]}
+    answer = stack.api.get("/scenarios").json()
+    assert answer[0]["name"] == "figure_14"
+    assert len(answer) == 6
+    for scenario in answer:
+        checked = stack.api.post("/scenarios/check", json={"text": scenario["text"]}).json()
+        assert checked == {"problems": [], "summary": scenario["summary"]}
 
 
 def test_errors_of_a_scenario_are_reported(stack: Stack) -> None:
     wrong = SHORT.replace("[scene]", "[sea]").replace("duration = 3", "duration = -3")
     problems = stack.api.post("/scenarios/check", json={"text": wrong}).json()["problems"]
-    assert {one["text"].split(" ")[0] for one in problems} == {"duration", "'sea'", "scene"}
-    assert sorted(one["path"] for one in problems) == [["duration"], ["scene"], ["sea"]]
+    assert {problem["text"].split(" ")[0] for problem in problems} == {"duration", "'sea'", "scene"}
+    assert sorted(problem["path"] for problem in problems) == [["duration"], ["scene"], ["sea"]]
     answer = stack.api.post("/scenarios/runs", json={"text": wrong, "place": "live"})
-    assert (answer.status_code, answer.json()["detail"]) == (422, "\n".join(one["text"] for one in problems))
+    assert (answer.status_code, answer.json()["detail"]) == (
+        422,
+        "\n".join(problem["text"] for problem in problems),
+    )
     assert state(stack)["active"] is None
 
 
@@ -164,7 +167,7 @@ def test_a_live_run_is_recorded_and_undoes_its_set_up(stack: Stack) -> None:
     wait(lambda: settings_of(stack) == before, f"{before}", lambda: f"instead of {settings_of(stack)}")
     # Nothing stays changed, so that the change before the scenario can be undone.
     newest = stack.api.get("/parameters/changes").json()[0]
-    assert {one["name"] for one in newest["values"]} == set(points)
+    assert {value["name"] for value in newest["values"]} == set(points)
     stack.api.post("/parameters/undo", json={"change": newest["id"]}).raise_for_status()
 
     columns = "id, state, origin, scenario_name, seed, scenario, started_steady, samples"
@@ -172,8 +175,8 @@ def test_a_live_run_is_recorded_and_undoes_its_set_up(stack: Stack) -> None:
     assert session[:6] == (last["session"], "complete", "scenario", "short", 7, SHORT)
     assert session[7] > 500
     marks = query(stack, f"SELECT time, text FROM marker WHERE session_id = {session[0]} ORDER BY time")
-    words = ["Arm", "Yellow card", "Beacon left: stuck", "Line from the board: bit errors", "Nearly done"]
-    assert [text for _, text in marks] == words
+    message = ["Arm", "Yellow card", "Beacon left: stuck", "Line from the board: bit errors", "Nearly done"]
+    assert [text for _, text in marks] == message
     assert all(0 <= moment - session[6] <= 3.5 for moment, _ in marks)
 
 
@@ -241,9 +244,9 @@ def test_a_refusal_gives_the_reason(stack: Stack) -> None:
     session = stack.api.post("/sessions", json={"name": "mine"}).json()["id"]
     stack.arm()
     wait(lambda: robot(stack)["armed"], "the robot to be armed")
-    words = refusal(stack, SHORT)
-    assert "“mine” is being recorded." in words
-    assert "The robot is armed." in words
+    text = refusal(stack, SHORT)
+    assert "“mine” is being recorded." in text
+    assert "The robot is armed." in text
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
 
@@ -251,10 +254,10 @@ def test_a_refusal_gives_the_reason(stack: Stack) -> None:
 def test_own_scenarios_are_stored(stack: Stack) -> None:
     answer = stack.api.post("/scenarios", json={"text": SHORT})
     assert answer.status_code == 201
-    found = stack.api.get("/scenarios").json()
-    assert [(one["name"], one["shipped"]) for one in found][-1] == ("short", False)
+    result = stack.api.get("/scenarios").json()
+    assert [(scenario["name"], scenario["shipped"]) for scenario in result][-1] == ("short", False)
     taken = stack.api.post("/scenarios", json={"text": SHORT.replace('"short"', '"lost_link"')})
     assert taken.status_code == 409
     (stack.data / "scenarios" / "broken.toml").write_text("name = [")
-    found = {one["name"]: one["summary"] for one in stack.api.get("/scenarios").json()}
-    assert found["broken"] is None
+    result = {scenario["name"]: scenario["summary"] for scenario in stack.api.get("/scenarios").json()}
+    assert result["broken"] is None

@@ -10,18 +10,16 @@ from server.features.scenarios.shell_run import _follow
 from server.platform.running_server import announce
 from server.platform.settings import Settings, SetupError
 from tests.server.features.scenarios.test_simulated_run import LONG
-from tests.server.serving import Served, play
+from tests.server.serving import Served, serve
 
 TAKEN_OUT = "The run was taken out of the queue."
 
 
-def left_after(
+async def left_after(
     settings: Settings, change: Callable[[Served, str], Awaitable[None]], interrupt: bool
 ) -> list[int]:
-    """Follow the second of two runs until it is taken out of the queue; returns which of them stay."""
-    left: list[int] = []
-
-    async def scenario(served: Served) -> None:
+    """Follow the second of two runs until it is taken out of the queue; return which of them stay."""
+    async with serve(settings) as served:
         announce(served.settings)
         start = {"text": LONG, "place": "simulated"}
         runs = [(await served.api.post("/scenarios/runs", json=start)).json()["run"] for _ in range(2)]
@@ -39,21 +37,18 @@ def left_after(
             async with asyncio.timeout(20):
                 await following
         state = served.get(ScenarioRunner).state()
-        left.extend(runs.index(one.run) + 1 for one in (state.active, *state.queued) if one is not None)
-
-    play(settings, scenario)
-    return left
+        return [runs.index(record.run) + 1 for record in (state.active, *state.queued) if record is not None]
 
 
-def test_a_run_that_somebody_takes_out_of_the_queue_ends_the_command(settings: Settings) -> None:
+async def test_a_run_that_somebody_takes_out_of_the_queue_ends_the_command(settings: Settings) -> None:
     async def cancel(served: Served, run: str) -> None:
         (await served.api.post(f"/scenarios/cancel?run={run}")).raise_for_status()
 
-    assert left_after(settings, cancel, interrupt=False) == [1]
+    assert await left_after(settings, cancel, interrupt=False) == [1]
 
 
-def test_ctrl_c_cancels_the_commands_own_run_alone(settings: Settings) -> None:
+async def test_ctrl_c_cancels_the_commands_own_run_alone(settings: Settings) -> None:
     async def nothing(_: Served, __: str) -> None:
         pass
 
-    assert left_after(settings, nothing, interrupt=True) == [1]
+    assert await left_after(settings, nothing, interrupt=True) == [1]

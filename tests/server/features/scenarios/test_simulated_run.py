@@ -3,7 +3,8 @@
 import asyncio
 import sqlite3
 import sys
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -11,18 +12,19 @@ from typing import Any
 import pytest
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.config import RobotConfig
 from robot_runtime.experiments.scenario.document import read_scenario
 from server.cli import main
 from server.features.scenarios import simulated_run
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import ScenarioState
 from server.features.scenarios.simulated_run import SimulatedExecutor
-from server.features.sessions.recording import Recording
-from server.features.sessions.session import find_row
+from server.library.content import Recording
 from server.platform.notices import Notices
 from server.platform.runs import RunOverError
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.recording.session import find_row
 from tests.server.waiting import SECONDS
 
 SHORT = """
@@ -44,43 +46,42 @@ do = "card"
 colour = "yellow"
 """
 LONG = SHORT.replace("duration = 4", "duration = 3600")
-Work = Callable[[ScenarioRunner], Awaitable[None]]
 
 
-def perform(settings: Settings, store: Store, work: Work) -> list[ScenarioState]:
-    """Run `work` on the runs of a server without a robot; returns the published states."""
-    told: list[ScenarioState] = []
-
-    async def whole() -> None:
-        simulated = SimulatedExecutor(settings, store, Notices(SteadyClock(), lambda _: None))
-        runs = ScenarioRunner(
-            simulated, simulated, lambda message: told.append(ScenarioState.model_validate(message))
-        )
-        try:
-            await work(runs)
-        finally:
-            await runs.close()
-
-    asyncio.run(whole())
-    return told
+@asynccontextmanager
+async def simulated(
+    settings: Settings, store: Store
+) -> AsyncIterator[tuple[ScenarioRunner, list[ScenarioState]]]:
+    """The runs of a server without a robot, and their published states."""
+    states: list[ScenarioState] = []
+    executor = SimulatedExecutor(settings, store, Notices(SteadyClock(), lambda _: None))
+    runs = ScenarioRunner(
+        executor, executor, lambda message: states.append(ScenarioState.model_validate(message))
+    )
+    try:
+        yield runs, states
+    finally:
+        await runs.close()
 
 
 def samples(store: Store, session: int) -> list[Any]:
     row = find_row(store, session)
     recording = Recording(store, row)
-    return [(topic, [one.data for one in recording.chunks(topic)]) for topic in sorted(recording.counts())]
+    return [
+        (topic, [chunk.data for chunk in recording.chunks(topic)]) for topic in sorted(recording.counts())
+    ]
 
 
-def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Settings, store: Store) -> None:
+async def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(
+    settings: Settings, store: Store
+) -> None:
     started: list[str] = []
 
-    async def work(runs: ScenarioRunner) -> None:
+    async with simulated(settings, store) as (runs, states):
         started.extend(runs.start(read_scenario(SHORT), SHORT, "simulated", "host") for _ in range(2))
-        assert [one.run for one in runs.state().queued] == started[1:]
+        assert [queued.run for queued in runs.state().queued] == started[1:]
         await runs.wait()
-
-    told = perform(settings, store, work)
-    ends = {one.last.run: one.last for one in told if one.last}
+    ends = {state.last.run: state.last for state in states if state.last}
     assert {run: (end.state, end.problem, end.before) for run, end in ends.items()} == {
         started[0]: ("complete", "", None),
         started[1]: ("complete", "", ends[started[0]].session),
@@ -93,22 +94,23 @@ def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Setting
     times, columns = Recording(store, first).columns("control", ["set_point"])
     assert times[0] < 0.2
     assert 4.0 < times[-1] <= first.duration < 5.0
-    assert sorted({round(float(one), 1) for one in columns["set_point"]}) == [0.2, 1.0]
+    assert sorted({round(float(column), 1) for column in columns["set_point"]}) == [0.2, 1.0]
     with sqlite3.connect(settings.data.database) as database:
         marks = database.execute(f"SELECT time, text FROM marker WHERE session_id = {first.id}").fetchall()
     assert [(round(time), text) for time, text in marks] == [(1, "Arm"), (2, "Yellow card")]
 
 
-def test_a_cancelled_run_keeps_its_recording_and_clears_the_queue(settings: Settings, store: Store) -> None:
-    async def work(runs: ScenarioRunner) -> None:
+async def test_a_cancelled_run_keeps_its_recording_and_clears_the_queue(
+    settings: Settings, store: Store
+) -> None:
+    async with simulated(settings, store) as (runs, states):
         runs.start(read_scenario(LONG), LONG, "simulated", "host")
         runs.start(read_scenario(LONG), LONG, "simulated", "host")
         while runs.active is None or runs.active.elapsed < 1:
             await asyncio.sleep(0.02)
         runs.cancel()
         await runs.wait()
-
-    last = perform(settings, store, work)[-1]
+    last = states[-1]
     assert (last.active, last.queued) == (None, [])
     assert last.last is not None
     assert (last.last.state, last.last.problem) == ("cancelled", "It was cancelled.")
@@ -117,12 +119,13 @@ def test_a_cancelled_run_keeps_its_recording_and_clears_the_queue(settings: Sett
     assert row.duration < 3600
 
 
-def test_one_run_is_cancelled_alone(settings: Settings, store: Store) -> None:
-    async def work(runs: ScenarioRunner) -> None:
+async def test_one_run_is_cancelled_alone(settings: Settings, store: Store) -> None:
+    started: list[str] = []
+    async with simulated(settings, store) as (runs, states):
         first, second, third = (runs.start(read_scenario(LONG), LONG, "simulated", "host") for _ in range(3))
         runs.cancel(second)
         assert runs.active is not None
-        assert [one.run for one in runs.state().queued] == [third]
+        assert [queued.run for queued in runs.state().queued] == [third]
         runs.cancel(first)
         while runs.active.run != third:
             await asyncio.sleep(0.02)
@@ -130,58 +133,54 @@ def test_one_run_is_cancelled_alone(settings: Settings, store: Store) -> None:
             runs.cancel(first)
         assert runs.active.run == third
         started.extend((first, third))
-
-    started: list[str] = []
-    ended = [one.last for one in perform(settings, store, work) if one.last]
-    assert {one.run: one.problem for one in ended} == dict.fromkeys(started, "It was cancelled.")
+    ended = [state.last for state in states if state.last]
+    assert {record.run: record.problem for record in ended} == dict.fromkeys(started, "It was cancelled.")
 
 
-def test_no_run_of_an_earlier_server_is_cancelled(settings: Settings, store: Store) -> None:
+async def test_no_run_of_an_earlier_server_is_cancelled(settings: Settings, store: Store) -> None:
     earlier: list[str] = []
 
-    async def work(runs: ScenarioRunner) -> None:
-        earlier.append(runs.start(read_scenario(LONG), LONG, "simulated", "host"))
-        if len(earlier) == 2:
-            with pytest.raises(RunOverError):
-                runs.cancel(earlier[0])
-            assert runs.active is not None
-            assert runs.active.run == earlier[1]
-
     for _ in range(2):
-        perform(settings, store, work)
+        async with simulated(settings, store) as (runs, _):
+            earlier.append(runs.start(read_scenario(LONG), LONG, "simulated", "host"))
+            if len(earlier) == 2:
+                with pytest.raises(RunOverError):
+                    runs.cancel(earlier[0])
+                assert runs.active is not None
+                assert runs.active.run == earlier[1]
 
 
-def test_a_refused_command_gets_a_bookmark_and_a_notice(settings: Settings, store: Store) -> None:
+async def test_a_refused_command_gets_a_bookmark_and_a_notice(settings: Settings, store: Store) -> None:
     broken = SHORT + "[[events]]\nat = 0.1\ndo = 'fault'\nsensor = 'pressure'\nkind = 'bus'\n"
 
     later = broken.replace("at = 0.5", "at = 2.5")
 
-    async def work(runs: ScenarioRunner) -> None:
+    async with simulated(settings, store) as (runs, states):
         runs.start(read_scenario(later), later, "simulated", "host")
         await runs.wait()
-
-    last = perform(settings, store, work)[-1].last
+    last = states[-1].last
     assert last is not None
     assert last.state == "complete"
     assert last.problem.startswith("At 2.5 s: Arm: refused. ")
 
 
-def test_a_failed_process_is_reported_with_its_output(
+async def test_a_failed_process_is_reported_with_its_output(
     settings: Settings, store: Store, tmp_path: Path
 ) -> None:
-    async def work(runs: ScenarioRunner) -> None:
+    nowhere = Settings(
+        data=settings.data, config=settings.config, robot=RobotConfig(name="tested"), build=tmp_path
+    )
+    async with simulated(nowhere, store) as (runs, states):
         runs.start(read_scenario(SHORT), SHORT, "simulated", "emulated")
         await runs.wait()
-
-    nowhere = Settings(data=settings.data, config=settings.config, robot="tested", build=tmp_path)
-    last = perform(nowhere, store, work)[-1].last
+    last = states[-1].last
     assert last is not None
     assert (last.state, last.session) == ("failed", None)
     assert "has ended with exit status" in last.problem
     assert str(tmp_path) in last.problem
 
 
-def test_a_process_that_goes_on_writing_after_an_invalid_message_is_ended(
+async def test_a_process_that_goes_on_writing_after_an_invalid_message_is_ended(
     settings: Settings, store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     script = tmp_path / "python"
@@ -193,12 +192,11 @@ def test_a_process_that_goes_on_writing_after_an_invalid_message_is_ended(
     # The pipe is full at once.
     monkeypatch.setattr(simulated_run, "MESSAGE_BYTES_MAX", 1000)
 
-    async def work(runs: ScenarioRunner) -> None:
+    async with simulated(settings, store) as (runs, states):
         runs.start(read_scenario(SHORT), SHORT, "simulated", "host")
         async with asyncio.timeout(SECONDS):
             await runs.wait()
-
-    last = perform(settings, store, work)[-1].last
+    last = states[-1].last
     assert last is not None
     assert "sent a message that is not valid" in last.problem
 

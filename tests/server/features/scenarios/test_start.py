@@ -1,6 +1,5 @@
 """The start of a scenario over HTTP."""
 
-import asyncio
 import threading
 
 import pytest
@@ -24,7 +23,7 @@ scene = { kind = "natural", depth = 2.0 }
 """
 
 
-def test_a_scenario_is_not_read_in_the_event_loop(
+async def test_a_scenario_is_not_read_in_the_event_loop(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     readers: list[int] = []
@@ -35,18 +34,15 @@ def test_a_scenario_is_not_read_in_the_event_loop(
 
     monkeypatch.setattr(routes, "read_scenario", read_scenario)
 
-    async def run() -> None:
-        async with serve(settings) as served:
-            start = {"text": "refused", "place": "simulated"}
-            answer = await served.api.post("/scenarios/runs", json=start)
-            assert (answer.status_code, answer.json()["detail"]) == (422, "refused")
-            assert readers != []
-            assert readers[0] != threading.get_ident()
-
-    asyncio.run(run())
+    async with serve(settings) as served:
+        start = {"text": "refused", "place": "simulated"}
+        answer = await served.api.post("/scenarios/runs", json=start)
+        assert (answer.status_code, answer.json()["detail"]) == (422, "refused")
+        assert readers != []
+        assert readers[0] != threading.get_ident()
 
 
-def test_a_live_scenario_on_the_robots_craft_has_the_craft_in_force(
+async def test_a_live_scenario_on_the_robots_craft_has_the_craft_in_force(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     settings.data.craft.write_text('title = "Heavy"\n[craft]\nbuoyancy = 1.003\nfin_drag = 0.22\n')
@@ -56,14 +52,11 @@ def test_a_live_scenario_on_the_robots_craft_has_the_craft_in_force(
         started.append(scenario)
         return "0123456789abcdef"
 
-    async def run() -> None:
-        async with serve(settings) as served:
-            await served.take_control()
-            monkeypatch.setattr(served.get(ScenarioRunner), "start", start)
-            answer = await served.api.post("/scenarios/runs", json={"text": ON_ITS_CRAFT, "place": "live"})
-            assert answer.status_code == 201, answer.text
-
-    asyncio.run(run())
+    async with serve(settings) as served:
+        await served.take_control()
+        monkeypatch.setattr(served.get(ScenarioRunner), "start", start)
+        answer = await served.api.post("/scenarios/runs", json={"text": ON_ITS_CRAFT, "place": "live"})
+        assert answer.status_code == 201, answer.text
     (scenario,) = started
     craft = settings.read_craft()
     assert (scenario.robot, craft.buoyancy) == (SimulationParameters.of(craft), 1.003)

@@ -6,14 +6,14 @@ import pytest
 
 from robot_runtime.clock import SimulatedClock
 from server.cli import main
-from server.features.sessions.recorder import Recorder
-from server.features.sessions.session import new_row
 from server.platform.folder_lock import claim
 from server.platform.notices import Notices
 from server.platform.running_server import announce
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.recording.recorder import Recorder
+from server.recording.session import new_row
 from tests.server.serving import serve
 
 
@@ -43,24 +43,24 @@ def test_sessions_without_a_server(settings: Settings, capsys: pytest.CaptureFix
     asyncio.run(record())
     store.close()
 
-    def told(*arguments: str) -> str:
+    def output_of(*arguments: str) -> str:
         status = run(settings, *arguments)
         spoken = capsys.readouterr()
         return spoken.out if status == 0 else spoken.err
 
-    assert "changed" in told("sessions", "tag", "1", "pool", "sea")
-    assert "changed" in told("sessions", "tag", "1", "--remove", "sea")
-    assert "changed" in told("sessions", "note", "1", "calm water")
-    assert "dive  [pool]" in told("sessions", "list", "calm")
-    assert " UTC  " in told("sessions", "list", "calm")
-    assert "No matching session" in told("sessions", "list", "--tag", "sea")
-    assert "tags: pool" in told("sessions", "show", "1")
-    assert "bin" in told("sessions", "delete", "1")
-    assert "dive" in told("sessions", "list", "--deleted")
-    assert "back" in told("sessions", "restore", "1")
-    assert "There is no session 7" in told("sessions", "delete", "7")
-    assert told("sessions", "tag", "1", "a,b").startswith("mucat: ")
-    assert "No server works on" in told("record", "start")
+    assert "changed" in output_of("sessions", "tag", "1", "pool", "sea")
+    assert "changed" in output_of("sessions", "tag", "1", "--remove", "sea")
+    assert "changed" in output_of("sessions", "note", "1", "calm water")
+    assert "dive  [pool]" in output_of("sessions", "list", "calm")
+    assert " UTC  " in output_of("sessions", "list", "calm")
+    assert "No matching session" in output_of("sessions", "list", "--tag", "sea")
+    assert "tags: pool" in output_of("sessions", "show", "1")
+    assert "bin" in output_of("sessions", "delete", "1")
+    assert "dive" in output_of("sessions", "list", "--deleted")
+    assert "back" in output_of("sessions", "restore", "1")
+    assert "There is no session 7" in output_of("sessions", "delete", "7")
+    assert output_of("sessions", "tag", "1", "a,b").startswith("mucat: ")
+    assert "No server works on" in output_of("record", "start")
 
 
 def test_the_command_works_in_a_new_folder(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
@@ -69,8 +69,8 @@ def test_the_command_works_in_a_new_folder(settings: Settings, capsys: pytest.Ca
     assert "No matching session" in capsys.readouterr().out
 
 
-def test_requests_to_a_running_server(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
-    async def scenario() -> None:
+async def test_requests_to_a_running_server(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
+    with claim(settings.data):
         async with serve(settings) as served:
             announce(served.settings)
             for arguments in (
@@ -83,9 +83,6 @@ def test_requests_to_a_running_server(settings: Settings, capsys: pytest.Capture
                 await asyncio.to_thread(run, settings, *arguments)
             (session,) = (await served.api.get("/sessions", params={"deleted": True})).json()
             assert (session["name"], session["tags"]) == ("from the shell", ["pool"])
-
-    with claim(settings.data):
-        asyncio.run(scenario())
     spoken = capsys.readouterr()
     assert "it is session 1" in spoken.out
     assert "Stop it first" in spoken.err

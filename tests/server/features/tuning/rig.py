@@ -13,7 +13,7 @@ from tests.runtime.control.flight import Flight
 ENDED = ("complete", "stopped", "failed")
 
 
-class Rig:
+class TuningRig:
     """One armed flight with several experiments on the depth."""
 
     def __init__(self, flight: Flight) -> None:
@@ -27,8 +27,8 @@ class Rig:
         flight.arm()
 
     def step(self, start: float, target: float, seconds: float) -> dict[str, float | None]:
-        """The figures of a step of the set point, from rest at the start."""
-        wanted = StepStart(
+        """Return the figures of a step of the set point, from rest at the start."""
+        expected = StepStart(
             kind="step",
             start=start,
             target=target,
@@ -38,11 +38,11 @@ class Rig:
             low=0.0,
             high=2.5,
         )
-        return {name: figure["value"] for name, figure in self._run(wanted)["figures"].items()}
+        return {name: figure["value"] for name, figure in self._run(expected)["figures"].items()}
 
     def relay(self, amplitude: float, cycles: int = 4) -> MeasuredLimitCycle:
-        """The limit cycle of a relay about 0.6 m."""
-        wanted = RelayStart(
+        """Return the limit cycle of a relay about 0.6 m."""
+        expected = RelayStart(
             kind="relay",
             set_point=0.6,
             amplitude=amplitude,
@@ -52,25 +52,25 @@ class Rig:
             low=0.0,
             high=2.5,
         )
-        return MeasuredLimitCycle(**self._run(wanted)["cycle"])
+        return MeasuredLimitCycle(**self._run(expected)["cycle"])
 
     def use(self, controller: str, gains: dict[str, float]) -> None:
         """Steer the depth by this controller from now on."""
         self.flight.robot.control.set_loop("depth", controller=controller, gains=gains)
 
-    def _run(self, wanted: StepStart | RelayStart) -> dict[str, Any]:
+    def _run(self, expected: StepStart | RelayStart) -> dict[str, Any]:
         self._gathering, self._told = SampleBuffer("depth"), []
-        command = wanted.command(1)
+        command = expected.command(1)
         self.flight.command(command.policy.name, **command.payload())
         self.flight.until(lambda: bool(self._told) and self._told[-1].phase in ENDED, 250.0)
         starts: dict[str, float] = {}
-        for one in self._told:
-            starts.setdefault(one.phase, one.since)
+        for message in self._told:
+            starts.setdefault(message.phase, message.since)
         end = self._told[-1]
         assert end.phase == "complete", end.text
-        found, _, problem = measure_run(wanted, self._gathering, starts, "complete", "")
+        result, _, problem = measure_run(expected, self._gathering, starts, "complete", "")
         assert problem == ""
-        return found
+        return result
 
     def _tick(self, time: float, record: bytes) -> None:
         tick = Control.from_bytes(record)
@@ -78,8 +78,8 @@ class Rig:
 
     def _fins(self, time: float, record: bytes) -> None:
         self._gathering.fin_times.append(time)
-        for kept, angle in zip(self._gathering.fins, Motor.from_bytes(record).angle, strict=True):
-            kept.append(angle)
+        for stored, angle in zip(self._gathering.fins, Motor.from_bytes(record).angle, strict=True):
+            stored.append(angle)
 
     def _take_progress(self, document: object) -> None:
         assert isinstance(document, Experiment)

@@ -41,43 +41,43 @@ def figures(curve: TuningCurve, loop: str = "depth") -> dict[str, float | None]:
 @settings(max_examples=30, deadline=None)
 @given(damping=st.floats(0.3, 0.8), frequency=st.floats(1.0, 2.5))
 def test_second_order_systems(damping: float, frequency: float) -> None:
-    found = figures(second_order(damping, frequency))
+    result = figures(second_order(damping, frequency))
     # Between two samples the peak is missed by at most half a sample of a sine.
     missed = 1 - np.cos(frequency / RATE / 2)
     expected = 100 * exp(-pi * damping / sqrt(1 - damping**2))
-    assert found["overshoot"] == pytest.approx(expected, abs=100 * missed + 1e-3)
+    assert result["overshoot"] == pytest.approx(expected, abs=100 * missed + 1e-3)
     # The envelope is an upper bound of what is outside the band, and half a turn later a lower one.
     bound = -np.log(0.05 * sqrt(1 - damping**2)) / (damping * frequency)
     half = pi / (frequency * sqrt(1 - damping**2))
-    assert found["settling_share"] is not None
-    assert bound - half - 0.1 <= found["settling_share"] <= bound + 0.1
-    assert found["rise_time"] is not None
-    assert 0.8 < found["rise_time"] * frequency < 2.6
+    assert result["settling_share"] is not None
+    assert bound - half - 0.1 <= result["settling_share"] <= bound + 0.1
+    assert result["rise_time"] is not None
+    assert 0.8 < result["rise_time"] * frequency < 2.6
 
 
 def test_figures_that_follow_by_arithmetic() -> None:
     curve = TuningCurve([], [], [], [])
     for tick in range(-10, 101):
         curve.add(tick / 10, 0.4 if tick < 0 else 0.9, 0.4 if tick < 50 else 0.86, 0.5 if tick % 2 else -0.5)
-    found = figures(curve)
-    assert found["steady_error"] == pytest.approx(0.04)
-    assert found["steady_swing"] == pytest.approx(0.0)
-    assert found["iae"] == pytest.approx(0.5 * 4.9 + 0.27 * 0.1 + 0.04 * 5.0)
-    assert found["effort"] == pytest.approx(50.0)
-    assert found["travel"] == pytest.approx(100.0)
-    assert found["rise_time"] == pytest.approx(0.1 * 0.8 * 0.5 / 0.46)
-    assert found["settling_near"] is None
-    assert found["fin_strokes"] is None
+    result = figures(curve)
+    assert result["steady_error"] == pytest.approx(0.04)
+    assert result["steady_swing"] == pytest.approx(0.0)
+    assert result["iae"] == pytest.approx(0.5 * 4.9 + 0.27 * 0.1 + 0.04 * 5.0)
+    assert result["effort"] == pytest.approx(50.0)
+    assert result["travel"] == pytest.approx(100.0)
+    assert result["rise_time"] == pytest.approx(0.1 * 0.8 * 0.5 / 0.46)
+    assert result["settling_near"] is None
+    assert result["fin_strokes"] is None
 
 
 def test_angles_are_reported_in_degrees() -> None:
     curve = TuningCurve([], [], [], [])
     for tick in range(-10, 101):
         curve.add(tick / 10, 0.0 if tick < 0 else 0.5, 0.0 if tick < 10 else 0.49, 0.0)
-    found = figures(curve, "heading")
-    assert found["steady_error"] == pytest.approx(degrees(0.01))
-    assert found["settling_near"] == pytest.approx(1.0)
-    units = {one.name: one.unit for one in meanings("heading")}
+    result = figures(curve, "heading")
+    assert result["steady_error"] == pytest.approx(degrees(0.01))
+    assert result["settling_near"] == pytest.approx(1.0)
+    units = {meaning.name: meaning.unit for meaning in meanings("heading")}
     assert (units["steady_error"], units["iae"]) == ("°", "° s")
 
 
@@ -88,22 +88,22 @@ def test_a_step_across_south_is_as_small_as_it_is() -> None:
         set_point = radians(170.0 if tick < 20 else -170.0)
         value = radians(170.0 if tick < 30 else -168.0 if tick < 40 else -171.0)
         columns = {"set_point": set_point, "measured": value, "output": 0.1}
-        turning = Turning(**{name: (one, nan, nan) for name, one in columns.items()})
+        turning = Turning(**{name: (sample, nan, nan) for name, sample in columns.items()})
         samples.see(Block.of(BY_NAME["turning"], 1, tick, row(100.0 + tick / 10, turning.to_bytes())))
-    found = figures(samples.curve.between(100.0, 107.0, 102.0), "heading")
-    assert found["overshoot"] == pytest.approx(10.0, abs=0.01)
-    assert found["steady_error"] == pytest.approx(1.0, abs=0.001)
-    assert found["iae"] == pytest.approx(20.0 * 1.0 + 2.0 * 1.0 + 1.0 * 2.0, abs=1.5)
+    result = figures(samples.curve.between(100.0, 107.0, 102.0), "heading")
+    assert result["overshoot"] == pytest.approx(10.0, abs=0.01)
+    assert result["steady_error"] == pytest.approx(1.0, abs=0.001)
+    assert result["iae"] == pytest.approx(20.0 * 1.0 + 2.0 * 1.0 + 1.0 * 2.0, abs=1.5)
 
 
 @pytest.mark.parametrize("loop", ["depth", "roll"])
 def test_every_figure_has_a_meaning(loop: str) -> None:
     assert list(figures(second_order(0.5, 1.0), loop)) != []
-    assert {one.name for one in meanings(loop)} == set(figures(second_order(0.5, 1.0), loop))
+    assert {meaning.name for meaning in meanings(loop)} == set(figures(second_order(0.5, 1.0), loop))
 
 
 def relayed(gain: float, lag: float, delay: float, hysteresis: float, amplitude: float) -> TuningCurve:
-    """A relay on gain e^(-delay s) / (s (lag s + 1)), simulated finely and sampled at 10 Hz."""
+    """Return a relay on gain e^(-delay s) / (s (lag s + 1)), simulated finely and sampled at 10 Hz."""
     step, value, speed, side = 0.002, 0.0, 0.0, 1.0
     waiting = [1.0] * round(delay / step)
     curve = TuningCurve([], [], [], [])
@@ -127,11 +127,11 @@ def test_the_ultimate_point_of_an_integrator_with_lag_and_delay(lag: float, dela
         low, high = (middle, high) if delay * middle + np.arctan(lag * middle) < pi / 2 else (low, middle)
     gain = 0.2
     known_gain = low * sqrt(1 + (lag * low) ** 2) / gain
-    found = measure_limit_cycle(relayed(gain, lag, delay, 0.0, 0.5), 20.0, 0.0)
-    assert found.period == pytest.approx(2 * pi / low, rel=0.1)
-    assert found.ultimate_gain == pytest.approx(known_gain, rel=0.15)
-    assert abs(found.asymmetry) < 0.05
-    assert found.remarks == []
+    result = measure_limit_cycle(relayed(gain, lag, delay, 0.0, 0.5), 20.0, 0.0)
+    assert result.period == pytest.approx(2 * pi / low, rel=0.1)
+    assert result.ultimate_gain == pytest.approx(known_gain, rel=0.15)
+    assert abs(result.asymmetry) < 0.05
+    assert result.remarks == []
 
 
 def test_a_load_shows_as_asymmetry() -> None:
@@ -139,12 +139,12 @@ def test_a_load_shows_as_asymmetry() -> None:
     for tick in range(400):
         side = 1.0 if (tick + 20) % 40 < 28 else -1.0
         curve.add(tick / 10, 0.6, 0.6 + 0.05 * np.sin(tick / 40 * 2 * pi), 0.1 + 0.5 * side)
-    found = measure_limit_cycle(curve, 0.0, 0.01)
-    assert found.asymmetry == pytest.approx(0.4)
-    assert found.bias == pytest.approx(0.1)
-    assert found.amplitude == pytest.approx(0.5)
-    assert found.period == pytest.approx(4.0)
-    assert "One half of each cycle is much longer" in found.remarks[0]
+    result = measure_limit_cycle(curve, 0.0, 0.01)
+    assert result.asymmetry == pytest.approx(0.4)
+    assert result.bias == pytest.approx(0.1)
+    assert result.amplitude == pytest.approx(0.5)
+    assert result.period == pytest.approx(4.0)
+    assert "One half of each cycle is much longer" in result.remarks[0]
 
 
 def test_a_response_without_a_cycle_is_reported() -> None:
@@ -167,11 +167,11 @@ def test_the_rules() -> None:
 def test_proposals_name_gains_out_of_range() -> None:
     cycle = measure_limit_cycle(relayed(0.2, 1.0, 0.3, 0.0, 0.5), 20.0, 0.0)
     limits = {"kp": (0.0, 50.0), "ki": (0.0, 20.0), "kd": (0.0, 0.1)}
-    proposals = {one.rule: one for one in propose("depth", cycle, limits)}
+    proposals = {proposal.rule: proposal for proposal in propose("depth", cycle, limits)}
     assert len(proposals) == len(RULES)
     assert proposals["amigo"].problem == "kd may be 0 to 0.1."
-    assert "amigo" not in {one.rule for one in propose("roll", cycle, limits)}
-    assert all(one.problem == "" for one in propose("depth", cycle, limits | {"kd": (0.0, 50.0)}))
+    assert "amigo" not in {proposal.rule for proposal in propose("roll", cycle, limits)}
+    assert all(proposal.problem == "" for proposal in propose("depth", cycle, limits | {"kd": (0.0, 50.0)}))
 
 
 @settings(max_examples=50, deadline=None)

@@ -2,14 +2,14 @@
 
 from server.features.tuning.rules import propose
 from tests.runtime.control.flight import Flight
-from tests.server.features.tuning.rig import Rig
+from tests.server.features.tuning.rig import TuningRig
 
 
 def test_gains_from_a_relay_hold_the_depth() -> None:
     with Flight() as flight:
-        rig = Rig(flight)
+        rig = TuningRig(flight)
         cycle = rig.relay(0.5, cycles=3)
-        gains = {one.rule: one.gains for one in propose("depth", cycle, {})}["tyreus_luyben"]
+        gains = {proposal.rule: proposal.gains for proposal in propose("depth", cycle, {})}["tyreus_luyben"]
         rig.use("pid", gains)
         tuned = rig.step(0.4, 0.7, 12.0)
         rig.use("bang_bang", {})

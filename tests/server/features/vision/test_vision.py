@@ -1,8 +1,6 @@
 """The vision settings over HTTP: passed on completely, refused where invalid, and as TOML."""
 
-import asyncio
 import tomllib
-from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
@@ -29,30 +27,19 @@ SETTINGS = VisionSettings(
 SET = "/robot/commands/vision_settings"
 
 
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
-    async def run() -> None:
-        async with serve(settings) as served:
-            await scenario(served)
-
-    asyncio.run(run())
-
-
-def test_settings_are_passed_on_completely_and_read_back(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        assert (await served.api.post(SET, json=SETTINGS)).status_code == 200
-        assert served.runtime.asked == [("vision_settings", SETTINGS)]
-        usual = VisionSettings().table()
-        assert (await served.api.get("/vision")).json() == {"settings": usual, "configured": usual}
-
-    play(settings, scenario)
+async def test_settings_are_passed_on_completely_and_read_back(served: Served) -> None:
+    assert (await served.api.post(SET, json=SETTINGS)).status_code == 200
+    assert served.runtime.asked == [("vision_settings", SETTINGS)]
+    usual = VisionSettings().table()
+    assert (await served.api.get("/vision")).json() == {"settings": usual, "configured": usual}
 
 
-def test_settings_that_have_changed_meanwhile_are_not_replaced_unasked(
+async def test_settings_that_have_changed_meanwhile_are_not_replaced_unasked(
     settings: Settings,
 ) -> None:
     usual = VisionSettings().table()
 
-    async def scenario(served: Served) -> None:
+    async with serve(settings) as served:
         edit = {"settings": SETTINGS, "base": usual | {"rate": 2.0}}
         refused = await served.api.put("/vision", json=edit)
         assert (refused.status_code, refused.json()["kind"]) == (409, "changed")
@@ -61,8 +48,6 @@ def test_settings_that_have_changed_meanwhile_are_not_replaced_unasked(
         assert (await served.api.put("/vision", json=edit | {"base": usual})).status_code == 204
         assert (await served.api.put("/vision", json={"settings": SETTINGS})).status_code == 204
         assert served.runtime.asked == 2 * [("vision_settings", SETTINGS)]
-
-    play(settings, scenario)
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [
@@ -83,61 +68,52 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-def test_invalid_settings_are_refused_by_the_server(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        for change, words in WRONG:
-            answer = await served.api.post(SET, json={**SETTINGS, **change})
-            assert answer.status_code == 422, change
-            assert words in answer.json()["detail"]
-        short = {name: value for name, value in SETTINGS.items() if name != "opening"}
-        assert (await served.api.post(SET, json=short)).status_code == 422
-        text = '{"rate": NaN}'
-        json = {"Content-Type": "application/json"}
-        assert (await served.api.post(SET, content=text, headers=json)).status_code == 422
-        assert served.runtime.asked == []
-
-    play(settings, scenario)
+async def test_invalid_settings_are_refused_by_the_server(served: Served) -> None:
+    for change, message in WRONG:
+        answer = await served.api.post(SET, json={**SETTINGS, **change})
+        assert answer.status_code == 422, change
+        assert message in answer.json()["detail"]
+    short = {name: value for name, value in SETTINGS.items() if name != "opening"}
+    assert (await served.api.post(SET, json=short)).status_code == 422
+    text = '{"rate": NaN}'
+    json = {"Content-Type": "application/json"}
+    assert (await served.api.post(SET, content=text, headers=json)).status_code == 422
+    assert served.runtime.asked == []
 
 
-def test_picking_returns_the_runtime_s_answer(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        answer = await served.api.post("/vision/pick", json={"x": 0.25, "y": 1})
-        assert answer.json() == {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
-        assert served.runtime.picked == [{"x": 0.25, "y": 1.0, "radius": 0.02}]
-        for wrong in (
-            {"x": 0.25},
-            {"x": 1.25, "y": 0},
-            {"x": 0, "y": 0, "radius": 0.5},
-            {"x": 0, "y": "low"},
-        ):
-            assert (await served.api.post("/vision/pick", json=wrong)).status_code == 422
-        served.runtime.refusal = "There is no colour at this place: it is grey."
-        answer = await served.api.post("/vision/pick", json={"x": 0.25, "y": 1})
-        assert (answer.status_code, answer.json()["detail"]) == (409, served.runtime.refusal)
-
-    play(settings, scenario)
+async def test_picking_returns_the_runtime_s_answer(served: Served) -> None:
+    answer = await served.api.post("/vision/pick", json={"x": 0.25, "y": 1})
+    assert answer.json() == {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
+    assert served.runtime.picked == [{"x": 0.25, "y": 1.0, "radius": 0.02}]
+    for wrong in (
+        {"x": 0.25},
+        {"x": 1.25, "y": 0},
+        {"x": 0, "y": 0, "radius": 0.5},
+        {"x": 0, "y": "low"},
+    ):
+        assert (await served.api.post("/vision/pick", json=wrong)).status_code == 422
+    served.runtime.refusal = "There is no colour at this place: it is grey."
+    answer = await served.api.post("/vision/pick", json={"x": 0.25, "y": 1})
+    assert (answer.status_code, answer.json()["detail"]) == (409, served.runtime.refusal)
 
 
-def test_the_table_of_robot_toml_is_downloaded_and_uploaded(settings: Settings) -> None:
-    async def scenario(served: Served) -> None:
-        answer = await served.api.get("/vision/toml")
-        assert 'filename="vision.toml"' in answer.headers["content-disposition"]
-        assert read_document(answer.text) == VisionSettings().table()
-        read = await served.api.post("/vision/read", json={"text": Path("robot.toml").read_text()})
-        assert read.json() == VisionSettings().table()
-        for text, words in (
-            ("[vision", "not TOML"),
-            ("[robot]", "no table [vision]"),
-            ("vision = 3", "must be a table"),
-            ("[vision]\nrate = 99", "between 2 and 30"),
-            ("[vision]\ncolour = 'pink'", "colour is 'pink'"),
-        ):
-            answer = await served.api.post("/vision/read", json={"text": text})
-            assert answer.status_code == 422, text
-            assert words in answer.json()["detail"]
-        assert served.runtime.asked == []
-
-    play(settings, scenario)
+async def test_the_table_of_robot_toml_is_downloaded_and_uploaded(served: Served) -> None:
+    answer = await served.api.get("/vision/toml")
+    assert 'filename="vision.toml"' in answer.headers["content-disposition"]
+    assert read_document(answer.text) == VisionSettings().table()
+    read = await served.api.post("/vision/read", json={"text": Path("robot.toml").read_text()})
+    assert read.json() == VisionSettings().table()
+    for text, message in (
+        ("[vision", "not TOML"),
+        ("[robot]", "no table [vision]"),
+        ("vision = 3", "must be a table"),
+        ("[vision]\nrate = 99", "between 2 and 30"),
+        ("[vision]\ncolour = 'pink'", "colour is 'pink'"),
+    ):
+        answer = await served.api.post("/vision/read", json={"text": text})
+        assert answer.status_code == 422, text
+        assert message in answer.json()["detail"]
+    assert served.runtime.asked == []
 
 
 NAMES = st.from_regex(r"\A[A-Za-zäöüß][\w .-]{0,31}\Z").filter(lambda name: not name.startswith("marker"))

@@ -3,7 +3,7 @@ import type { Signal } from '../../../api';
 import type { ChoiceGroup } from '../../../parts/choices';
 import { compare as texts } from '../../../texts/compare';
 
-export interface ChartSignal {
+interface ChartSignal {
   readonly signal: Signal;
   /** wanted, not measured: drawn dashed */
   readonly wanted: boolean;
@@ -17,14 +17,14 @@ export interface Chart {
   readonly signals: readonly ChartSignal[];
 }
 
-export interface Preset {
+interface Preset {
   readonly name: string;
   readonly hint: string;
   readonly signals: readonly string[];
 }
 
 export const DEPTH = 'depth.depth';
-export const SET_POINT = 'control.set_point';
+const SET_POINT = 'control.set_point';
 
 export const PRESETS: readonly Preset[] = [
   { ...texts.presets.depth, signals: [DEPTH, SET_POINT] },

@@ -1,5 +1,5 @@
 /** Sessions as a Plotly figure: charts stacked over one time axis, and on top a row of events for each session. */
-import type { Compared, Comparison, ComparisonLine } from '../../../api';
+import type { Compared, Comparison, SignalLine } from '../../../api';
 import type { Pointed } from '../../../parts/figures';
 import type { Data, Layout } from 'plotly.js-basic-dist-min';
 import { chartsOf, columnWords, type Chart } from './charts';
@@ -30,7 +30,7 @@ export interface Picture {
 }
 
 /** Lines of a part of the time, by session and signal; where they are missing those of the comparison stand. */
-export type Finer = ReadonlyMap<number, Readonly<Record<string, ComparisonLine>>>;
+export type Finer = ReadonlyMap<number, Readonly<Record<string, SignalLine>>>;
 
 const LEFT = 58;
 const LEFT_NARROW = 46;
@@ -126,7 +126,7 @@ function frameOf(comparison: Comparison, view: View, look: Look, charts: number)
   };
 }
 
-export function axisTitle({ align }: Comparison): string {
+function axisTitle({ align }: Comparison): string {
   if (align.by === 'armed') return texts.charts.since.armed;
   if (align.by === 'set_point') return texts.charts.since.step(align.number);
   if (align.by === 'marker') return texts.charts.since.bookmark(align.marker || recorded.bookmarks.noText);
@@ -195,7 +195,7 @@ function lines(chart: Chart, place: number, session: Compared, comparison: Compa
 }
 
 /** Each column's least and most one after the other, so that the line runs through both. */
-export function points({ time, low, high }: ComparisonLine, offset: number): { x: number[]; y: (number | null)[] } {
+export function points({ time, low, high }: SignalLine, offset: number): { x: number[]; y: (number | null)[] } {
   const x: number[] = [];
   const y: (number | null)[] = [];
   for (const [index, at] of time.entries()) {
@@ -280,7 +280,7 @@ function pointedShape({ session, mark }: Pointed, sessions: readonly Compared[],
   const depth = charts.findIndex(({ title }) => title === texts.charts.depth);
   const place = Math.max(0, depth);
   // In m: a chart of something else shows when it was alone.
-  const bounded = depth >= 0 && mark.low !== null && mark.low !== undefined;
+  const bounded = depth >= 0 && mark.low !== null;
   return {
     type: 'rect',
     xref: 'x',

@@ -2,7 +2,7 @@ import uPlot from 'uplot';
 import type { IdentificationResult } from '../../../api';
 import { canvasFont, token } from '../../../theme.svelte';
 
-export type Channel = NonNullable<IdentificationResult['check']>['channels'][number];
+type Channel = NonNullable<IdentificationResult['check']>['channels'][number];
 
 /** A chart of a signal as it was measured, and as the craft before and after the fit predicts it. */
 export function createPredictionPlot(host: HTMLElement, times: readonly number[], channel: Channel, colours: readonly string[]): uPlot {

@@ -1,6 +1,6 @@
 /** How parameters are found, grouped, checked and compared. */
 import type { ParameterValue } from '../../../api';
-import type { TunableParameter } from '../../../generated/topics';
+import type { Loop, TunableParameter } from '../../../generated/topics';
 import { hasWords } from '../../../searching';
 import { tune as texts } from '../../../texts/tune';
 
@@ -49,6 +49,23 @@ export function words(value: ParameterValue | null): string {
   if (value === null) return '–';
   if (typeof value === 'boolean') return value ? texts.parameters.on : texts.parameters.off;
   return typeof value === 'number' ? String(Number(value.toPrecision(6))) : value.replaceAll('_', ' ');
+}
+
+/** What people call a loop's controller; null where the robot has no such one. */
+export function controllerTitle(loops: readonly Loop[], loop: string | undefined, name: ParameterValue | undefined | null): string | null {
+  return loops.find((one) => one.name === loop)?.controllers.find((one) => one.name === name)?.title ?? null;
+}
+
+/** The value of the parameter of this name as a person reads it: a controller by its title. */
+export function valueWords(loops: readonly Loop[], name: string, value: ParameterValue | null): string {
+  const [loop, what] = name.split('.');
+  return (what === 'controller' ? controllerTitle(loops, loop, value) : null) ?? words(value);
+}
+
+/** What a group of parameters is called: a controller's by its title. */
+export function groupTitle(loops: readonly Loop[], name: string): string {
+  const [loop, ...inner] = name.split('.');
+  return [loop, ...inner.map((one) => controllerTitle(loops, loop, one) ?? one)].join(' · ').replaceAll('_', ' ');
 }
 
 /** What is not the same on both sides, in the order of the left one. */

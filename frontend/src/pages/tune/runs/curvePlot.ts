@@ -19,7 +19,7 @@ const AXIS = 56;
 /** of the range of the values, above and below them */
 const ROOM = 0.06;
 
-export interface CurvePlotOptions {
+interface CurvePlotOptions {
   readonly what: What;
   readonly loop: Loop;
   readonly sync: string;

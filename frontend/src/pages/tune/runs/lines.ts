@@ -8,7 +8,7 @@ import { runTitle } from './words';
 import { tune as texts } from '../../../texts/tune';
 
 /** s before the step that a curve begins */
-export const LEAD = 3;
+const LEAD = 3;
 const TURNING = ['heading', 'pitch', 'roll'];
 
 export function keptLine(run: TuningRunDetail, place: number, theme: 'dark' | 'sunlight', loop: Loop): CurveLine {

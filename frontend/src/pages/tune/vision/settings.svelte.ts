@@ -27,7 +27,7 @@ export class VisionTuning {
 
   /** null until known */
   get settings(): VisionSettings | null {
-    return this.#draft ?? this.live.vision?.settings ?? this.#loaded;
+    return this.#draft ?? this.live.documents.vision.value?.settings ?? this.#loaded;
   }
 
   get undoable(): boolean {
@@ -108,7 +108,7 @@ export class VisionTuning {
     this.#refused = this.changed ? this.#draft : null;
     this.#sending = false;
     if (this.problem === '') this.#loaded = sent;
-    if (this.problem !== '' || same(this.live.vision?.settings ?? null, sent)) this.#draft = null;
+    if (this.problem !== '' || same(this.live.documents.vision.value?.settings ?? null, sent)) this.#draft = null;
   }
 }
 

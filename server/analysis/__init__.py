@@ -1,0 +1,1 @@
+"""Analysis of recorded sessions: signals on one time axis, figures, differences, reports."""

@@ -1,0 +1,242 @@
+"""Compares sessions on one time axis."""
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+
+from server.analysis.alignment import NoMomentError, find_moment
+from server.analysis.decimation import decimate
+from server.analysis.definitions import FIGURES
+from server.analysis.differences import find_differences
+from server.analysis.figures import (
+    MEASURED,
+    NEVER_ARMED,
+    NOTHING_THERE,
+    OUTPUT,
+    SET_POINT,
+    EvaluationRange,
+    complete,
+    count,
+    measure,
+)
+from server.analysis.history import read_bookmarks, read_history, set_point_steps
+from server.analysis.moments import ControlHistory, Span
+from server.analysis.result_cache import ResultCache
+from server.analysis.samples import Samples
+from server.analysis.schemas import (
+    Compared,
+    Comparison,
+    ComparisonQuery,
+    Lines,
+    LinesQuery,
+    SessionLines,
+    SignalLine,
+    TimeRange,
+)
+from server.analysis.signals import Signal, list_signals, split
+from server.library.content import Recording, reading_content
+from server.library.missions import MissionStepStart, RecordedMission, read_missions
+from server.library.timeline import Moment, read_events
+from server.metrics.figure import Figure
+from server.metrics.series import Floats
+from server.platform.models import SessionRow
+from server.platform.store import Reader
+from server.recording.session import find_row
+
+EVENTS_MAX = 500
+RESULTS_MAX = 64
+"""Of each cache of results about a session."""
+THREADS = 2
+"""Only decompression and SQLite run in parallel: more threads do not help."""
+
+
+@dataclass(frozen=True, slots=True)
+class _AlignedSession:
+    """A session and its position on the common time axis."""
+
+    recording: Recording
+    history: ControlHistory
+    steps: list[tuple[float, float]]
+    markers: list[Moment]
+    missions: list[RecordedMission]
+    offset: float | None
+    problem: str
+
+    @property
+    def row(self) -> SessionRow:
+        return self.recording.row
+
+
+class Comparer:
+    """Comparison of sessions, called from several threads; results about complete sessions are cached.
+
+    Methods raise UnknownSessionError, StoreError and RecordingError.
+    """
+
+    def __init__(self, store: Reader) -> None:
+        self._store = store
+        self._samples = Samples()
+        self._threads = ThreadPoolExecutor(THREADS, "compare")
+        self._histories: ResultCache[ControlHistory] = ResultCache(RESULTS_MAX)
+        self._missions: ResultCache[list[RecordedMission]] = ResultCache(RESULTS_MAX)
+        self._measured: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
+        self._counted: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
+
+    def signals(self, session: int) -> list[Signal]:
+        """Return the signals of a session that can be drawn."""
+        recording = self._open(session)
+        with reading_content(recording.row):
+            return list_signals(recording)
+
+    def compare(self, query: ComparisonQuery) -> Comparison:
+        """Return lines, figures and differences of the sessions, in the requested order."""
+        aligned = self._align(query)
+
+        def compare_one(session: _AlignedSession) -> Compared:
+            with reading_content(session.row):
+                return self._compare_one(session, query)
+
+        return Comparison(
+            align=query.align,
+            signals=_chosen_signals(query.signals, aligned),
+            sessions=list(self._threads.map(compare_one, aligned)),
+            figures=list(FIGURES),
+            differences=find_differences([(session.row, session.history) for session in aligned]),
+        )
+
+    def lines(self, query: LinesQuery) -> Lines:
+        """Return the lines alone, for a part of the time."""
+        aligned = self._align(query)
+        drawn = [
+            SessionLines(
+                id=session.row.id or 0,
+                offset=session.offset,
+                problem=session.problem,
+                series=self._draw(session, query),
+            )
+            for session in aligned
+        ]
+        return Lines(sessions=drawn)
+
+    def _open(self, session: int) -> Recording:
+        return Recording(self._store, find_row(self._store, session))
+
+    def _align(self, query: LinesQuery) -> list[_AlignedSession]:
+        recordings = [self._open(number) for number in dict.fromkeys(query.sessions)]
+        return list(self._threads.map(lambda recording: self._align_one(recording, query), recordings))
+
+    def _align_one(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
+        with reading_content(recording.row):
+            return self._find_offset(recording, query)
+
+    def _find_offset(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
+        # All at once, since the columns of a topic are read together.
+        signals = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
+        history = self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))
+        set_point = signals.get(SET_POINT)
+        steps = set_point_steps(set_point, history.armed) if set_point is not None else []
+        bookmarks = read_bookmarks(self._store, recording)
+        missions = self._missions.compute(recording.row, None, lambda: read_missions(recording)[0])
+        try:
+            offset, problem = find_moment(query.align, history, steps, bookmarks, missions), ""
+        except NoMomentError as missing:
+            offset, problem = None, str(missing)
+        return _AlignedSession(recording, history, steps, bookmarks, missions, offset, problem)
+
+    def _compare_one(self, session: _AlignedSession, query: ComparisonQuery) -> Compared:
+        row = session.row
+        taken = _range(session, query)
+        return Compared(
+            id=row.id or 0,
+            name=row.name,
+            started=row.started,
+            duration=row.duration,
+            state=row.state,
+            offset=session.offset,
+            problem=session.problem,
+            armed=[(span.start, span.end) for span in session.history.armed],
+            set_point_steps=len(session.steps),
+            mission_steps=_first_starts(session.missions),
+            events=read_events(session.recording, EVENTS_MAX),
+            markers=session.markers,
+            series=self._draw(session, query),
+            range=[(span.start, span.end) for span in taken.spans],
+            figures=self._measure(session, taken, query) if query.figures else {},
+        )
+
+    def _measure(
+        self, session: _AlignedSession, taken: EvaluationRange, query: ComparisonQuery
+    ) -> dict[str, Figure]:
+        band = query.band
+        if query.range is not None and session.offset is None:
+            return complete({}, session.problem)
+        measured = self._measured.compute(
+            session.row,
+            (taken, band),
+            lambda: measure(session.recording, self._samples, session.history, taken, band),
+        )
+        counted = self._counted.compute(
+            session.row, taken.spans, lambda: count(self._store, session.recording, taken.spans)
+        )
+        return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
+
+    def _draw(self, session: _AlignedSession, query: LinesQuery) -> dict[str, SignalLine]:
+        if session.offset is None:
+            return {}
+        view = (
+            _shift(query.view, session.offset) if query.view else Span(0.0, max(session.row.duration, 1e-3))
+        )
+        signals = self._samples.read(session.recording, query.signals)
+        known = list_signals(session.recording, {split(name)[0] for name in signals})
+        angles = {signal.name for signal in known if signal.unit == "rad"}
+        drawn = {
+            name: decimate(signals[name], view.start, view.end, query.points, angle=name in angles)
+            for name in query.signals
+            if name in signals
+        }
+        return {
+            name: SignalLine(time=_rounded(line.time, 4), low=_values(line.low), high=_values(line.high))
+            for name, line in drawn.items()
+        }
+
+
+def _range(session: _AlignedSession, query: ComparisonQuery) -> EvaluationRange:
+    if query.range is not None:
+        return EvaluationRange(() if session.offset is None else (_shift(query.range, session.offset),))
+    anchor = session.offset if query.align.by in ("armed", "set_point") else None
+    return EvaluationRange(session.history.armed, anchor)
+
+
+def _first_starts(missions: list[RecordedMission]) -> list[MissionStepStart]:
+    starts: dict[str, MissionStepStart] = {}
+    for mission in missions:
+        for step in mission.started:
+            starts.setdefault(step.path, step)
+    return list(starts.values())
+
+
+def _shift(part: TimeRange, offset: float) -> Span:
+    low, high = sorted((part.start, part.end))
+    return Span(low + offset, max(high, low + 1e-3) + offset)
+
+
+def _chosen_signals(names: Sequence[str], aligned: Sequence[_AlignedSession]) -> list[Signal]:
+    known: dict[str, Signal] = {}
+    topics = {split(name)[0] for name in names}
+    for session in aligned:
+        for signal in list_signals(session.recording, topics):
+            known.setdefault(signal.name, signal)
+    return [known[name] for name in names if name in known]
+
+
+def _rounded(values: Floats, digits: int) -> list[float]:
+    rounded: list[float] = np.round(values, digits).tolist()
+    return rounded
+
+
+def _values(values: Floats) -> list[float | None]:
+    """Return the values with six significant digits; null for NaN, which JSON lacks."""
+    return [float(f"{value:.6g}") if isfinite(value) else None for value in values.tolist()]

@@ -1,0 +1,31 @@
+"""The figures by which sessions are compared. docs/use/compare.md has the formulas."""
+
+from server.metrics.figure import FigureMeaning, describe
+
+FIGURES: tuple[FigureMeaning, ...] = (
+    describe("rise_time", "Rise time", "s", 2, "Time from 10 % to 90 % of the step in depth."),
+    describe(
+        "settling_time",
+        "Settling time",
+        "s",
+        2,
+        "Time until the depth stays in the band about the set point.",
+    ),
+    describe("overshoot", "Overshoot", "%", 1, "Largest excess over the set point, as a share of the step."),
+    describe("steady_error", "Steady error", "m", 4, "Mean error in the second half of the step.", "zero"),
+    describe("rmse", "RMSE", "m", 4, "Root of the mean square of set point minus depth over the range."),
+    describe("cycle_amplitude", "Limit cycle, peak to peak", "m", 4, "Height of the lasting oscillation."),
+    describe("cycle_period", "Limit cycle, period", "s", 2, "Period of the lasting oscillation.", "neither"),
+    describe("card_latency", "Card to set point", "s", 2, "Median time from a card to its set point."),
+    describe(
+        "motion_latency", "Set point to motion", "s", 2, "Median time from a set point to 3 cm towards it."
+    ),
+    describe("fin_strokes", "Fin strokes", "", 0, "Swings of all fins, there and back, by 0.2 rad or more."),
+    describe("effort", "Effort", "%", 1, "Mean size of the vertical command over the range."),
+    describe("frames_lost", "Frames lost", "", 0, "Frames from the board that are missing by their numbers."),
+    describe("frames_repeated", "Frames repeated", "", 0, "Reliable frames that either end sent again."),
+    describe(
+        "frames_invalid", "Frames invalid", "", 0, "Frames discarded: garbage, wrong checksum or length."
+    ),
+    describe("gaps", "Gaps in the recording", "", 0, "Times that samples of a topic missed the recording."),
+)

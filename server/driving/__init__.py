@@ -1,0 +1,1 @@
+"""Driving: control of the robot, its commands, and changes of parameters."""

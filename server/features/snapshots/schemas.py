@@ -1,0 +1,10 @@
+"""Schemas of snapshots in the interface."""
+
+from pydantic import BaseModel, Field
+
+
+class TakenSnapshot(BaseModel):
+    """A snapshot that has just been stored."""
+
+    session: int = Field(description="the session that keeps it")
+    time: float = Field(description="s since the session's start")

@@ -1,0 +1,1 @@
+"""The library of recorded sessions: lists, contents, replay, texts, bookmarks and retention."""

@@ -1,0 +1,123 @@
+"""Schemas of stored sessions, their texts and bookmarks in the interface."""
+
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, Field, StringConstraints
+
+from server.http.request_body import RequestBody
+from server.library.crafts import RecordedCraft, Water
+from server.recording.schemas import GapKind, Session
+
+SHOWN_MAX = 2000
+"""Bookmarks, and gaps, that an answer about one session holds."""
+
+Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
+Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=10_000)]
+Tag = Annotated[
+    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^,]+$")
+]
+
+
+class Bookmark(BaseModel):
+    """A moment of a session with a text."""
+
+    id: int
+    time: float = Field(description="s since the session's start")
+    text: str
+    made: datetime = Field(description="UTC")
+
+
+class SessionGap(BaseModel):
+    """Samples that are missing in the session: `missed` of them, noticed at `time`."""
+
+    topic: str
+    kind: GapKind
+    time: float = Field(description="s since the session's start")
+    missed: int
+
+
+class RecordedColumn(BaseModel):
+    """One column of a topic, as it is exported."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+class RecordedTopic(BaseModel):
+    """A recorded topic; times are of the first and the last sample, s since the session's start."""
+
+    name: str
+    meaning: str
+    kind: Literal["rows", "documents", "picture"]
+    count: int
+    first: float
+    last: float
+    columns: list[RecordedColumn]
+
+
+class SessionDetail(Session):
+    """A session with all data except the samples."""
+
+    identifier: str = Field(description="the same wherever it is imported, 32 hexadecimal digits")
+    scenario: str = Field(description="TOML; empty without one")
+    configuration: str = Field(description="robot.toml as it was at the start")
+    water: Water = Field(description="simulated, or real: no simulator has sent anything")
+    crafts: list[RecordedCraft] = Field(
+        description="the simulated ones, in order of time; none of real water, and of older versions"
+    )
+    robot_state: dict[str, Any] | None = Field(description="the `state` document at the start")
+    marks: list[Bookmark] = Field(
+        description=f"in the order of their times, the first {SHOWN_MAX}; `markers` counts all"
+    )
+    gap_count: int = Field(description="number of all gaps")
+    gaps: list[SessionGap] = Field(description=f"in the order of their times, the first {SHOWN_MAX}")
+    topics: list[RecordedTopic]
+
+
+class SessionBase(RequestBody):
+    """A session's texts at the beginning of an editing; null: not compared."""
+
+    name: Annotated[str, Field(max_length=10_000)] | None = None
+    note: Annotated[str, Field(max_length=100_000)] | None = None
+    tags: Annotated[list[str], Field(max_length=1000)] | None = None
+
+
+class SessionChanges(RequestBody):
+    """Changes of a session's texts; null leaves a field unchanged."""
+
+    name: Annotated[Name, Field(min_length=1)] | None = None
+    note: Note | None = None
+    tags: Annotated[list[Tag], Field(max_length=20)] | None = None
+    kept: bool | None = None
+    base: SessionBase | None = Field(
+        default=None,
+        description="what the changed texts were when the editing began: refused if somebody has changed one "
+        "of them since. null replaces any",
+    )
+
+
+class NewSession(RequestBody):
+    """A new session; its default name is its date and time."""
+
+    name: Name = ""
+    note: Note = ""
+
+
+Text = Annotated[str, StringConstraints(strip_whitespace=True, max_length=500)]
+Moment = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+
+class NewBookmark(RequestBody):
+    """A new bookmark; its time in s since the session's start, or null for now."""
+
+    time: Moment | None = None
+    text: Text = ""
+
+
+class BookmarkChanges(RequestBody):
+    """Changes of a bookmark; null leaves a field unchanged."""
+
+    time: Moment | None = None
+    text: Text | None = None

@@ -1,0 +1,90 @@
+"""Snapshots of a session, each with the values at its moment, read from the recorded samples."""
+
+from itertools import islice
+
+from pydantic import BaseModel, Field
+
+from robot_runtime.contract.chunks import row_layout
+from robot_runtime.contract.topics import DEPTH, IMU, SNAPSHOT, TRACK
+from robot_runtime.control.attitude import euler_angles
+from server.library.content import Recording
+
+VALUE_SECONDS = 2.0
+"""s before the picture: an older sample is no value of its moment."""
+SNAPSHOTS_SHOWN = 60
+"""Snapshots in one answer."""
+
+
+class EstimatedPosition(BaseModel):
+    """The position by dead reckoning since the robot was armed, m: an estimate whose error grows."""
+
+    x: float = Field(description="along heading 0")
+    y: float = Field(description="along heading 90°")
+    deviation_x: float = Field(description="standard deviation")
+    deviation_y: float = Field(description="standard deviation")
+
+
+class SnapshotValues(BaseModel):
+    """The moment of a snapshot and the robot's values then; null where none was measured."""
+
+    time: float = Field(description="s since the session's start")
+    utc: float = Field(description="the same moment, s since 1970")
+    depth: float | None = Field(description="m")
+    heading: float | None = Field(description="rad")
+    pitch: float | None = Field(description="rad")
+    roll: float | None = Field(description="rad")
+    position: EstimatedPosition | None
+
+
+def list_snapshots(recording: Recording, after: float) -> list[SnapshotValues]:
+    """Return the values of the snapshots after a time (s, steady clock), the first `SNAPSHOTS_SHOWN`.
+
+    Raise StoreError, RecordingError.
+    """
+    if SNAPSHOT.name not in recording.topics:
+        return []
+    times = (time for time, _ in recording.pictures(SNAPSHOT.name, after) if time > after)
+    return [read_values(recording, time) for time in islice(times, SNAPSHOTS_SHOWN)]
+
+
+def read_values(recording: Recording, time: float) -> SnapshotValues:
+    """Return the values at a time (s, steady clock). Raise StoreError, RecordingError."""
+    depth = _newest(recording, DEPTH.name, time)
+    imu = _newest(recording, IMU.name, time)
+    track = _newest(recording, TRACK.name, time)
+    heading, pitch, roll = (
+        (None, None, None)
+        if imu is None
+        else euler_angles((imu["attitude_0"], imu["attitude_1"], imu["attitude_2"], imu["attitude_3"]))
+    )
+    return SnapshotValues(
+        time=time - _zero(recording),
+        utc=recording.row.started + time - _zero(recording),
+        depth=None if depth is None else depth["depth"],
+        heading=heading,
+        pitch=pitch,
+        roll=roll,
+        position=None if track is None else EstimatedPosition.model_validate(track),
+    )
+
+
+def _zero(recording: Recording) -> float:
+    return recording.row.started_steady
+
+
+def _newest(recording: Recording, topic: str, time: float) -> dict[str, float] | None:
+    """Return the columns of the newest row at this time, in their units; None where there is none."""
+    if topic not in recording.topics:
+        return None
+    layout = row_layout(recording.topics[topic])
+    rows = (
+        row
+        for some in recording.rows(topic, time - VALUE_SECONDS, time)
+        for row in layout.row.iter_unpack(some)
+        if time - VALUE_SECONDS <= row[0] <= time
+    )
+    newest = max(rows, key=lambda row: row[0], default=None)
+    if newest is None:
+        return None
+    values = zip(newest[1:], layout.scales, strict=True)
+    return dict(zip(layout.names, (value * scale for value, scale in values), strict=True))

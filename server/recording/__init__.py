@@ -1,0 +1,1 @@
+"""Recording: arriving samples become chunks of a session in the database."""

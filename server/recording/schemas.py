@@ -1,0 +1,38 @@
+"""Schemas of a recorded session in the interface."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, Field
+
+State = Literal["recording", "complete", "interrupted"]
+GapKind = Literal["missed", "restarted", "not stored", "damaged"]
+Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
+
+
+class Session(BaseModel):
+    """One recording; "interrupted" if the server ended without closing it: its stored samples remain."""
+
+    id: int
+    name: str
+    note: str
+    tags: list[str] = Field(description="in alphabetical order")
+    markers: int = Field(description="number of bookmarks")
+    state: State
+    origin: Origin = Field(
+        description="started by an operator, arming, a scenario in real or in simulated time; or imported"
+    )
+    started: datetime = Field(description="UTC")
+    ended: datetime | None = Field(description="UTC; null while it records")
+    duration: float = Field(description="s, up to the last samples that are stored")
+    samples: int = Field(description="samples stored, all topics together")
+    bytes: int = Field(description="bytes stored, compressed")
+    robot: str
+    version: str = Field(description="of the server that recorded it")
+    definitions: str = Field(description="hash of the packet definitions, 8 hexadecimal digits")
+    firmware: str = Field(description="hash of the firmware, 16 hexadecimal digits; empty where unknown")
+    software: str = Field(description="hash of the runtime's sources, 16 hexadecimal digits, or empty")
+    scenario_name: str = Field(description="empty without a scenario")
+    seed: int | None
+    kept: bool = Field(description="protected from the rules of retention")
+    deleted: datetime | None = Field(description="UTC; time of its deletion, while it is in the bin")

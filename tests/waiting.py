@@ -1,0 +1,15 @@
+"""Waiting in a thread for conditions with a deadline."""
+
+import time
+from collections.abc import Callable
+
+SECONDS = 60.0
+"""More than anything takes on a busy computer: only what never happens fails."""
+
+
+def wait_for(condition: Callable[[], object], what: str = "it", seconds: float = SECONDS) -> None:
+    """Wait until the condition holds. Fails with `what` when it never does."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, f"waited {seconds:g} s in vain for {what}"
+        time.sleep(0.005)
