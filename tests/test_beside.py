@@ -10,6 +10,7 @@ import pytest
 
 from tests.beside import NICENESS
 from tests.stack import ROOT
+from tests.waiting import SECONDS
 
 BESIDE = [sys.executable, "-m", "tests.beside"]
 
@@ -27,7 +28,7 @@ print(os.getsid(0) == os.getpid(), said)
 sys.exit(3)
 """
     whole = [*BESIDE, sys.executable, "-c", command]
-    ended = subprocess.run(whole, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    ended = subprocess.run(whole, cwd=ROOT, capture_output=True, text=True, timeout=SECONDS, check=False)
     assert ended.returncode == 3
     assert ended.stdout.startswith("True")
     assert own.read_text() not in ended.stdout
@@ -42,4 +43,4 @@ def test_what_ends_it_ends_the_command(number: signal.Signals) -> None:
         assert process.stdout is not None
         assert process.stdout.readline() == "runs\n"
         os.kill(process.pid, number)
-        assert process.wait(60) == 128 + number
+        assert process.wait(SECONDS) == 128 + number

@@ -33,7 +33,6 @@ def person(page: Page, stack: Stack) -> Iterator[PagePerson]:
     wait_for_the_robot(stack)
 
 
-@pytest.mark.timeout(240)
 def test_a_robot_is_brought_up_step_by_step(person: PagePerson, page: Page) -> None:
     for step in STEPS:
         if step.name in FOUND:
@@ -66,7 +65,6 @@ RELEASES: dict[str, Callable[[Page, Stack], object]] = {
 """Ways in which a held button is released while the pointer stays down on it."""
 
 
-@pytest.mark.timeout(200)
 def test_a_held_motor_is_released_a_step_skipped_and_a_step_accessible(
     person: PagePerson, page: Page, stack: Stack
 ) -> None:

@@ -1,6 +1,5 @@
 """The upload of firmware from the System page: asked for, seen, and the older one offered."""
 
-import pytest
 from playwright.sync_api import Browser, expect
 
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient
@@ -11,7 +10,6 @@ from tests.stack import Stack
 UPLOAD_MS = 60_000
 
 
-@pytest.mark.timeout(120)
 def test_firmware_is_uploaded_from_the_page(browser: Browser, stack: Stack) -> None:
     with EmulatorClient(stack.data / "run/board.sock") as board:
         board.load(ROOT / "build/firmware/bring_up.elf")

@@ -15,16 +15,16 @@ def test_the_printed_link_signs_a_browser_in_without_typing(browser: Browser, st
     context = browser.new_context()
     page = context.new_page()
     follow(page, link)
-    expect(page.get_by_role("link", name="Operate")).to_be_visible(timeout=15_000)
+    expect(page.get_by_role("link", name="Operate")).to_be_visible()
     assert "pair" not in page.url
     assert page.evaluate("document.cookie") == ""
     page.reload()
-    expect(page.get_by_role("link", name="Operate")).to_be_visible(timeout=15_000)
+    expect(page.get_by_role("link", name="Operate")).to_be_visible()
     # The link is valid once: another browser is asked for a code.
     stranger = browser.new_context()
     other = stranger.new_page()
     follow(other, link)
-    expect(other.get_by_text("This code is not valid")).to_be_visible(timeout=15_000)
+    expect(other.get_by_text("This code is not valid")).to_be_visible()
     expect(other.get_by_role("link", name="Operate")).to_have_count(0)
     context.close()
     stranger.close()

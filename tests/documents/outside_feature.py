@@ -12,6 +12,7 @@ from server.platform.running_server import announce
 from server.platform.settings import make_folders, read_settings
 from tests.server.blocks import debug_block
 from tests.server.serving import Served, serve
+from tests.waiting import SECONDS
 
 
 async def use(served: Served) -> None:
@@ -22,7 +23,7 @@ async def use(served: Served) -> None:
     async def counted() -> bool:
         return bool((await served.api.get("/lines")).json() == {"count": 2})
 
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(SECONDS):
         while not await counted():
             await asyncio.sleep(0.01)
     data = served.settings.data.path

@@ -10,7 +10,6 @@ from tests.proofs.chaos import run
 pytestmark = pytest.mark.stack
 
 
-@pytest.mark.timeout(400)
 def test_losses_in_a_minute_of_chaos_are_counted(tmp_path: Path) -> None:
     report = json.loads(run(60.0, 4, tmp_path))
     assert report["problems"] == []

@@ -23,7 +23,6 @@ def test_a_fault_is_reported_and_the_fins_stop_in_time(row: Row) -> None:
 
 
 @pytest.mark.stack
-@pytest.mark.timeout(300)
 def test_processes_that_are_killed_or_hang_stop_the_robot_and_come_back(shared_stack: Stack) -> None:
     outcomes = outages.measure_on(shared_stack, 1, seed=3)
     assert {outcome.outage for outcome in outcomes} == set(outages.OUTAGES)

@@ -15,7 +15,6 @@ from tests.stack import READY_SECONDS, Stack
 pytestmark = pytest.mark.stack
 
 
-@pytest.mark.timeout(300)
 def test_a_server_that_is_killed_leaves_no_hole(shared_stack: Stack) -> None:
     report = measure_on(shared_stack, 3, seed=4)
     assert not report.problems, report.table()
@@ -34,7 +33,6 @@ def wait_for(row: tuple[str, ...], data: Path, question: str) -> None:
         time.sleep(0.05)
 
 
-@pytest.mark.timeout(300)
 def test_a_killed_process_is_replaced_and_the_session_continues(shared_stack: Stack) -> None:
     stack, data = shared_stack, shared_stack.data
     answer = stack.api.post("/sessions", json={"name": "parts"})

@@ -30,7 +30,6 @@ def recorded(library: Path) -> Iterator[Recorded]:
         yield record(Path(name), library)
 
 
-@pytest.mark.timeout(300)
 def test_committed_changes_survive_a_power_cut(recorded: Recorded) -> None:
     data, before, steps = recorded
     report = replay(data, before, steps, states=300, seed=1)
@@ -39,7 +38,6 @@ def test_committed_changes_survive_a_power_cut(recorded: Recorded) -> None:
     assert is_whole(data, before)
 
 
-@pytest.mark.timeout(300)
 @pytest.mark.parametrize("name", WEAKER)
 def test_weaker_settings_lose_data(name: str, library: Path, folder: Path) -> None:
     report = replay(*record(folder, library, *WEAKER[name]), states=180, seed=1)

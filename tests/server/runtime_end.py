@@ -18,6 +18,7 @@ from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import SIMULATOR_STREAM, STREAM
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
+from tests.waiting import SECONDS
 
 
 def stream_of(block: Block) -> str:
@@ -130,7 +131,7 @@ class RuntimeEnd:
     def _answer(self, name: str, gate: threading.Event) -> None:
         def handle(question: dict[str, Any]) -> Mapping[str, Any] | None:
             self.asked.append((name, question))
-            gate.wait(30)
+            gate.wait(SECONDS)
             if self.refusal is not None and name != "stop":
                 raise RefusedError(self.refusal)
             return self.answer

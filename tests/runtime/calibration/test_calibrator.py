@@ -17,6 +17,7 @@ from robot_runtime.contract.documents import CalibrationKept, Severity
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.packets import Calibration, Imu, Packet, RequestCalibration, ZeroDepth
 from robot_runtime.errors import RefusedError
+from tests.waiting import SECONDS
 
 
 class CalibratorRig:
@@ -66,7 +67,7 @@ class CalibratorRig:
     def measure(self) -> str:
         """Measure the gyroscope; return what is told of it."""
         self.calibrator.measure_gyro()
-        assert self.heard.wait(10)
+        assert self.heard.wait(SECONDS)
         return self.told[-1]
 
     def ask(self) -> None:
@@ -209,7 +210,7 @@ def test_what_was_stored_while_the_gyroscope_was_measured_stays(rig: CalibratorR
     begun = threading.Event()
 
     def rate(_: float) -> tuple[float, float, float]:
-        assert begun.wait(10)
+        assert begun.wait(SECONDS)
         if rig.calibrator.board.values == EMULATED:
             rig.calibrator.store(meanwhile)
         return (0.1, 0.0, 0.0)
@@ -217,7 +218,7 @@ def test_what_was_stored_while_the_gyroscope_was_measured_stays(rig: CalibratorR
     with readings(rig, rate):
         rig.calibrator.measure_gyro()
         begun.set()
-        assert rig.heard.wait(10)
+        assert rig.heard.wait(SECONDS)
     assert "was changed meanwhile" in rig.told[-1]
     assert rig.calibrator.board.values == meanwhile
 

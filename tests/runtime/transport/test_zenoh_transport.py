@@ -14,6 +14,7 @@ import zenoh
 from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.stack import ROOT
+from tests.waiting import SECONDS
 
 DEADLINE = 30.0
 """s until what must come is given up, on a busy computer."""
@@ -112,7 +113,7 @@ def test_a_request_without_an_answer_times_out(ends: tuple[ZenohTransport, Zenoh
     answering, asking = ends
     gate = threading.Event()
     answering.serve_bytes("there", lambda _: b"")
-    answering.serve_bytes("picture", lambda _: b"late" if gate.wait(30) else b"")
+    answering.serve_bytes("picture", lambda _: b"late" if gate.wait(SECONDS) else b"")
     ask(asking, "there", b"")
     with pytest.raises(NoAnswerError, match="no answer to picture within"):
         asking.query_bytes("picture", b"", timeout=0.2)

@@ -98,7 +98,7 @@ async def has_ended(connection: Connection) -> bool:
     """Return True where the server closes this connection, soon."""
     reader, _ = connection
     try:
-        async with asyncio.timeout(30):
+        async with asyncio.timeout(SECONDS):
             return await reader.read() == b""
     except ConnectionResetError:
         return True
@@ -283,7 +283,7 @@ async def test_stop_and_an_open_page_are_served_while_300_silent_connections_han
                 # The server accepts as many at once as wait; those that it refuses are closed a moment later.
                 free = few - 20
                 await until(lambda: count_files() < free, "refused connections to be closed")
-                async with httpx.AsyncClient(headers=headers, timeout=10) as fresh:
+                async with httpx.AsyncClient(headers=headers, timeout=SECONDS) as fresh:
                     assert (await fresh.post(stop)).status_code == 204
                 await page.send('{"op": "ping", "id": 1}')
                 assert (await next_text(page, "pong"))["id"] == 1

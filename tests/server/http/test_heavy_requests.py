@@ -37,7 +37,7 @@ async def test_a_device_has_one_heavy_request_at_a_time_and_few_that_wait() -> N
     await asyncio.sleep(0)
     assert begun == [(1, 0)]
     with pytest.raises(TooManyHeavyError, match="Wait for their answers"):
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(SECONDS):
             await ask(1, 0)
     other = asyncio.create_task(ask(2, 0))
     await asyncio.sleep(0)

@@ -28,6 +28,7 @@ from tests.server.ports import reserved_port
 from tests.server.serving import Served, next_text, serve
 from tests.server.sign_in.browsers import browser
 from tests.server.waiting import until
+from tests.waiting import SECONDS
 
 MANUAL = Path(__file__).parents[3] / "docs/run/proxy.md"
 NAME = "robots.lab"
@@ -112,7 +113,7 @@ async def test_behind_nginx_as_the_manual_has_it(settings: Settings, tmp_path: P
         base = f"https://127.0.0.1:{port}"
         transport = httpx.AsyncHTTPTransport(verify=tls, local_address=TABLET)
         async with httpx.AsyncClient(
-            base_url=base, transport=transport, headers=headers, timeout=60
+            base_url=base, transport=transport, headers=headers, timeout=SECONDS
         ) as browser:
             assert (await browser.get("/")).text == PAGE
             body = {"code": made["code"], "name": "tablet"}

@@ -15,6 +15,7 @@ from server.http import websocket_protocol
 from server.http.listener import open_socket
 from server.http.serving import make_server
 from server.http.websocket_protocol import PARTS_MAX, PIECE_BYTES, UNREAD_MAX, WebSocketProtocol
+from tests.waiting import SECONDS
 
 SIZES = (0, 1, 125, 126, 65_535, 65_536, 300_000)
 
@@ -204,7 +205,7 @@ async def test_what_waits_for_a_client_does_not_outlive_its_socket_for_long(
     async with _serve(app) as url:
         client = await connect(url, max_size=None)
         client.transport.pause_reading()
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(SECONDS):
             await ended.wait()
         client.transport.abort()
 

@@ -10,6 +10,7 @@ import pytest
 
 from server.platform.disk_reserve import RESERVE_BYTES
 from tests.stack import ROOT
+from tests.waiting import SECONDS
 
 
 def on_small_disk(folder: Path, *command: str, size: str = "4m") -> subprocess.CompletedProcess[str]:
@@ -19,7 +20,7 @@ def on_small_disk(folder: Path, *command: str, size: str = "4m") -> subprocess.C
         cwd=ROOT,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=SECONDS,
         check=False,
     )
 

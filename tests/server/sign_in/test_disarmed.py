@@ -8,6 +8,7 @@ from server.health.monitor import HealthMonitor
 from tests.server.blocks import state_block
 from tests.server.serving import Served
 from tests.server.waiting import until
+from tests.waiting import SECONDS
 
 ENDLESS: dict[str, Any] = {
     "id": 1,
@@ -25,7 +26,7 @@ ENDLESS: dict[str, Any] = {
 async def answers(served: Served) -> list[tuple[int, str]]:
     """Statuses of an invalid upload and an invalid communication test."""
     given = [
-        await served.api.post("/imports", content=b"no archive", timeout=60),
+        await served.api.post("/imports", content=b"no archive", timeout=SECONDS),
         await served.api.post("/comm-tests/runs", json={"text": "no document", "place": "emulated"}),
     ]
     return [(answer.status_code, answer.json()["detail"]) for answer in given]

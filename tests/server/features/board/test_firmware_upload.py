@@ -9,9 +9,9 @@ from server.features.board.previous_firmware import read_program
 from tests.board.rig import ROOT
 from tests.proofs.watching import wait
 from tests.stack import Stack
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.stack
-SECONDS = 60.0
 
 
 def upload(stack: Stack, firmware: str) -> tuple[dict[str, Any], set[str]]:
@@ -34,7 +34,6 @@ def upload(stack: Stack, firmware: str) -> tuple[dict[str, Any], set[str]]:
     return state, set(seen)
 
 
-@pytest.mark.timeout(240)
 def test_firmware_is_uploaded_verified_and_the_older_one_put_back(shared_stack: Stack) -> None:
     stack = shared_stack
     previous = stack.data / "firmware-previous.hex"

@@ -14,10 +14,9 @@ import pytest
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from tests.board.rig import OPTIBOOT, PROGRAM, ROOT
 from tests.stack import Stack
-from tests.waiting import wait_for
+from tests.waiting import SECONDS, wait_for
 
 pytestmark = pytest.mark.stack
-SECONDS = 60.0
 
 
 def state(stack: Stack) -> dict[str, Any]:
@@ -34,7 +33,6 @@ def act(stack: Stack, step: str, action: str, **inputs: float | str) -> dict[str
     return result
 
 
-@pytest.mark.timeout(200)
 def test_a_bring_up_by_http_and_the_robot_is_back_afterwards(shared_stack: Stack) -> None:
     stack = shared_stack
     wait_for(lambda: stack.api.get("/robot").json().get("connected"), "the robot")
@@ -96,7 +94,6 @@ def bring_up(tmp_path: Path) -> Iterator[list[str]]:
         yield [*command, "--config", str(config), "--data", str(tmp_path / "data")]
 
 
-@pytest.mark.timeout(200)
 def test_a_bring_up_from_a_shell(bring_up: list[str], tmp_path: Path) -> None:
     done = subprocess.run(
         bring_up,
@@ -114,7 +111,6 @@ def test_a_bring_up_from_a_shell(bring_up: list[str], tmp_path: Path) -> None:
     assert not (tmp_path / "data/firmware-away").exists()
 
 
-@pytest.mark.timeout(200)
 def test_ctrl_c_at_a_prompt_ends_a_bring_up_and_the_firmware_comes_back(
     bring_up: list[str], tmp_path: Path
 ) -> None:

@@ -29,6 +29,7 @@ from server.platform.store import Store
 from tests.board.rig import ROOT, build
 from tests.server.features.comm_tests.stored_runs import ENTRY, LOST, begin
 from tests.server.older import upgrade_to
+from tests.waiting import SECONDS
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -150,7 +151,7 @@ def test_the_cells_of_an_interrupted_run_stay_stored(
         assert process.stdout is not None
         assert next(line for line in process.stdout if line.startswith("[  2/100]"))
         os.killpg(process.pid, signal.SIGINT)
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=SECONDS)
     assert (process.returncode, "was cancelled" in errors, "Traceback" in errors) == (1, True, False)
     with closing(Store(settings.data.database)) as store:
         (run,) = CommTestStore(store).list()

@@ -7,7 +7,7 @@ import pytest
 
 from tests.server.waiting import alive
 from tests.stack import Stack
-from tests.waiting import wait_for
+from tests.waiting import SECONDS, wait_for
 
 pytestmark = pytest.mark.stack
 
@@ -25,7 +25,6 @@ TEST: dict[str, Any] = {
 }
 LONG = TEST | {"delay": [0.0, 10.0]}
 """Its second cell takes more than three minutes."""
-SECONDS = 90.0
 
 
 def run(stack: Stack, *tests: dict[str, Any]) -> int:
@@ -54,7 +53,6 @@ def is_back(stack: Stack) -> bool:
     return answer.json()["connected"] is True
 
 
-@pytest.mark.timeout(400)
 def test_after_a_kill_during_a_test_the_next_server_restores_the_firmware(shared_stack: Stack) -> None:
     stack = shared_stack
     away = stack.data / "firmware-away"

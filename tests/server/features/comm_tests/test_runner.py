@@ -24,6 +24,7 @@ from tests.server.features.events.rig import MqttListener, broker
 from tests.server.ports import reserved_port
 from tests.server.serving import Served, next_text, serve
 from tests.server.waiting import until
+from tests.waiting import SECONDS
 
 QUICK: dict[str, Any] = {
     "id": 1,
@@ -73,7 +74,7 @@ async def start(served: Served, *tests: dict[str, Any]) -> int:
 async def news_until(socket: ClientConnection, *, cell: int | None = None) -> list[dict[str, Any]]:
     """Messages about the tests up to this cell, or until nothing runs any longer."""
     notices: list[dict[str, Any]] = []
-    async with asyncio.timeout(200):
+    async with asyncio.timeout(SECONDS):
         while True:
             notices.append(await next_text(socket, "comm_test"))
             if cell is None and len(notices) > 1 and notices[-1]["active"] is None:

@@ -201,7 +201,7 @@ async def test_a_report_ends_with_the_connection_of_its_receiver(
         pid = int(begun.read_text())
         asking.cancel()
         try:
-            await until(lambda: not alive(pid), "its process to end", seconds=20)
+            await until(lambda: not alive(pid), "its process to end")
         finally:
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)

@@ -42,6 +42,7 @@ from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.exports.recordings import record, record_batches
 from tests.server.library.missions import mission_blocks
 from tests.server.serving import serve
+from tests.waiting import SECONDS
 
 Members = dict[str, bytes]
 
@@ -97,13 +98,13 @@ async def test_a_session_imported_elsewhere_is_unchanged(
         await record_batches(elsewhere, settings, [depth_block(0, 1)])
 
     async with serve(replace(settings, data=folder)) as served:
-        answer = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
+        answer = await served.api.post("/imports", content=archive.read_bytes(), timeout=SECONDS)
         assert answer.status_code == 201, answer.text
         assert (answer.json()["id"], answer.json()["samples"]) == (2, 108)
-        again = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
+        again = await served.api.post("/imports", content=archive.read_bytes(), timeout=SECONDS)
         assert again.status_code == 409
         assert "is here already, as number 2" in again.json()["detail"]
-        bad = await served.api.post("/imports", content=archive.read_bytes()[:-100], timeout=60)
+        bad = await served.api.post("/imports", content=archive.read_bytes()[:-100], timeout=SECONDS)
         assert (bad.status_code, "cut off" in bad.json()["detail"]) == (422, True)
         assert len((await served.api.get("/sessions")).json()) == 2
         assert list(folder.imports.iterdir()) == []

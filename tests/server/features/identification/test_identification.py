@@ -19,6 +19,7 @@ from tests.server.blocks import state_block
 from tests.server.features.identification.conftest import RecordedTrials
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
+from tests.waiting import SECONDS
 
 ROOT = Path(__file__).resolve().parents[4]
 QUICK = """#!{python}
@@ -64,7 +65,7 @@ async def test_a_fitted_craft_is_adopted_and_the_adoption_undone(
         before = (await state(served))["craft"]
         assert (before["title"], before["can_undo"], before["problem"]) == ("", False, "")
         assert await start(served, sessions=[1], left_out=2) == 201
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(SECONDS):
             while (result := await state(served))["active"] is not None:
                 assert result["active"]["sessions"] == [1]
                 await asyncio.sleep(0.05)

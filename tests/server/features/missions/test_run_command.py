@@ -10,6 +10,7 @@ import pytest
 from tests.proofs.watching import wait
 from tests.runtime.missions.water import mission
 from tests.stack import Stack
+from tests.waiting import SECONDS
 
 SHORT = mission("{ do = 'hold', seconds = 1, within = 9 }", "{ do = 'surface' }")
 LONG = mission("{ do = 'hold', seconds = 150, within = 9 }")
@@ -30,7 +31,7 @@ def swim(stack: Stack, folder: Path) -> str:
     """Run the command on a short mission to its end; return what it printed."""
     with start(stack, folder, SHORT) as command:
         try:
-            output, _ = command.communicate(timeout=60)
+            output, _ = command.communicate(timeout=SECONDS)
         finally:
             command.kill()
     assert command.returncode == 0, output
@@ -68,7 +69,7 @@ def test_a_killed_runtime_ends_it_with_words(shared_stack: Stack, tmp_path: Path
         assert command.stdout is not None
         assert any("running" in line for line in command.stdout)
         shared_stack.part("runtime").kill()
-        output, _ = command.communicate(timeout=60)
+        output, _ = command.communicate(timeout=SECONDS)
     assert command.returncode == 1, output
     assert "runtime" in output
     shared_stack.wait_ready()

@@ -11,10 +11,10 @@ import pytest
 from robot_runtime.errors import NoAnswerError
 from robot_runtime.transport.zenoh_transport import join
 from tests.stack import Stack
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.stack
 
-SECONDS = 30.0
 SHORT = """
 name = "short"
 title = "A short one"

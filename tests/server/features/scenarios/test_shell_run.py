@@ -11,6 +11,7 @@ from server.platform.running_server import announce
 from server.platform.settings import Settings, SetupError
 from tests.server.features.scenarios.test_simulated_run import LONG
 from tests.server.serving import Served, serve
+from tests.waiting import SECONDS
 
 TAKEN_OUT = "The run was taken out of the queue."
 
@@ -34,7 +35,7 @@ async def left_after(
         await polled.wait()
         await change(served, runs[1])
         with pytest.raises(SetupError, match=TAKEN_OUT):
-            async with asyncio.timeout(20):
+            async with asyncio.timeout(SECONDS):
                 await following
         state = served.get(ScenarioRunner).state()
         return [runs.index(record.run) + 1 for record in (state.active, *state.queued) if record is not None]
