@@ -14,9 +14,10 @@ import psutil
 
 from bench import jitter
 from robot_runtime.vision.process import HUNG_SECONDS, STEADY_SECONDS
-from tests.proofs.watching import Viewer, wait
+from tests.proofs.watching import Viewer
 from tests.runtime.vision.harness import uncompressed_video
 from tests.stack import Stack
+from tests.waiting import wait_for
 
 _SECONDS = 40.0
 """Of each phase, at least."""
@@ -97,17 +98,17 @@ class _Swim:
     def fault(self, name: str, cause: Callable[[psutil.Process], object]) -> None:
         """Cause a fault of the vision process, and wait until pictures come again."""
         self._stack.api.post("/robot/commands/acknowledge").raise_for_status()
-        wait(lambda: not self._viewer.tells("vision_stale"), "the end of the alarm")
+        wait_for(lambda: not self._viewer.tells("vision_stale"), "the end of the alarm")
         vision, began = self._stack.part("vision"), time.monotonic()
         cause(vision)
         if name == "hang":
-            alarm = wait(lambda: self._viewer.tells("vision_stale"), "the alarm")
+            alarm = wait_for(lambda: self._viewer.tells("vision_stale"), "the alarm")
             self._figures.setdefault("decoder.alarm_s.hang", alarm - began)
         if f"decoder.named_s.{name}" not in self._figures:
             # The next ones of a series may be over before the next state.
-            named = wait(self._is_named, f"the camera's state after {name}", _PATIENCE)
+            named = wait_for(self._is_named, f"the camera's state after {name}", _PATIENCE)
             self._figures[f"decoder.named_s.{name}"] = named - began
-        again = wait(lambda: self._is_back(began), f"pictures after {name}", _PATIENCE)
+        again = wait_for(lambda: self._is_back(began), f"pictures after {name}", _PATIENCE)
         self._figures.setdefault(f"decoder.pictures_again_s.{name}", again - began)
 
     def figures(self) -> dict[str, float]:

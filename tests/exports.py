@@ -3,7 +3,8 @@
 import time
 from typing import Any, Protocol
 
-_PATIENCE = 60.0
+from tests.waiting import SECONDS
+
 _POLL = 0.05
 
 
@@ -22,7 +23,7 @@ def export_session(client: HttpClient, session: int, format_: str = "csv", base:
     answer = client.post(f"{base}/exports", json={"session": session, "format": format_})
     answer.raise_for_status()
     job: dict[str, Any] = answer.json()
-    end = time.monotonic() + _PATIENCE
+    end = time.monotonic() + SECONDS
     while job["state"] not in ("done", "failed"):
         assert time.monotonic() < end, job
         time.sleep(_POLL)

@@ -19,8 +19,8 @@ from robot_runtime.transport.blocks import read_blocks, read_rows
 from tests.exports import export_session
 from tests.stack import ROOT, Stack
 from tests.two_hosts import HERE, TwoHosts
+from tests.waiting import SECONDS
 
-PATIENCE = 60.0
 PORT = 7447
 DEPTH = BY_NAME["depth"]
 CUT_SECONDS = 3.0
@@ -90,7 +90,7 @@ def main() -> None:
             (data / "session.zip").write_bytes(export_session(stack.api, session["id"]).content)
         finally:
             simulator.terminate()
-            simulator.wait(PATIENCE)
+            simulator.wait(SECONDS)
         reports["packets"] = hosts.packets
     print(json.dumps(reports))  # noqa: T201 - it speaks to the test that started it
 
@@ -110,7 +110,7 @@ class LoopDive:
 
     def has_turned(self) -> bool:
         """Return True once the robot was below its set point and rises again; to be asked often."""
-        span = {"start": max(time.monotonic() - self._began - LATEST, 0.0), "end": PATIENCE}
+        span = {"start": max(time.monotonic() - self._began - LATEST, 0.0), "end": SECONDS}
         answer = self._stack.api.get(f"/sessions/{self._session}/blocks", params=span)
         blocks = [block for block in read_blocks(answer.raise_for_status().content) if block.topic is DEPTH]
         rows = [record for block in blocks for _, record in read_rows(block)]
@@ -130,7 +130,7 @@ def health(stack: Stack, name: str) -> str:
 
 
 def wait(condition: Callable[[], object], what: str, stack: Stack) -> None:
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + SECONDS
     while not condition():
         if time.monotonic() >= end:
             short = {name: value for name, value in state(stack).items() if name != "loops"}

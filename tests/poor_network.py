@@ -32,7 +32,7 @@ from server.platform.server_config import ServerConfig
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.server.serving import Served, serve
 from tests.server.sign_in.browsers import new_code
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 from tests.stack import ROOT
 from tests.two_hosts import HERE, TwoHosts
 
@@ -50,7 +50,6 @@ SILENT_SECONDS = 4.0
 RETRY_SECONDS = 0.25
 FRESH = 1.5
 """s, the age of what a page shows again after an outage."""
-PATIENCE = 30.0
 
 
 @dataclass
@@ -96,7 +95,9 @@ class FarPage:
         # A socket stays on the host on which it was made, so one thread that lives there is enough.
         self._there = ThreadPoolExecutor(1, initializer=hosts.enter_there)
         self._origin = f"http://{HERE}:{served.settings.server.port}"
-        self._api = httpx.Client(base_url=f"{self._origin}/api", headers={"origin": self._origin}, timeout=20)
+        self._api = httpx.Client(
+            base_url=f"{self._origin}/api", headers={"origin": self._origin}, timeout=SECONDS
+        )
         self._socket: ClientConnection | None = None
 
     async def pair(self) -> None:
@@ -180,7 +181,7 @@ class NetworkTrial:
         await self._page.pair()
         tasks = [asyncio.create_task(work) for work in (self._robot(), self._page.run())]
         try:
-            await until(lambda: self._page.age < FRESH, "the first fresh depth", PATIENCE)
+            await until(lambda: self._page.age < FRESH, "the first fresh depth")
             await asyncio.sleep(WARM_SECONDS)
             await self._observe()
             await self._command()
@@ -226,7 +227,7 @@ class NetworkTrial:
         before = sum(request == name for request, _ in asked)
         began = time.monotonic()
         await ask()
-        await until(lambda: sum(request == name for request, _ in asked) > before, name, PATIENCE)
+        await until(lambda: sum(request == name for request, _ in asked) > before, name)
         return time.monotonic() - began
 
     async def _steer(self) -> None:
@@ -252,13 +253,13 @@ class NetworkTrial:
         with suppress(WebSocketException):
             await self._steer()
         lease = self._served.container.services.get(ControlArbiter).lease
-        await until(lambda: lease.holder is None, "the lease to be given up", PATIENCE)
+        await until(lambda: lease.holder is None, "the lease to be given up")
         self.report.outage_released_s = time.monotonic() - began
         await asyncio.sleep(max(0.0, began + OUTAGE_SECONDS - time.monotonic()))
         self._page.age = float("inf")
         self._hosts.loss = LOSS
         back = time.monotonic()
-        await until(lambda: self._page.age < FRESH, "fresh depths after the outage", PATIENCE)
+        await until(lambda: self._page.age < FRESH, "fresh depths after the outage")
         self.report.outage_back_s = time.monotonic() - back
         self.report.outage_passed = len(self._served.runtime.driven) - passed
         self.report.connections = [before, self._page.connections]

@@ -19,10 +19,9 @@ from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
 from tests.control import Commander
 from tests.shell import ShellAuth
+from tests.waiting import SECONDS
 
 ROOT = Path(__file__).resolve().parents[1]
-READY_SECONDS = 40.0
-_STOP_SECONDS = 30.0
 _POLL = 0.05
 
 
@@ -48,7 +47,7 @@ class Stack:
         self.log = data / "stack.log"
         self._options = options
         self._process: subprocess.Popen[bytes] | None = None
-        self.api = Commander(base_url=f"{self.url}/api", timeout=20.0, auth=ShellAuth(DataFolder(data)))
+        self.api = Commander(base_url=f"{self.url}/api", timeout=SECONDS, auth=ShellAuth(DataFolder(data)))
 
     def __enter__(self) -> Self:
         self.start()
@@ -73,7 +72,7 @@ class Stack:
     @property
     def server(self) -> psutil.Process:
         """The process that serves, or will in a moment."""
-        end = time.monotonic() + READY_SECONDS
+        end = time.monotonic() + SECONDS
         while time.monotonic() < end:
             for process in psutil.process_iter():
                 with suppress(psutil.NoSuchProcess):
@@ -110,7 +109,7 @@ class Stack:
 
     def wait_ready(self) -> None:
         """Wait until every part is well."""
-        end = time.monotonic() + READY_SECONDS
+        end = time.monotonic() + SECONDS
         health: dict[str, Any] = {}
         while time.monotonic() < end:
             assert self._process is not None
@@ -129,7 +128,7 @@ class Stack:
         """Disarm, acknowledge, end a recording, and wait until every part is well and arming is possible."""
         self.wait_ready()
         self._insist("/robot/stop")
-        end = time.monotonic() + READY_SECONDS
+        end = time.monotonic() + SECONDS
         while True:
             self._insist("/robot/commands/acknowledge")
             state = self.api.get("/robot").json()
@@ -156,7 +155,7 @@ class Stack:
 
     def _insist(self, path: str, *refusals: int, body: dict[str, Any] | None = None) -> None:
         """Give a command until it is taken, where it is refused so, or the runtime is silent (503, 504)."""
-        end = time.monotonic() + READY_SECONDS
+        end = time.monotonic() + SECONDS
         while (answer := self.api.post(path, json=body)).status_code in (503, 504, *refusals):
             assert time.monotonic() < end, answer.text
             time.sleep(_POLL)
@@ -200,7 +199,7 @@ class Stack:
             return
         self._process.send_signal(signal.SIGINT)
         try:
-            self._process.wait(_STOP_SECONDS)
+            self._process.wait(SECONDS)
         except subprocess.TimeoutExpired:
             os.killpg(self._process.pid, signal.SIGKILL)
             raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}") from None

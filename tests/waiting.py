@@ -8,9 +8,10 @@ SECONDS = 240.0
 test takes up to twenty times as long as alone."""
 
 
-def wait_for(condition: Callable[[], object], what: str = "it", seconds: float = SECONDS) -> None:
-    """Wait until the condition holds. Fails with `what` when it never does."""
+def wait_for(condition: Callable[[], object], what: str = "it", seconds: float = SECONDS) -> float:
+    """Wait until the condition holds; return the time. Fails with `what` when it never does."""
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end, f"waited {seconds:g} s in vain for {what}"
         time.sleep(0.005)
+    return time.monotonic()

@@ -11,6 +11,7 @@ import serial
 
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient, EmulatorProcess
 from robot_runtime.simulation.boards.firmware import make
+from tests.waiting import SECONDS
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/board"
@@ -18,8 +19,6 @@ SKETCHES = ROOT / "build/board_sketches"
 OPTIBOOT = ROOT / "build/firmware/optiboot.hex"
 CLOCK = 16_000_000
 """Hz."""
-PATIENCE = 30.0
-"""s of real time for what the operating system does between two processes, on a busy computer."""
 
 
 @cache
@@ -32,7 +31,7 @@ def build(folder: Path, *targets: str) -> None:
 
 def wait_for(condition: Callable[[], bool], what: str) -> None:
     """Wait for another process's progress."""
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + SECONDS
     while not condition():
         assert time.monotonic() < end, f"waited in vain for {what}"
         time.sleep(0.0002)

@@ -24,7 +24,6 @@ from tests.board.host import BAUD
 from tests.board.monitor import REFUSED_ADDRESS, SerialMonitor
 from tests.board.rig import (
     OPTIBOOT,
-    PATIENCE,
     PROGRAM,
     ROOT,
     SKETCHES,
@@ -33,6 +32,7 @@ from tests.board.rig import (
     build,
     wait_for,
 )
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.usefixtures("built")
 
@@ -77,7 +77,7 @@ def empty_board(folder: Path) -> Iterator[tuple[EmulatorProcess, EmulatorClient]
 
 def echoes(process: EmulatorProcess, board: EmulatorClient) -> bool:
     """Return True if the sketch `echo` runs after the boot loader's waiting time."""
-    with serial.Serial(str(process.tty), BOOT_BAUD, timeout=PATIENCE) as port:
+    with serial.Serial(str(process.tty), BOOT_BAUD, timeout=SECONDS) as port:
         opened = board.stats()["time"]
         wait_for(lambda: board.stats()["time"] > opened + TIMEOUT + 0.1, "the boot loader's timeout")
         port.write(b"hello")
@@ -166,7 +166,7 @@ def test_avrdude_uploads_a_program_and_then_the_robots(tmp_path: Path) -> None:
         insist_on_upload(process.tty, SKETCHES / "echo.hex")
         assert echoes(process, board)
         insist_on_upload(process.tty, ROBOT)
-        with serial.Serial(str(process.tty), BAUD, timeout=PATIENCE) as port:
+        with serial.Serial(str(process.tty), BAUD, timeout=SECONDS) as port:
             board.reset()
             # Before its hello there may be frames from before the reset, the last one cut off.
             decoder, types = Decoder(), set[int]()

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import pytest
 
 from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient, EmulatorProcess
-from tests.board.rig import PATIENCE, PROGRAM, ROOT, SKETCHES, wait_for
+from tests.board.rig import PROGRAM, ROOT, SKETCHES, wait_for
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.usefixtures("built")
 ECHO = SKETCHES / "echo.elf"
@@ -101,7 +102,7 @@ def test_a_signal_ends_it_and_its_files_are_removed(tmp_path: Path, number: sign
     assert process.tty.is_symlink()
     assert process.socket.is_socket()
     process.process.send_signal(number)
-    assert process.process.wait(PATIENCE) == 0
+    assert process.process.wait(SECONDS) == 0
     process.stop()
     assert list(tmp_path.iterdir()) == []
 
@@ -111,7 +112,7 @@ def test_quit_ends_it(tmp_path: Path) -> None:
     with socket.socket(socket.AF_UNIX) as client:
         client.connect(str(process.socket))
         client.sendall(b"quit\n")
-    assert process.process.wait(PATIENCE) == 0
+    assert process.process.wait(SECONDS) == 0
     process.stop()
     assert list(tmp_path.iterdir()) == []
 

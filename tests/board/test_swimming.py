@@ -18,7 +18,8 @@ from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.board.host import TICK, EmulatedRobot, all_of, last, start
-from tests.board.rig import PATIENCE, ROOT, build, wait_for
+from tests.board.rig import ROOT, build, wait_for
+from tests.waiting import SECONDS
 
 PERIOD = 0.005
 DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
@@ -123,9 +124,9 @@ def test_a_requested_bus_error_reaches_the_firmware(
                 ("accelerometer", DeviceFault.IMU),
                 ("encoder2", DeviceFault.ENCODER_BACK_LEFT),
             ):
-                messages.query("simulator/fault", {"sensor": sensor, "kind": "bus"}, PATIENCE)
+                messages.query("simulator/fault", {"sensor": sensor, "kind": "bus"}, SECONDS)
                 assert robot.status().faults == fault
-                messages.query("simulator/fault", {"sensor": sensor, "kind": "none"}, PATIENCE)
+                messages.query("simulator/fault", {"sensor": sensor, "kind": "none"}, SECONDS)
                 robot.listen(0.5)
                 assert robot.status().faults == 0
         finally:

@@ -18,7 +18,8 @@ from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.conftest import Make
 from tests.board.monitor import SerialMonitor
-from tests.board.rig import PATIENCE, PROGRAM, SKETCHES, wait_for
+from tests.board.rig import PROGRAM, SKETCHES, wait_for
+from tests.waiting import SECONDS
 
 
 def test_the_water_is_asked_at_every_period(make_rig: Make) -> None:
@@ -182,7 +183,7 @@ def test_a_line_without_an_end_closes_the_connection(make_rig: Make) -> None:
     with socket.socket(socket.AF_UNIX) as client:
         client.connect(str(rig.process.socket))
         client.sendall(b"x" * 3000)
-        client.settimeout(PATIENCE)
+        client.settimeout(SECONDS)
         with contextlib.suppress(ConnectionResetError):  # where bytes were left unread
             assert client.recv(4096) == b""
     assert rig.board.stats()["resets"] == 1

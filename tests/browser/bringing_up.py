@@ -9,12 +9,9 @@ from robot_runtime.control.fin_check import FINS
 from robot_runtime.experiments.bring_up.guide import NO_FIN, STEPS
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 from robot_runtime.simulation.boards.workbench import BATTERY
-from tests.proofs.watching import wait
 from tests.stack import Stack
+from tests.waiting import wait_for
 
-UPLOAD_MS = 60_000
-UPLOAD_SECONDS = 60.0
-MEASURE_MS = 15_000
 TURNED = 0.1
 """rad, from which a person sees that a fin turns."""
 TITLES = {step.name: step.title for step in STEPS}
@@ -31,7 +28,7 @@ class PagePerson:
     def begin(self) -> None:
         self.page.goto(f"{self._stack.url}/#/bring-up")
         self.page.get_by_role("button", name="Begin", exact=True).click()
-        expect(self.page.get_by_text(f"of {len(STEPS)} steps done").first).to_be_visible(timeout=UPLOAD_MS)
+        expect(self.page.get_by_text(f"of {len(STEPS)} steps done").first).to_be_visible()
 
     def report(self) -> str:
         """Return the newest report, written at the end."""
@@ -41,7 +38,7 @@ class PagePerson:
     def end(self) -> None:
         self.page.get_by_role("button", name="End", exact=True).click()
         self.page.get_by_role("button", name="End the bring-up").click()
-        expect(self.page.get_by_role("button", name="Begin", exact=True)).to_be_visible(timeout=UPLOAD_MS)
+        expect(self.page.get_by_role("button", name="Begin", exact=True)).to_be_visible()
 
     def everything(self) -> str | None:
         """Do all steps in their order, but end at the first that is wrong: its name."""
@@ -70,7 +67,7 @@ class PagePerson:
         self.open(step)
         steps[name](int(number or 0))
         expect(self._steps.get_by_role("link", name=TITLES[step])).to_have_text(
-            re.compile("done$|something is wrong$"), timeout=MEASURE_MS
+            re.compile("done$|something is wrong$")
         )
 
     def open(self, step: str) -> None:
@@ -205,5 +202,5 @@ class PagePerson:
 def wait_for_the_robot(stack: Stack) -> None:
     """End any bring-up, and wait until the robot's firmware swims again."""
     stack.api.delete("/bring-up").raise_for_status()
-    wait(lambda: stack.api.get("/bring-up").json()["phase"] == "idle", "the end", UPLOAD_SECONDS)
+    wait_for(lambda: stack.api.get("/bring-up").json()["phase"] == "idle", "the end")
     stack.wait_ready()

@@ -8,6 +8,7 @@ from playwright.sync_api import BrowserContext
 
 from server.platform.settings import DataFolder
 from tests.shell import ShellAuth
+from tests.waiting import SECONDS
 
 EXECUTABLE = Path(__file__).with_name("chromium.sh")
 """The whole browser, for the benchmark, the screenshots, and what needs a window."""
@@ -31,7 +32,9 @@ SECRET = "mucat.page_secret"
 
 def sign_in(context: BrowserContext, url: str, data: Path) -> str:
     """Pair this browser with the server of this data folder, as an operator's; return its page's secret."""
-    with httpx.Client(base_url=f"{url}/api/access", auth=ShellAuth(DataFolder(data))) as shell:
+    with httpx.Client(
+        base_url=f"{url}/api/access", timeout=SECONDS, auth=ShellAuth(DataFolder(data))
+    ) as shell:
         made = shell.post("/codes", json={"role": "operator"}).raise_for_status().json()
     paired = context.request.post(
         f"{url}/api/access/pair", data={"code": made["code"], "name": "Chromium"}, headers={"Origin": url}

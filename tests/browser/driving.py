@@ -5,7 +5,6 @@ import time
 
 from playwright.sync_api import Locator, Page, expect
 
-DIVE_MS = 30_000
 HOLD_SECONDS = 40
 REFUSED = (409, 503, 504)
 """Something speaks against it; the runtime does not answer in time."""
@@ -21,7 +20,6 @@ def wait_for_depth(page: Page, low: float, high: float) -> None:
             return depth >= low && depth <= high;
         }""",
         arg=[low, high],
-        timeout=DIVE_MS,
     )
 
 

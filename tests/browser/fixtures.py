@@ -11,9 +11,9 @@ from playwright.sync_api import Browser, Page, StorageState, expect
 
 from tests.browser.opening import DESKTOP, PHONE, closing_pages, launched, opened_page, signed_in
 from tests.browser.site import Site
+from tests.waiting import SECONDS
 
-expect.set_options(timeout=60_000)
-"""ms until a test gives up waiting for what never comes; the page itself may be late on a busy computer."""
+expect.set_options(timeout=1000 * SECONDS)
 
 __all__ = ["_no_page_is_left", "any_page", "browser", "cookies", "page"]
 

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
-from playwright.sync_api import Browser, Page, StorageState, ViewportSize, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, StorageState, ViewportSize, sync_playwright
 
 from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL, SECRET, sign_in
 from tests.browser.site import Site
+from tests.waiting import SECONDS
 
 DESKTOP: ViewportSize = {"width": 1440, "height": 900}
 PHONE: ViewportSize = {"width": 390, "height": 844}
@@ -18,9 +20,24 @@ LYING_PHONE: ViewportSize = {"width": 844, "height": 390}
 def launched() -> Iterator[Browser]:
     """Chromium without windows."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=HEADLESS_SHELL, args=ARGUMENTS)
+        browser = playwright.chromium.launch(
+            executable_path=HEADLESS_SHELL, args=ARGUMENTS, timeout=1000 * SECONDS
+        )
+        _have_patience(browser)
         yield browser
         browser.close()
+
+
+def _have_patience(browser: Browser) -> None:
+    """Give an action of a page the time for which tests wait, not Playwright's 30 s."""
+    new_context = browser.new_context
+
+    def new_patient_context(**options: Any) -> BrowserContext:
+        context = new_context(**options)
+        context.set_default_timeout(1000 * SECONDS)
+        return context
+
+    browser.new_context = new_patient_context  # type: ignore[method-assign]
 
 
 @contextmanager

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 from playwright.sync_api import Page, expect
 
 from tests.browser.site import Site
-from tests.proofs.watching import wait
+from tests.waiting import wait_for
 
-OPEN_MS = 60_000
-"""A comparison starts a process that gives way to all others, on a computer that has other work."""
 SESSIONS = ("Dive to half a metre", "Half a metre with PID")
 """{first} and {second} in the addresses."""
 
@@ -59,7 +57,7 @@ def fill(site: Site) -> None:
             continue
         session = site.api.post("/sessions", json={"name": name}).raise_for_status().json()["id"]
         site.api.post(f"/sessions/{session}/markers", json={"text": "here"}).raise_for_status()
-        wait(lambda: "depth" in topics(site, session), "samples of depth")  # noqa: B023 - it is called here
+        wait_for(lambda: "depth" in topics(site, session), "samples of depth")  # noqa: B023 - it is called here
         site.api.post(f"/sessions/{session}/stop").raise_for_status()
 
 
@@ -84,7 +82,7 @@ def show(page: Page, site: Site, view: View) -> None:
         "run": site.api.get("/comm-tests/runs").json()[0]["id"],
     }
     page.goto(f"{site.url}/#/{view.address.format(**names)}")
-    expect(page.get_by_role("heading", name=re.compile(view.shows)).first).to_be_visible(timeout=OPEN_MS)
+    expect(page.get_by_role("heading", name=re.compile(view.shows)).first).to_be_visible()
     settle(page)
 
 
@@ -92,7 +90,7 @@ def settle(page: Page) -> None:
     """Wait until no element of the page is busy."""
     expect(
         page.get_by_text(re.compile("being (fetched|read|compared|checked)|(Loading|Checking)…"))
-    ).to_have_count(0, timeout=OPEN_MS)
+    ).to_have_count(0)
 
 
 def stop_recordings(site: Site) -> None:

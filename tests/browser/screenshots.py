@@ -15,8 +15,8 @@ from tests.browser.driving import wait_for_depth
 from tests.browser.opening import DESKTOP, PHONE
 from tests.browser.pages import PAGES, SESSIONS, settle, show
 from tests.browser.people import somebody
-from tests.proofs.watching import wait
 from tests.stack import Stack
+from tests.waiting import wait_for
 
 SIZES = {"desktop": (DESKTOP, 1.0), "phone": (PHONE, 1.5)}
 """The window, and dots for each of its pixels."""
@@ -74,7 +74,7 @@ def tune(stack: Stack) -> None:
 
 def experiment(stack: Stack, request: dict[str, object]) -> None:
     stack.api.post("/tuning/runs", json=request).raise_for_status()
-    wait(lambda: stack.api.get("/tuning/state").json()["active"] is None, "the experiment to end", 90.0)
+    wait_for(lambda: stack.api.get("/tuning/state").json()["active"] is None, "the experiment to end", 90.0)
 
 
 def prepare(stack: Stack, watcher: Page) -> None:

@@ -10,8 +10,8 @@ from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 from tests.browser.axe import AXE, faults
 from tests.browser.bringing_up import PagePerson, wait_for_the_robot
 from tests.browser.opening import DESKTOP, PHONE
-from tests.proofs.watching import wait
 from tests.stack import Stack
+from tests.waiting import wait_for
 
 FOUND = {
     "devices": ("strap-wrong:back-right", "A bridge answers at 0x62 instead"),
@@ -79,11 +79,11 @@ def test_a_held_motor_is_released_a_step_skipped_and_a_step_accessible(
         for how, release in RELEASES.items():
             person.hold_button().hover()
             page.mouse.down()
-            wait(lambda: abs(board.fins().speeds[1]) > 1, f"the motor, to be stopped by {how}")
+            wait_for(lambda: abs(board.fins().speeds[1]) > 1, f"the motor, to be stopped by {how}")
             with page.expect_response("**/api/bring-up/actions"):
                 release(page, stack)
             expect(page.get_by_role("button", name="Hold to turn it")).to_be_visible()
-            wait(lambda: abs(board.fins().speeds[1]) < 0.05, f"rest after {how}")
+            wait_for(lambda: abs(board.fins().speeds[1]) < 0.05, f"rest after {how}")
             page.mouse.up()
 
     page.evaluate(AXE.read_text())

@@ -7,10 +7,9 @@ from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.browser.driving import hold_to_arm
 from tests.browser.pages import samples
-from tests.proofs.watching import wait
 from tests.stack import Stack
+from tests.waiting import wait_for
 
-STEP_MS = 20_000
 LINES = ".scatterlayer .trace path.js-line"
 DRAWN = 500
 """Samples, of about 300 a second."""
@@ -23,7 +22,7 @@ def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
     if armed:
         hold_to_arm(page)
     before = samples(stack, session["id"])
-    wait(lambda: samples(stack, session["id"]) > before + DRAWN, "something to be drawn after the arming")
+    wait_for(lambda: samples(stack, session["id"]) > before + DRAWN, "something to be drawn after the arming")
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
     return int(session["id"])
@@ -39,8 +38,8 @@ def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, t
     page.on("response", lambda response: order.append(f"got {response.url}"))
     held = hold_figures(page)
     page.goto(f"{stack.url}/#/sessions/compare/{first},{other}")
-    expect(page.get_by_role("link", name="with fins", exact=True)).to_be_visible(timeout=STEP_MS)
-    expect(page.locator(LINES)).to_have_count(4, timeout=STEP_MS)
+    expect(page.get_by_role("link", name="with fins", exact=True)).to_be_visible()
+    expect(page.locator(LINES)).to_have_count(4)
     expect(page.get_by_text("Figures are being computed…")).to_be_visible()
     while not held:
         page.wait_for_timeout(10)  # the page says so before its question has come here
@@ -52,7 +51,7 @@ def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, t
 
     page.get_by_role("button", name="Figures 14 to 16").click()
     expect(page.locator(".ytick").first).to_be_visible()
-    expect(page.get_by_text("Heave command")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("Heave command")).to_be_visible()
     figures = page.get_by_role("region", name="Figures of the sessions")
     strokes = figures.get_by_role("row", name=re.compile("^Fin strokes"))
     expect(strokes.get_by_role("button").nth(1)).to_have_text(re.compile(r"^\d+$"))
@@ -65,7 +64,7 @@ def test_two_sessions_are_overlaid(page: Page, browser: Browser, stack: Stack, t
     expect(page.locator(LINES).first).to_be_visible()
 
     page.get_by_label("Align at").select_option("armed")
-    expect(page.get_by_text("never armed in this session. It is not drawn.")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("never armed in this session. It is not drawn.")).to_be_visible()
     expect(page.get_by_text("s since arming")).to_be_visible()
     shapes = page.locator(".shapelayer path")
     count = shapes.count()
@@ -141,8 +140,8 @@ def check_report(page: Page, browser: Browser, path: Path) -> None:
     assert below_title(page) == before, "the controls moved when the answer came: a click could miss them"
     page.get_by_role("button", name="Depth", exact=True).click()
     # Fewer charts: what stands below them moves up when they come.
-    expect(page.get_by_text("Heave command")).to_have_count(0, timeout=STEP_MS)
-    with page.expect_download(timeout=STEP_MS) as download:
+    expect(page.get_by_text("Heave command")).to_have_count(0)
+    with page.expect_download() as download:
         page.get_by_role("link", name="HTML report").click()
     download.value.save_as(path)
     context = browser.new_context(offline=True)
@@ -152,7 +151,7 @@ def check_report(page: Page, browser: Browser, path: Path) -> None:
     report.on("request", lambda request: asked.append(request.url))
     report.on("pageerror", lambda error: complaints.append(str(error)))
     report.goto(path.as_uri())
-    expect(report.locator(LINES)).to_have_count(4, timeout=STEP_MS)
+    expect(report.locator(LINES)).to_have_count(4)
     expect(report.get_by_role("heading", name="with fins, without")).to_be_visible()
     expect(report.get_by_role("row", name=re.compile("^Fin strokes"))).to_be_visible()
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []

@@ -5,10 +5,9 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.proofs.watching import wait
 from tests.stack import Stack
+from tests.waiting import wait_for
 
-STEP_MS = 20_000
 # It swims until the page has been looked at: what it says meanwhile goes away at the end.
 MISSION = """format = 1
 name = "from_the_page"
@@ -33,10 +32,10 @@ def open_mission(page: Page, stack: Stack) -> None:
 def hold_to_start(page: Page) -> None:
     """Start it as a person does."""
     hold = page.get_by_role("button", name="Hold to start the mission")
-    expect(hold).to_be_enabled(timeout=STEP_MS)
+    expect(hold).to_be_enabled()
     hold.hover()
     page.mouse.down()
-    expect(page.get_by_text("From the page has begun.")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("From the page has begun.")).to_be_visible()
     page.mouse.up()
 
 
@@ -51,7 +50,7 @@ def test_a_mission_is_started_by_a_hold_and_ends_disarmed(page: Page, stack: Sta
     before = (stack.api.get("/missions/state").json() or {"number": 0})["number"]
     hold_to_start(page)
     bar = page.get_by_role("banner")
-    expect(bar.get_by_text(re.compile("^ARMED"))).to_be_visible(timeout=STEP_MS)
+    expect(bar.get_by_text(re.compile("^ARMED"))).to_be_visible()
     # While it runs no other begins, and the page says why.
     expect(page.get_by_role("button", name="Hold to start the mission")).to_be_disabled()
     expect(page.get_by_text("The robot is armed already.")).to_be_visible()
@@ -60,9 +59,9 @@ def test_a_mission_is_started_by_a_hold_and_ends_disarmed(page: Page, stack: Sta
         state = stack.api.get("/missions/state").json()
         return state["number"] > before and state["phase"] not in ("running", "paused")
 
-    wait(ended, "the mission to end", STEP_MS / 1000)
+    wait_for(ended, "the mission to end")
     state = stack.api.get("/missions/state").json()
     assert (state["phase"], state["name"]) == ("succeeded", "from_the_page")
     assert [step["status"] for step in state["steps"]] == ["done", "done", "done"]
-    expect(bar.get_by_text("Disarmed")).to_be_visible(timeout=STEP_MS)
-    expect(page.get_by_role("button", name="Hold to start the mission")).to_be_enabled(timeout=STEP_MS)
+    expect(bar.get_by_text("Disarmed")).to_be_visible()
+    expect(page.get_by_role("button", name="Hold to start the mission")).to_be_enabled()

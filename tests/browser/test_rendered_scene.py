@@ -10,11 +10,9 @@ from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.transport.zenoh_transport import join
 from tests.browser.chromium import sign_in
 from tests.browser.opening import DESKTOP
-from tests.proofs.watching import wait
 from tests.stack import Stack
+from tests.waiting import wait_for
 
-SCENE_MS = 60_000
-"""The first picture waits for everything in the scene."""
 BALL = {"colour": "yellow", "position": [0.9, 0.0, 0.2], "size": 0.3}
 """In front of the floating robot; m."""
 YELLOW = """(image) => {
@@ -47,10 +45,12 @@ def test_a_target_in_the_water_is_found_and_changes_the_set_point(browser: Brows
     camera = page.get_by_role("region", name="Camera")
     detected = camera.get_by_role("definition").first
     set_point = page.get_by_role("region", name="Depth and heading").get_by_text("set point")
-    expect(detected).to_have_text("nothing", timeout=SCENE_MS)
+    expect(detected).to_have_text("nothing")
     expect(set_point).to_contain_text("0.50")
     # The state that names the camera is published a moment later than its first picture.
-    wait(lambda: rendered.api.get("/robot").json()["camera"] == "rendered scene", "the camera's name", 5.0)
+    wait_for(
+        lambda: rendered.api.get("/robot").json()["camera"] == "rendered scene", "the camera's name", 5.0
+    )
 
     put_targets(rendered, BALL)
     expect(detected).to_have_text("yellow")

@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.scenarios import STEP_MS, open_scenarios
+from tests.browser.scenarios import open_scenarios
 from tests.stack import Stack
 
 TEXT = """
@@ -32,7 +32,7 @@ def hold_to_run(page: Page) -> None:
     expect(hold).to_be_enabled()
     hold.hover()
     page.mouse.down()
-    expect(page.get_by_role("region", name="Running")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_role("region", name="Running")).to_be_visible()
     page.mouse.up()
 
 
@@ -47,14 +47,14 @@ def test_a_scenario_is_written_run_and_found_as_a_session(page: Page, stack: Sta
     page.get_by_role("button", name="Edit").click()
     text = page.get_by_role("textbox", name="Scenario as TOML")
     text.fill(TEXT.replace("depth = 3.0", "deep = 3.0"))
-    expect(page.get_by_text("scene: depth is missing")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("scene: depth is missing")).to_be_visible()
     expect(page.get_by_role("button", name="Run in simulation")).to_be_disabled()
     text.fill(TEXT)
-    expect(page.get_by_text("The scenario is valid.")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("The scenario is valid.")).to_be_visible()
     hold_to_run(page)
 
     ended = page.get_by_role("region", name="Last run")
-    expect(ended.get_by_text("complete", exact=True)).to_be_visible(timeout=STEP_MS)
+    expect(ended.get_by_text("complete", exact=True)).to_be_visible()
     session = stack.api.get("/sessions").json()[0]
     assert session["name"] == "From the page"
     expect(ended.get_by_role("link", name="Session")).to_have_attribute("href", f"#/sessions/{session['id']}")
@@ -66,17 +66,17 @@ def test_stop_ends_a_scenario(page: Page) -> None:
     page.get_by_role("button", name="Edit").click()
     text = page.get_by_role("textbox", name="Scenario as TOML")
     text.fill(TEXT.replace("duration = 3", "duration = 300").replace("at = 2\n", "at = 200\n"))
-    expect(page.get_by_text("The scenario is valid.")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("The scenario is valid.")).to_be_visible()
     hold_to_run(page)
     running = page.get_by_role("region", name="Running")
-    expect(running.get_by_role("heading", name="From the page")).to_be_visible(timeout=STEP_MS)
+    expect(running.get_by_role("heading", name="From the page")).to_be_visible()
     expect(running.get_by_role("progressbar")).to_have_attribute("aria-valuemax", "300")
-    expect(running.get_by_text("Yellow card")).to_be_visible(timeout=STEP_MS)
+    expect(running.get_by_text("Yellow card")).to_be_visible()
     armed = page.get_by_role("banner").get_by_text(re.compile("^ARMED"))
-    expect(armed).to_be_visible(timeout=STEP_MS)
+    expect(armed).to_be_visible()
     page.keyboard.press("Escape")
     ended = page.get_by_role("region", name="Last run")
-    expect(ended.get_by_text("STOP was pressed.")).to_be_visible(timeout=STEP_MS)
+    expect(ended.get_by_text("STOP was pressed.")).to_be_visible()
     expect(ended.get_by_text("cancelled", exact=True)).to_be_visible()
 
 

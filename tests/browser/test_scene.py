@@ -4,14 +4,11 @@ import re
 
 from playwright.sync_api import Page, expect
 
-SCENE_MS = 60_000
-"""The first picture waits for everything in the scene."""
-
 
 def test_the_bystander_shows_the_robot_and_can_be_turned(any_page: Page) -> None:
     any_page.get_by_role("button", name="bystander").click()
     picture = any_page.get_by_alt_text("The robot in the simulated water")
-    expect(picture).to_be_visible(timeout=SCENE_MS)
+    expect(picture).to_be_visible()
     any_page.wait_for_function("() => document.querySelector('.stage img').naturalWidth === 640")
 
     stage = any_page.get_by_role("application")
@@ -33,6 +30,6 @@ def test_the_bystander_shows_the_robot_and_can_be_turned(any_page: Page) -> None
     expect(any_page.get_by_role("button", name="top", exact=True)).to_have_attribute("aria-pressed", "true")
 
     any_page.reload()
-    expect(picture).to_be_visible(timeout=SCENE_MS)
+    expect(picture).to_be_visible()
     any_page.get_by_role("button", name="robot", exact=True).click()
     expect(picture).to_be_hidden()

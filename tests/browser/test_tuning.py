@@ -11,9 +11,6 @@ from tests.browser.driving import hold_to_arm
 from tests.browser.people import somebody
 from tests.stack import Stack
 
-RUN_MS = 60_000
-"""The emulated robot swims in real time, on a computer that has other work."""
-
 
 def arm(page: Page) -> None:
     hold_to_arm(page, page.get_by_role("button", name=re.compile("^Run the"), disabled=False))
@@ -42,7 +39,7 @@ def test_a_step_is_run_and_stored(empty: Stack, any_page: Page) -> None:
     page.get_by_role("button", name="Run the step").click()
     expect(page.get_by_role("progressbar", name="Progress")).to_be_visible()
     figures = page.get_by_role("region", name="Figures of the step responses")
-    expect(figures).to_be_visible(timeout=RUN_MS)
+    expect(figures).to_be_visible()
     expect(figures.get_by_role("row", name=re.compile("^Effort"))).to_contain_text(re.compile(r"\d\.\d"))
     page.get_by_role("button", name="STOP").click()
 
@@ -78,7 +75,7 @@ def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
     arm(page)
     page.get_by_role("button", name="Run the relay").click()
     table = page.get_by_role("region", name="Gains by rule, beside the present ones")
-    expect(table).to_be_visible(timeout=RUN_MS)
+    expect(table).to_be_visible()
     assert empty.api.get("/robot").json()["loops"][0] == depth
 
     with somebody(browser, empty, "viewer") as other:

@@ -7,6 +7,8 @@ import sysconfig
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from tests.waiting import SECONDS
+
 UV = str(Path(sys.executable).with_name("uv"))
 
 
@@ -35,7 +37,7 @@ class Installation:
             capture_output=True,
             text=True,
             check=False,
-            timeout=240,
+            timeout=SECONDS,
         )
 
 

@@ -14,7 +14,8 @@ from robot_runtime.provenance import hash_firmware
 from server import VERSION
 from tests.documents.blocks import read_blocks
 from tests.packages.installation import Installation
-from tests.stack import READY_SECONDS, Stack
+from tests.stack import Stack
+from tests.waiting import SECONDS
 
 MACHINE_OFFSET = 18
 """Bytes before the architecture in an ELF file's header (System V ABI, e_machine)."""
@@ -66,7 +67,7 @@ def test_it_swims_by_one_command_and_its_recording_names_the_firmware(
 ) -> None:
     with InstalledStack(installation, elsewhere) as stack:
         stack.arm()
-        end = time.monotonic() + READY_SECONDS
+        end = time.monotonic() + SECONDS
         while not (sessions := stack.api.get("/sessions").json()):
             assert time.monotonic() < end, "arming began no session"
         assert "<html" in stack.api.get(stack.url).text

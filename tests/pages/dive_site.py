@@ -51,7 +51,7 @@ class DiveSite:
         self._runtime: RuntimeEnd | None = None
         self._access: Access | None = None
         self._thread = threading.Thread(target=self._run, daemon=True)
-        self.api = Commander(timeout=5.0, auth=ShellAuth(DataFolder(data)))
+        self.api = Commander(timeout=SECONDS, auth=ShellAuth(DataFolder(data)))
 
     @property
     def url(self) -> str:

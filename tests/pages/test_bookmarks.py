@@ -14,7 +14,7 @@ def test_the_note_field_of_a_bookmark_closes_by_itself(page: Page, site: Site) -
     page.keyboard.press("m")
     notice = page.get_by_role("region", name="Bookmark", exact=True)
     expect(notice).to_be_visible()
-    expect(notice).to_be_hidden(timeout=15_000)
+    expect(notice).to_be_hidden()
     assert notes(site, session) == [""]
 
 

@@ -8,9 +8,6 @@ from playwright.sync_api import Page, Route, expect
 from tests.browser.pages import SESSIONS, fill
 from tests.browser.site import Site
 
-FITTED_MS = 30_000
-"""The fit's process loads SciPy first, beside all other tests."""
-
 
 def test_sessions_that_show_nothing_are_refused_in_words(page: Page, site: Site) -> None:
     fill(site)
@@ -28,7 +25,6 @@ def test_sessions_that_show_nothing_are_refused_in_words(page: Page, site: Site)
     fit.click()
     expect(page.get_by_role("alert").filter(has_text="The last fit has no result")).to_contain_text(
         "No part of these sessions can be used: it takes depth, IMU and fins without a gap for 8 s",
-        timeout=FITTED_MS,
     )
     width = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
     assert width == 0

@@ -15,6 +15,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, StorageState
 
 from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL
 from tests.pages.dive_site import DiveSite
+from tests.waiting import SECONDS
 
 FOREIGN = "evil.example"
 ATTACKS = """async (target) => {
@@ -170,7 +171,7 @@ def test_a_server_of_another_port_can_do_nothing_with_the_cookie_that_it_gets(
     victim.new_page().goto(f"http://127.0.0.1:{evil_port}/")
     assert f"mucat_{site.port}=" in Evil.cookies
     headers = {"cookie": Evil.cookies, "origin": site.url}
-    with httpx.Client(base_url=f"{site.url}/api", headers=headers) as thief:
+    with httpx.Client(base_url=f"{site.url}/api", headers=headers, timeout=SECONDS) as thief:
         for made_up in ({}, {"x-mucat": ""}, {"x-mucat": "page"}):
             thief.headers.update(made_up)
             for path in ("/robot", "/sessions", "/audit/csv", "/backup", "/access/devices"):

@@ -12,7 +12,7 @@ from server.features.doors.config import DoorsConfig
 from tests.browser.opening import DESKTOP
 from tests.browser.studio import serve_studio, studio_address
 from tests.pages.dive_site import DiveSite
-from tests.proofs.watching import wait
+from tests.waiting import wait_for
 
 LOADING = 120_000
 """ms; the program has 60 MB."""
@@ -52,7 +52,7 @@ def test_a_shipped_layout_shows_charts_log_and_health(
         expect(page.get_by_text("The board answers.")).to_be_visible(timeout=LOADING)
         expect(page.get_by_text("all well").first).to_be_visible(timeout=LOADING)
         expect(page.get_by_text("Unknown panel type")).to_have_count(0)
-        wait(lambda: has_line(page), "a line in the chart of the depth")
+        wait_for(lambda: has_line(page), "a line in the chart of the depth")
         expect(page.get_by_role("tab", name="Problems")).to_have_text("Problems")
         context.close()
     assert complaints == []

@@ -7,7 +7,7 @@ from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSi
 from tests.browser.opening import PHONE
 from tests.browser.pages import topics
 from tests.browser.site import Site
-from tests.proofs.watching import wait
+from tests.waiting import wait_for
 
 ROOMY: ViewportSize = {"width": 1920, "height": 1080}
 """Its layout shows the serial link."""
@@ -52,7 +52,7 @@ def ask_by_key(term: Locator, meaning: Locator) -> None:
 
 def test_a_chip_of_the_export_shows_its_meaning_to_a_key(page: Page, site: Site) -> None:
     session = site.api.post("/sessions", json={"name": "chips"}).json()["id"]
-    wait(lambda: "depth" in topics(site, session), "samples of depth")
+    wait_for(lambda: "depth" in topics(site, session), "samples of depth")
     site.api.post(f"/sessions/{session}/stop").raise_for_status()
     page.goto(f"{site.url}/#/sessions/{session}")
     page.get_by_role("radio", name=re.compile("CSV")).first.check(force=True)

@@ -14,6 +14,7 @@ from tests.browser.opening import DESKTOP, PHONE
 from tests.browser.people import follow, make_link, somebody
 from tests.browser.site import Site
 from tests.pages.dive_site import DiveSite
+from tests.waiting import SECONDS
 
 
 @pytest.fixture
@@ -159,7 +160,9 @@ def test_a_dangerous_act_asks_for_a_code_and_is_then_done(
 def test_the_audit_log_shows_filters_and_saves_who_did_what(fresh: Page, site: Site) -> None:
     name = "<b>Eve</b>"
     code = make_link(site, "viewer").partition("#pair=")[2]
-    with httpx.Client(base_url=f"{site.url}/api/access", headers={"origin": site.url}) as eve:
+    with httpx.Client(
+        base_url=f"{site.url}/api/access", headers={"origin": site.url}, timeout=SECONDS
+    ) as eve:
         paired = eve.post("/pair", json={"code": code, "name": name}).raise_for_status().json()
         eve.post("/sign-out", headers={"x-mucat": paired["page_secret"]}).raise_for_status()
     fresh.goto(f"{site.url}/#/people")

@@ -63,7 +63,7 @@ def test_a_test_that_starts_late_does_not_take_back_who_has_left(page: Page, sit
         lambda route, asked: held.append(route) if asked.method == "POST" else route.continue_(),
     )
     page.goto(f"{site.url}/#/comm-tests")
-    page.get_by_role("button", name="Start the test").click(timeout=20_000)
+    page.get_by_role("button", name="Start the test").click()
     expect(page.get_by_role("button", name=re.compile("^Starting"))).to_be_visible()
     while not held:
         page.wait_for_timeout(10)  # the page says so before its question has come here

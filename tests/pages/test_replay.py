@@ -5,7 +5,7 @@ import re
 from playwright.sync_api import Page, expect
 
 from tests.browser.site import Site
-from tests.proofs.watching import wait
+from tests.waiting import wait_for
 
 DRAG = """async (slider) => {
     let written = 0;
@@ -29,7 +29,7 @@ DRAG = """async (slider) => {
 def test_a_drag_of_the_slider_writes_the_address_at_its_end(page: Page, site: Site) -> None:
     session = site.api.post("/sessions", json={"name": "short"}).raise_for_status().json()["id"]
     address = f"/sessions/{session}"
-    wait(lambda: site.api.get(address).json()["duration"] > 2, "two seconds of the recording")
+    wait_for(lambda: site.api.get(address).json()["duration"] > 2, "two seconds of the recording")
     site.api.post(f"{address}/stop").raise_for_status()
     page.goto(f"{site.url}/#/replay/{session}")
     slider = page.get_by_label("Time since the start of the session")

@@ -6,7 +6,7 @@ from playwright.sync_api import Page, Route, expect
 
 from server.features.scenarios.library import _shipped
 from server.platform.settings import DataFolder
-from tests.browser.scenarios import STEP_MS, open_scenarios
+from tests.browser.scenarios import open_scenarios
 from tests.pages.dive_site import DiveSite
 
 
@@ -72,6 +72,6 @@ def test_the_run_after_a_cancelled_one_can_be_cancelled(page: Page, site: DiveSi
         page.get_by_role("button", name="Cancel this run and the queue").click()
         expect(page.get_by_role("button", name="Cancelling…")).to_be_disabled()
         site.api.post(f"/scenarios/cancel?run={first}").raise_for_status()
-        expect(page.get_by_role("button", name="Cancel", exact=True)).to_be_enabled(timeout=STEP_MS)
+        expect(page.get_by_role("button", name="Cancel", exact=True)).to_be_enabled()
     finally:
         site.api.post("/scenarios/cancel").raise_for_status()

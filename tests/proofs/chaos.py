@@ -39,8 +39,8 @@ from tests.proofs.kills import row_times
 from tests.proofs.outages import OutageTrial
 from tests.proofs.scales import anonymous
 from tests.proofs.slow_page import SlowPage
-from tests.proofs.watching import wait
 from tests.stack import ROOT, Stack
+from tests.waiting import wait_for
 
 DISK = "400m"
 PAUSE = (0.5, 4.0)
@@ -147,7 +147,7 @@ class Storm:
             return samples
 
         before = stored()
-        wait(lambda: stored() > before, "what came since to be stored")
+        wait_for(lambda: stored() > before, "what came since to be stored")
 
     # Faults; each returns its name
 
@@ -156,7 +156,7 @@ class Storm:
         self.report.done[f"{name} killed"] += 1
         victim = self._world.find(name)
         victim.kill()
-        wait(lambda: self._world.is_replaced(name, victim.pid), f"a new {name}")
+        wait_for(lambda: self._world.is_replaced(name, victim.pid), f"a new {name}")
         return f"{name} killed"
 
     def _stop(self) -> str:
@@ -207,11 +207,11 @@ class Storm:
         # Storing may go on for a while, in the room that the write-ahead log has on the disk already: so
         # `store_failing` need not come. That it comes where the database refuses is in test_alarms.py, and
         # what a full disk does to a recording in test_full_disk.py.
-        wait(lambda: self._is_told("disk_low"), "the alarm of the full disk")
+        wait_for(lambda: self._is_told("disk_low"), "the alarm of the full disk")
         time.sleep(self._chance.uniform(0.0, 4.0))
         ballast.unlink()
-        wait(lambda: not self._is_told("disk_low"), "room on the disk")
-        wait(lambda: not self._is_told("store_failing"), "the database to store again")
+        wait_for(lambda: not self._is_told("disk_low"), "room on the disk")
+        wait_for(lambda: not self._is_told("store_failing"), "the database to store again")
         return "disk full"
 
     def _is_told(self, fault: str) -> bool:

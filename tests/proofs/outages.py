@@ -24,8 +24,9 @@ from robot_runtime.transport.zenoh_transport import join
 from server.platform.settings import DataFolder
 from server.processes.supervisor import HEARTBEAT_SECONDS
 from tests.proofs.pool import processes
-from tests.proofs.watching import FinWatch, Viewer, find_silence, wait
+from tests.proofs.watching import FinWatch, Viewer, find_silence
 from tests.stack import Stack
+from tests.waiting import wait_for
 
 Blow = Literal["kill", "stop", "hang"]
 """Ended; stopped for a while; stopped until somebody ends it."""
@@ -146,7 +147,7 @@ class OutageTrial:
         runtime = f"unixsock-stream/{self.folder.runtime_socket}"
         with join("turtle", [runtime]) as messages:
             messages.subscribe(HEARTBEAT, lambda *_: heard.append(time.monotonic()))
-            wait(lambda: heard, "a heartbeat")
+            wait_for(lambda: heard, "a heartbeat")
             yield heard
 
     @contextmanager
@@ -168,11 +169,11 @@ class OutageTrial:
         if outage.blow == "kill":
             victim.kill()
             self._see(outcome, since)
-            since_up = wait(lambda: self.is_replaced(outage.victim, victim.pid), f"a new {outage.victim}")
+            since_up = wait_for(lambda: self.is_replaced(outage.victim, victim.pid), f"a new {outage.victim}")
         elif outage.blow == "hang":
             victim.suspend()
             self._see(outcome, since)
-            since_up = since = wait(
+            since_up = since = wait_for(
                 lambda: self.is_replaced(outage.victim, victim.pid), f"a new {outage.victim}"
             )
         else:
@@ -183,15 +184,15 @@ class OutageTrial:
             since_up = since = time.monotonic()
             os.kill(victim.pid, signal.SIGCONT)
         topics = (*ALWAYS, "detection") if outage.victim == "vision" else ALWAYS
-        return wait(lambda: self.well(since_up, topics), f"all to be well after {outage.name}") - since
+        return wait_for(lambda: self.well(since_up, topics), f"all to be well after {outage.name}") - since
 
     def _see(self, outcome: OutageOutcome, since: float) -> None:
         outage = outcome.outage
         alarm = outage.alarm
         if alarm is not None and not (outage.victim == "server" and outage.blow == "stop"):
-            outcome.reported = wait(lambda: self.viewer.tells(alarm), f"the alarm {alarm}") - since
+            outcome.reported = wait_for(lambda: self.viewer.tells(alarm), f"the alarm {alarm}") - since
         if outcome.armed and outage.off is not None:
-            wait(lambda: self.fins.seen[-1].time > since and not self.fins.seen[-1].powered, "no power")
+            wait_for(lambda: self.fins.seen[-1].time > since and not self.fins.seen[-1].powered, "no power")
             begun = find_silence(self.fins.seen, since) if outage.victim == "runtime" else since
             outcome.rest, outcome.off = self.fins.moved_for(begun), self.fins.powered_for(begun)
 
@@ -220,8 +221,8 @@ class OutageTrial:
         """Disarm, acknowledge, and wait until all is well."""
         self.wait_well()
         # Refused where the runtime does not answer in time, on a busy computer.
-        wait(lambda: self.stack.api.post("/robot/stop").is_success, "the robot to be stopped")
-        wait(self._is_calm, "no alarm")
+        wait_for(lambda: self.stack.api.post("/robot/stop").is_success, "the robot to be stopped")
+        wait_for(self._is_calm, "no alarm")
 
     def _is_calm(self) -> bool:
         """Acknowledge what there is; on a busy computer another alarm may come after the last one."""
@@ -231,16 +232,16 @@ class OutageTrial:
     def wait_well(self) -> None:
         """Wait until all is well, by data from now on."""
         since = time.monotonic()
-        wait(lambda: self.well(since), "all to be well")
+        wait_for(lambda: self.well(since), "all to be well")
 
     def arm(self) -> None:
         """Arm, and wait for power and moving fins."""
-        wait(
+        wait_for(
             lambda: self.stack.api.post("/robot/commands/arm", json={"unwatched": 0}).status_code == 204,
             "the robot to arm",
         )
         try:
-            wait(lambda: self.fins.seen[-1].powered and self.fins.seen[-1].moving, "the fins to move")
+            wait_for(lambda: self.fins.seen[-1].powered and self.fins.seen[-1].moving, "the fins to move")
         except AssertionError as problem:
             raise AssertionError(f"{problem}: {self.viewer.state}; {self.fins.seen[-1]}") from problem
 

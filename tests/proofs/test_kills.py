@@ -10,7 +10,8 @@ import psutil
 import pytest
 
 from tests.proofs.kills import measure_on
-from tests.stack import READY_SECONDS, Stack
+from tests.stack import Stack
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.stack
 
@@ -27,7 +28,7 @@ def ask(data: Path, question: str) -> set[tuple[str, ...]]:
 
 
 def wait_for(row: tuple[str, ...], data: Path, question: str) -> None:
-    end = time.monotonic() + READY_SECONDS
+    end = time.monotonic() + SECONDS
     while row not in ask(data, question):
         assert time.monotonic() < end, f"no {row}"
         time.sleep(0.05)

@@ -5,15 +5,14 @@ from contextlib import suppress
 from pathlib import Path
 
 from tests.proofs.pool import processes
+from tests.waiting import SECONDS
 
 WORKERS, TASKS = 2, 12
-PATIENCE = 20.0
-"""s; a pool that begins all tasks needs six times as long."""
 
 
 def _await(signal: Path) -> bool:
     """Return True once there is this file."""
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + SECONDS
     while not signal.exists() and time.monotonic() < end:
         time.sleep(0.01)
     return signal.exists()

@@ -190,12 +190,3 @@ class Viewer:
 
     def _join(self) -> None:
         self.alarms = self._servers + self.state.get("alarms", [])
-
-
-def wait(condition: Callable[[], object], what: str, patience: float = 30.0) -> float:
-    """Wait until the condition holds; return the time. Fails where it never does."""
-    end = time.monotonic() + patience
-    while not condition():
-        assert time.monotonic() < end, f"waited {patience:g} s in vain for {what}"
-        time.sleep(_LOOK)
-    return time.monotonic()

@@ -10,9 +10,7 @@ from pathlib import Path
 
 from robot_runtime.contract.packets import DEFINITIONS_HASH, Hello, Packet
 from tests.line_end import LineEnd
-
-DEADLINE = 30.0
-"""s until what must come is given up, on a busy computer."""
+from tests.waiting import SECONDS
 
 
 def hello(definitions: int = DEFINITIONS_HASH, epoch: int = 9) -> Hello:
@@ -37,7 +35,7 @@ class BoardEnd:
 
     def hear(self, type_: int) -> bytes:
         """Return the payload of the next packet of this type."""
-        end = time.monotonic() + DEADLINE
+        end = time.monotonic() + SECONDS
         while time.monotonic() < end:
             for heard, payload in self.listen(end - time.monotonic()):
                 if heard == type_:
@@ -59,7 +57,7 @@ class BoardEnd:
 
     def hear_until(self, condition: Callable[[], bool]) -> None:
         """Receive until the condition holds."""
-        end = time.monotonic() + DEADLINE
+        end = time.monotonic() + SECONDS
         while not condition():
             assert time.monotonic() < end
             self.listen(end - time.monotonic())

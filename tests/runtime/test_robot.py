@@ -42,7 +42,8 @@ from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.zenoh_transport import Answer, ZenohTransport
-from tests.runtime.board_end import DEADLINE, BoardEnd, hello
+from tests.runtime.board_end import BoardEnd, hello
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.stack
 
@@ -74,7 +75,7 @@ class TelemetryBoard:
 
     def wait(self, condition: Callable[[], bool]) -> None:
         with self._changed:
-            assert self._changed.wait_for(condition, DEADLINE)
+            assert self._changed.wait_for(condition, SECONDS)
 
     def count(self, type_: int) -> int:
         return sum(heard == type_ for _, heard, _ in self.heard)
@@ -146,7 +147,7 @@ class RuntimeListener:
 
     def wait(self, condition: Callable[[], bool]) -> None:
         with self._changed:
-            assert self._changed.wait_for(condition, DEADLINE), self.documents[-5:]
+            assert self._changed.wait_for(condition, SECONDS), self.documents[-5:]
 
     def newest_state(self) -> dict[str, Any]:
         states = [document for name, document in self.documents if name == "state"]
@@ -184,7 +185,7 @@ class RuntimeRig:
     def close(self) -> None:
         if self.process.poll() is None:
             self.process.terminate()
-            self.process.wait(DEADLINE)
+            self.process.wait(SECONDS)
         self.messages.close()
         self.board.close()
 
@@ -217,7 +218,7 @@ class RuntimeRig:
 
         For a moment a board that is late does, as this one is where this process is held.
         """
-        end = time.monotonic() + DEADLINE
+        end = time.monotonic() + SECONDS
         while (state := self.query("query/state"))["refusals"]:
             assert time.monotonic() < end, state["refusals"]
         return {**state, "time": 0}
@@ -240,7 +241,7 @@ class RuntimeRig:
         self.query(f"command/{name}", question)
 
     def query(self, name: str, question: Mapping[str, Any] | None = None) -> Answer:
-        return self.messages.query(name, question or {}, DEADLINE)
+        return self.messages.query(name, question or {}, SECONDS)
 
 
 @pytest.fixture
@@ -475,7 +476,7 @@ def test_ending_the_runtime_stops_the_board(rig: RuntimeRig) -> None:
     for _ in range(20):  # an impatient user asks several times
         rig.process.send_signal(signal.SIGTERM)
     rig.board.wait(lambda: rig.board.count(Stop.type) >= 1)
-    assert rig.process.wait(DEADLINE) == 0
+    assert rig.process.wait(SECONDS) == 0
 
 
 @pytest.mark.parametrize(
@@ -490,7 +491,7 @@ def test_a_bad_configuration_is_one_clear_line(tmp_path: Path, entry: str, messa
     config = tmp_path / "robot.toml"
     config.write_text(f"[control]\n{entry}\n")
     command = [sys.executable, "-m", "robot_runtime", "--config", str(config), "--data", str(tmp_path)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=DEADLINE, check=False)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=SECONDS, check=False)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert message in done.stderr

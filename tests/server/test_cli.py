@@ -19,9 +19,9 @@ from server import VERSION, cli
 from server.platform.folder_lock import runner_of
 from server.platform.pidfile import pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
-from tests.proofs.watching import wait
 from tests.server.ports import reserved_port
 from tests.server.waiting import SECONDS, alive
+from tests.waiting import wait_for
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -105,7 +105,7 @@ def test_it_ends_in_order_and_leaves_nothing_behind(
 ) -> None:
     with running(settings, port) as process:
         mine = psutil.Process(process.pid)
-        wait(lambda: mine.children(recursive=True), "the server")
+        wait_for(lambda: mine.children(recursive=True), "the server")
         children = mine.children(recursive=True)
         process.send_signal(number)
         output, _ = process.communicate(timeout=SECONDS)
@@ -116,12 +116,12 @@ def test_it_ends_in_order_and_leaves_nothing_behind(
 
 def test_the_runtime_of_a_killed_server_is_adopted_by_the_next(settings: Settings, port: int) -> None:
     with running(settings, port) as process:
-        wait(lambda: "runtime" in running_parts(settings.data.run), "the runtime")
+        wait_for(lambda: "runtime" in running_parts(settings.data.run), "the runtime")
         runtime, group = running_parts(settings.data.run)["runtime"].pid, group_of(process)
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         # On a busy computer a killed server lives for a moment, and has its port and its folder till then.
-        wait(lambda: not any(map(alive, group)), "the server's end")
+        wait_for(lambda: not any(map(alive, group)), "the server's end")
     with running(settings, port):
         assert running_parts(settings.data.run)["runtime"].pid == runtime
         assert alive(runtime)
@@ -130,11 +130,11 @@ def test_the_runtime_of_a_killed_server_is_adopted_by_the_next(settings: Setting
 
 def test_processes_of_a_killed_runner_are_adopted_by_the_next_start(settings: Settings, port: int) -> None:
     with running(settings, port) as process:
-        wait(lambda: "runtime" in running_parts(settings.data.run), "the runtime")
+        wait_for(lambda: "runtime" in running_parts(settings.data.run), "the runtime")
         runtime, group = running_parts(settings.data.run)["runtime"].pid, group_of(process)
         process.kill()
         process.wait()
-        wait(lambda: not any(map(alive, group)), "the server's end")
+        wait_for(lambda: not any(map(alive, group)), "the server's end")
     with running(settings, port) as process:
         assert runner_of(settings.data) == process.pid
         assert running_parts(settings.data.run)["runtime"].pid == runtime

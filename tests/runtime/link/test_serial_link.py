@@ -16,7 +16,8 @@ from robot_runtime.link.link_driver import PortError
 from robot_runtime.link.port import Port, list_ports
 from robot_runtime.link.serial_link import SerialLink
 from robot_runtime.link.session import BoardMessage
-from tests.runtime.board_end import DEADLINE, BoardEnd, hello
+from tests.runtime.board_end import BoardEnd, hello
+from tests.waiting import SECONDS
 
 LOOK = 0.1
 """s; the link looks at its clock twice as often at least."""
@@ -50,7 +51,7 @@ class LinkedHost:
 
     def wait(self, condition: Callable[[], bool]) -> None:
         with self._changed:
-            assert self._changed.wait_for(condition, DEADLINE), self.connection.text
+            assert self._changed.wait_for(condition, SECONDS), self.connection.text
 
     def _change(self) -> None:
         self.texts.append(self.connection.text)

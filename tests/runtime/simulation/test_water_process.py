@@ -25,16 +25,14 @@ from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.zenoh_transport import Answer, ZenohTransport
 from tests.runtime.simulation.water.harness import QUIET
-from tests.waiting import wait_for
+from tests.waiting import SECONDS, wait_for
 
-DEADLINE = 30.0
-"""s until what must come is given up, on a busy computer."""
 RESTING = b"fins 0 0 0 0 0 0 0 0 0 0 0 0 0 1 1\n"
 DIVING = b"fins 0 -1.57 -1.57 -1.57 -1.57 12 12 12 12 40 40 40 40 1 1\n"
 
 
 def ask(messages: ZenohTransport, name: str, question: dict[str, object]) -> Answer:
-    return messages.query(f"simulator/{name}", question, DEADLINE)
+    return messages.query(f"simulator/{name}", question, SECONDS)
 
 
 class SocketBoard:
@@ -44,13 +42,13 @@ class SocketBoard:
         self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._listener.bind(str(path))
         self._listener.listen(1)
-        self._listener.settimeout(DEADLINE)
+        self._listener.settimeout(SECONDS)
 
     def accept(self) -> str:
         """Wait for a connection of the water; return its first line."""
         self.hang_up()
         self.line, _ = self._listener.accept()
-        self.line.settimeout(DEADLINE)
+        self.line.settimeout(SECONDS)
         self._reader = self.line.makefile("r")
         return self.hear()
 
@@ -112,7 +110,7 @@ def process(
     thread.start()
     yield made
     made.end()
-    thread.join(DEADLINE)
+    thread.join(SECONDS)
     assert not thread.is_alive()
 
 
@@ -351,7 +349,7 @@ def test_the_program_runs_and_ends_on_sigterm(
         board.exchange()
         wait_for(lambda: accepted(messages), "answer")
         program.send_signal(signal.SIGTERM)
-        assert program.wait(DEADLINE) == 0
+        assert program.wait(SECONDS) == 0
 
 
 def test_program_waits_for_board_and_peers_that_are_not_there(folder: Path) -> None:
@@ -365,7 +363,7 @@ def test_program_waits_for_board_and_peers_that_are_not_there(folder: Path) -> N
         with ZenohTransport("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as messages:
             wait_for(lambda: accepted(messages), "answer")
         program.send_signal(signal.SIGTERM)
-        assert program.wait(DEADLINE) == 0
+        assert program.wait(SECONDS) == 0
 
 
 def test_program_ends_some_time_after_its_server(folder: Path, board: SocketBoard) -> None:
@@ -378,7 +376,7 @@ def test_program_ends_some_time_after_its_server(folder: Path, board: SocketBoar
             assert program.poll() is None
             server.close()
             assert board.hear() == ""
-            assert program.wait(DEADLINE) == 0
+            assert program.wait(SECONDS) == 0
 
 
 def test_program_ends_with_its_parent(folder: Path, board: SocketBoard) -> None:

@@ -11,9 +11,7 @@ import pytest
 
 import robot_runtime.transport.lifetime as lifetime_module
 from robot_runtime.transport.lifetime import is_served, watch_server
-
-DEADLINE = 30.0
-"""s until what must come is given up, on a busy computer."""
+from tests.waiting import SECONDS
 
 
 class CountedClock:
@@ -33,7 +31,7 @@ class CountedClock:
     def wait_for_looks(self, count: int) -> None:
         with self._looked:
             expected = self._looks + count
-            assert self._looked.wait_for(lambda: self._looks >= expected, DEADLINE)
+            assert self._looked.wait_for(lambda: self._looks >= expected, SECONDS)
 
 
 @contextmanager
@@ -72,7 +70,7 @@ def test_a_process_outlives_its_server_for_a_limited_time(tmp_path: Path) -> Non
         clock.wait_for_looks(5)
     assert not ended.is_set()
     clock.time += 31
-    assert ended.wait(DEADLINE)
+    assert ended.wait(SECONDS)
 
 
 def test_without_the_folder_a_process_ends_at_once(tmp_path: Path) -> None:
@@ -80,7 +78,7 @@ def test_without_the_folder_a_process_ends_at_once(tmp_path: Path) -> None:
     lock.touch()
     watch_server(lock, 30.0, CountedClock(), ended.set)
     lock.unlink()
-    assert ended.wait(DEADLINE)
+    assert ended.wait(SECONDS)
 
 
 LIMITED = """

@@ -29,8 +29,8 @@ from robot_runtime.vision.interface import VisionOutputs
 from robot_runtime.vision.messages import MessageError, MessageSocket
 from robot_runtime.vision.process import VisionProcess
 from tests.runtime.vision.harness import uncompressed_video
+from tests.waiting import SECONDS
 
-DEADLINE = 60.0
 CARD = VisionConfig(camera="card", width=64, height=48, rate=20.0)
 
 
@@ -60,7 +60,7 @@ class VisionRecord:
 
     def wait(self, condition: Callable[[], object], what: str) -> None:
         """Wait until the condition holds."""
-        end = time.monotonic() + DEADLINE
+        end = time.monotonic() + SECONDS
         while not condition():
             assert time.monotonic() < end, f"no {what}; events: {self.texts}"
             time.sleep(0.005)
@@ -182,7 +182,7 @@ class TestPictures:
 def test_a_command_never_waits_for_a_process_that_hangs(
     seen: VisionRecord, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(process_module, "HUNG_SECONDS", 10 * DEADLINE)
+    monkeypatch.setattr(process_module, "HUNG_SECONDS", 10 * SECONDS)
     with faulty(seen, tmp_path) as vision:
         before = vision.pid
         (tmp_path / "hang").touch()
@@ -285,7 +285,7 @@ def test_it_ends_with_its_parent_however_that_ends(tmp_path: Path) -> None:
         child = psutil.Process(int(parent.stdout.readline()))
         parent.kill()
         # It hangs, so that it reads no end of its input.
-        child.wait(DEADLINE)
+        child.wait(SECONDS)
 
 
 def test_a_camera_that_fails_slowly_again_and_again_is_reported_once(seen: VisionRecord) -> None:

@@ -15,9 +15,7 @@ from robot_runtime.robot import RobotRuntime
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.settings_file import VisionSettingsFile
 from tests.runtime.missions.water import mission
-
-PATIENCE = 2.0
-"""s after which a control tick counts as held up."""
+from tests.waiting import SECONDS
 
 
 class WatchedFile(VisionSettingsFile):
@@ -43,7 +41,7 @@ class WatchedFile(VisionSettingsFile):
         assert self.robot is not None
         tick = threading.Thread(target=self.robot.control_tick, daemon=True)
         tick.start()
-        tick.join(PATIENCE)
+        tick.join(SECONDS)
         self.ticks.append(not tick.is_alive())
         self.stored.append(settings)
 

@@ -14,9 +14,10 @@ from robot_runtime.contract.packets import Navigation
 from robot_runtime.contract.topics import BY_NAME, TIME
 from robot_runtime.transport.blocks import read_blocks
 from server.platform.settings import DataFolder
-from tests.proofs.watching import FinWatch, wait
+from tests.proofs.watching import FinWatch
 from tests.shell import shell_headers
 from tests.stack import Stack
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.stack
 
@@ -92,7 +93,7 @@ def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_sto
         ) as socket:
             session = stack.api.post("/sessions", json={"name": "by hand"}).raise_for_status().json()["id"]
             driver = Driver(stack, socket)
-            wait(lambda: fins.seen, "the fins to be seen")
+            wait_for(lambda: fins.seen, "the fins to be seen")
             driver.order("POST", "/robot/commands/arm", {"mode": "manual"})
             moved: list[bool] = []
 
@@ -102,7 +103,7 @@ def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_sto
 
             since = driver.drive_until(swims, 0, 0, 1, 0, 0, 0)
             driver.cut()
-        wait(lambda: fins.seen[-1].time > since and not fins.seen[-1].powered, "no power")
+        wait_for(lambda: fins.seen[-1].time > since and not fins.seen[-1].powered, "no power")
     finally:
         fins.close()
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
@@ -112,6 +113,6 @@ def test_after_a_driver_s_connection_is_cut_the_fins_rest_and_then_the_robot_sto
     assert sum(time > steered for time, _ in sent) >= NEUTRALS
     # How soon the fins rest and lose power is measured in simulated time: tests/proofs/test_faults.py.
     assert any(sample.powered and not sample.moving for sample in fins.seen if sample.time > since)
-    wait(lambda: stack.api.get("/robot").json()["mode"] == "failsafe", "the failsafe to be told")
+    wait_for(lambda: stack.api.get("/robot").json()["mode"] == "failsafe", "the failsafe to be told")
     control = stack.api.get("/control").json()
     assert (control["holder"], control["driven"]["passed"] > 0) == (None, True)

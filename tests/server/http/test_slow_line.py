@@ -11,11 +11,11 @@ from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.zenoh_transport import join
 from tests.stack import ROOT, Stack
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.stack
 
 BAUD = 9600
-PATIENCE = 60.0
 DEEP = 0.4
 """m; its set point is 0.5."""
 
@@ -40,7 +40,7 @@ def test_the_whole_robot_dives_at_9600_baud(tmp_path: Path) -> None:
 
 
 def wait_for(stack: Stack, holds: Any) -> None:
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + SECONDS
     while not holds(stack.api.get("/robot").json()):
         assert time.monotonic() < end, stack.api.get("/robot").json()
         time.sleep(0.05)
@@ -55,7 +55,7 @@ def wait_for_depth(stack: Stack) -> None:
             if block.topic.name == "depth":
                 depths.extend(record.depth for _, record in read_rows(block) if isinstance(record, Depth))
 
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + SECONDS
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
     with join("turtle", [runtime]) as messages:
         messages.subscribe(STREAM, take)
@@ -66,7 +66,7 @@ def wait_for_depth(stack: Stack) -> None:
 
 def wait_for_navigation(stack: Stack) -> Any:
     """Return the last frames, once an acknowledged navigation command is among them."""
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + SECONDS
     while True:
         frames = stack.api.get("/link/frames").json()
         sent = [frame for frame in frames["frames"] if frame["sent"] and "Navigation" in frame["kinds"]]

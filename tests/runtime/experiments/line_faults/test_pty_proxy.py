@@ -25,8 +25,8 @@ from robot_runtime.experiments.line_faults.faults import (
 )
 from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, execute
 from robot_runtime.link.link_driver import PortError
-from tests.runtime.board_end import DEADLINE, BoardEnd
-from tests.waiting import wait_for
+from tests.runtime.board_end import BoardEnd
+from tests.waiting import SECONDS, wait_for
 
 DATA = random.Random(5).randbytes(20_000)
 LOOK = 0.05
@@ -177,7 +177,7 @@ class PtyEnds:
     def send(self, direction: Direction, data: bytes) -> None:
         os.write(self.host.fileno() if direction == "to_board" else self.far.master, data)
 
-    def receive(self, direction: Direction, count: int, limit: float = DEADLINE) -> bytes:
+    def receive(self, direction: Direction, count: int, limit: float = SECONDS) -> bytes:
         """Read this many bytes, or those that arrive within the limit (s)."""
         file = self.far.master if direction == "to_board" else self.host.fileno()
         data, end = b"", time.monotonic() + limit
@@ -322,7 +322,7 @@ def run(folder: Path, *options: str) -> Iterator[subprocess.Popen[str]]:
 def read(file: int, count: int) -> bytes:
     data = b""
     while len(data) < count:
-        assert select.select([file], [], [], DEADLINE)[0]
+        assert select.select([file], [], [], SECONDS)[0]
         data += os.read(file, 4096)
     return data
 
@@ -345,7 +345,7 @@ def test_it_runs_as_a_program(tmp_path: Path) -> None:
         assert f"to_board_bit_errors={twin.counts['bit_errors']} " in program.stdout.readline()
         assert program.stdout.readline().startswith("error ")
         program.send_signal(signal.SIGTERM)
-        assert program.wait(DEADLINE) == 0
+        assert program.wait(SECONDS) == 0
         os.close(host)
     assert not (tmp_path / "link").is_symlink()
     end.vanish()
@@ -355,7 +355,7 @@ def test_the_program_ends_with_its_port(tmp_path: Path) -> None:
     end = BoardEnd(tmp_path / "port")
     with run(tmp_path) as program:
         end.vanish()
-        _, output = program.communicate(timeout=DEADLINE)
+        _, output = program.communicate(timeout=SECONDS)
         assert program.returncode == 1
     assert output.startswith(f"fault line: {tmp_path / 'port'} went away")
     assert not (tmp_path / "link").is_symlink()

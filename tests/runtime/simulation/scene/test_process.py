@@ -35,12 +35,10 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.interface import VisionOutputs
 from robot_runtime.vision.node import VisionNode
 from tests.runtime.simulation.scene.harness import truth
-from tests.waiting import wait_for
+from tests.waiting import SECONDS, wait_for
 
 rendered = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 SIZE = (160, 120)
-SLOW = 30.0
-"""s; making a scene takes a while on a busy machine."""
 
 
 class Ends:
@@ -57,12 +55,12 @@ class Ends:
 
     def picture(self, card: tuple[int, int, int] | None = None) -> Picture:
         request = write_request(*SIZE, card)
-        return read_picture(patiently(lambda: self.other.query_bytes("scene/picture", request, SLOW)))
+        return read_picture(patiently(lambda: self.other.query_bytes("scene/picture", request, SECONDS)))
 
     def tell(self, seconds: float, where: Truth) -> None:
         """Publish the robot's pose until the scene has received it."""
         block = Block.of(BY_NAME["truth"], 1, 0, row(seconds, where.to_bytes()))
-        end = time.monotonic() + SLOW
+        end = time.monotonic() + SECONDS
         while self.process._truth is None or self.process._truth[0] != seconds:
             assert time.monotonic() < end
             self.other.publish("truth", block.data)
@@ -72,7 +70,7 @@ class Ends:
 @pytest.fixture(autouse=True)
 def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """The scene may take as long as the tests wait, not only as long as a camera does."""
-    monkeypatch.setattr(process_module, "ANSWER_TIMEOUT", SLOW)
+    monkeypatch.setattr(process_module, "ANSWER_TIMEOUT", SECONDS)
 
 
 def patiently(ask: Callable[[], Any]) -> Any:
@@ -125,7 +123,7 @@ def test_floor_walls_and_beacons_are_the_simulators() -> None:
         ends.picture()
         changes(simulator)["world"]({"depth": 2.0, "length": 8.0, "width": 5.0})
         changes(simulator)["beacons"]({"positions": [[1.0, 0.0, 0.5]]})
-        end = time.monotonic() + SLOW
+        end = time.monotonic() + SECONDS
         while ends.process._contents.basin.length != 8.0:
             assert time.monotonic() < end
             ends.picture()
@@ -257,7 +255,7 @@ def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: 
     vision = VisionNode(config, SteadyClock(), outputs, connect=lambda: messages)
     vision.show_card("yellow")
     try:
-        end = time.monotonic() + SLOW
+        end = time.monotonic() + SECONDS
         while not until(vision):
             assert time.monotonic() < end
             vision.process_picture()

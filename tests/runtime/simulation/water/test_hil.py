@@ -19,10 +19,8 @@ from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 from robot_runtime.transport.blocks import Block, read_blocks, read_rows, row
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
-from tests.waiting import wait_for
+from tests.waiting import SECONDS, wait_for
 
-DEADLINE = 30.0
-"""s until what must come is given up, on a busy computer."""
 PERIOD = 0.02
 
 
@@ -167,6 +165,6 @@ def test_requests_are_answered_except_bus_errors(simulator: Simulator) -> None:
         ZenohTransport("turtle", [f"unixsock-stream/{folder}/z"]) as here,
     ):
         HilSimulator(simulator, here)
-        here.query("simulator/fault", {"sensor": "pressure", "kind": "stuck"}, DEADLINE)
+        here.query("simulator/fault", {"sensor": "pressure", "kind": "stuck"}, SECONDS)
         with pytest.raises(RefusedError, match="has no buses"):
-            here.query("simulator/fault", {"sensor": "pressure", "kind": "bus"}, DEADLINE)
+            here.query("simulator/fault", {"sensor": "pressure", "kind": "bus"}, SECONDS)

@@ -7,9 +7,8 @@ import pytest
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 from server.features.board.previous_firmware import read_program
 from tests.board.rig import ROOT
-from tests.proofs.watching import wait
 from tests.stack import Stack
-from tests.waiting import SECONDS
+from tests.waiting import SECONDS, wait_for
 
 pytestmark = pytest.mark.stack
 
@@ -28,7 +27,7 @@ def upload(stack: Stack, firmware: str) -> tuple[dict[str, Any], set[str]]:
         seen.setdefault(state["phase"], []).append(state["progress"])
         return bool(state["phase"] == "idle")
 
-    wait(idle, "the end of the upload", SECONDS)
+    wait_for(idle, "the end of the upload", SECONDS)
     assert any(0 < share < 1 for share in seen["uploading"])
     assert seen["uploading"] == sorted(seen["uploading"])
     return state, set(seen)

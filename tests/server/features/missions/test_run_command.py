@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.proofs.watching import wait
 from tests.runtime.missions.water import mission
 from tests.stack import Stack
-from tests.waiting import SECONDS
+from tests.waiting import SECONDS, wait_for
 
 SHORT = mission("{ do = 'hold', seconds = 1, within = 9 }", "{ do = 'surface' }")
 LONG = mission("{ do = 'hold', seconds = 150, within = 9 }")
@@ -36,7 +35,7 @@ def swim(stack: Stack, folder: Path) -> str:
             command.kill()
     assert command.returncode == 0, output
     assert output.splitlines()[-1] == "succeeded: It is done."
-    wait(lambda: not stack.api.get("/robot").json()["armed"], "the robot to be disarmed")
+    wait_for(lambda: not stack.api.get("/robot").json()["armed"], "the robot to be disarmed")
     return output
 
 
@@ -58,7 +57,7 @@ def test_the_first_mission_of_a_restarted_runtime_is_followed(shared_stack: Stac
     for _ in range(2):
         run = shared_stack.api.get("/robot").json()["run"]
         shared_stack.part("runtime").kill()
-        wait(partial(_is_ready_after, shared_stack, run), "the next runtime")
+        wait_for(partial(_is_ready_after, shared_stack, run), "the next runtime")
         swim(shared_stack, tmp_path)
         assert shared_stack.api.get("/missions/state").json()["number"] == 1
 
