@@ -12,8 +12,8 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-NICENESS = 10
-"""Of the session: a tenth of another one's share where both would compute without end."""
+NICENESS = 15
+"""Of the session: an export's. With more weight tests in real time would wait for their exports."""
 _LOOK = 0.05
 """s"""
 _AGAIN = 0.1

@@ -8,6 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from robot_runtime.experiments.mission_trial import __main__ as trial
+from robot_runtime.experiments.scenario import __main__ as scenario
+from server.features.comparison import __main__ as comparison
+from server.features.exports import __main__ as exports
 from tests.beside import NICENESS
 from tests.stack import ROOT
 from tests.waiting import SECONDS
@@ -32,6 +36,10 @@ sys.exit(3)
     assert ended.returncode == 3
     assert ended.stdout.startswith("True")
     assert own.read_text() not in ended.stdout
+
+
+def test_a_command_gives_way_to_what_robots_compute_beside_their_swimming() -> None:
+    assert max(exports.NICENESS, comparison.NICENESS, scenario.NICENESS, trial.NICENESS) <= NICENESS
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
