@@ -24,7 +24,7 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
 # Tests in real time that mostly wait, for uploads, downloads or a slow network, and bear a delay.
-WAITING := $(addprefix tests/,board/test_bootloader.py packages/test_32_bits.py \
+WAITING := $(addprefix tests/,board/test_bootloader.py packages/test_32_bits.py packages/test_wheels.py \
 	$(addprefix runtime/experiments/comm_test/,test_reset_pin.py test_robot_lab.py test_upload.py) \
 	server/http/test_poor_network.py \
 	server/features/board/test_firmware_upload.py server/features/bring_up/test_on_the_robot.py \

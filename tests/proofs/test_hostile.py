@@ -15,6 +15,8 @@ from tests.proofs.hostile import ENTRANCES, HostileField, open_field
 from tests.proofs.words import SHELL, Words
 
 TIMES = 15
+SLOW = {"session's name": 3}
+"""Each makes an export, by a process of its own."""
 SHELLS = {("os", "system"), ("os", "popen"), ("subprocess", "getoutput"), ("subprocess", "getstatusoutput")}
 TESTS_RUN = 3
 
@@ -27,7 +29,7 @@ def field() -> Iterator[HostileField]:
 
 @pytest.mark.parametrize("name", ENTRANCES)
 def test_no_hostile_input_takes_effect(field: HostileField, name: str) -> None:
-    for _ in range(TIMES):
+    for _ in range(SLOW.get(name, TIMES)):
         ENTRANCES[name](field)
     field.survey()
 
