@@ -26,7 +26,7 @@ from server.processes.managed_process import ProcessCommand
 from server.stream.bridge import Bridge, RuntimeSilentError
 from tests.server.new_database import place_with_samples
 from tests.server.runtime_end import RuntimeEnd
-from tests.server.waiting import SECONDS, until
+from tests.server.waiting import SECONDS, SOCKET_LIMITS, until
 from tests.shell import ShellAuth, shell_headers
 
 T = TypeVar("T")
@@ -53,6 +53,7 @@ class Served:
             "origin": own,
             "max_size": None,
             "compression": None,
+            **SOCKET_LIMITS,
             "additional_headers": token,
             "ssl": trust_only(self.settings.data) if self.settings.server.tls else None,
         }

@@ -3,10 +3,14 @@
 import asyncio
 import time
 from collections.abc import Callable
+from typing import Any
 
 import psutil
 
 from tests.waiting import SECONDS as SECONDS
+
+SOCKET_LIMITS: dict[str, Any] = {"open_timeout": SECONDS, "ping_timeout": SECONDS}
+"""Options of a WebSocket's client; its own 10 s and 20 s may pass on a busy computer."""
 
 
 async def until(condition: Callable[[], object], what: str, seconds: float = SECONDS) -> None:

@@ -174,7 +174,7 @@ async def test_connections_are_counted_from_accept_on_also_with_tls(settings: Se
         server.clock.forward(HEAD_SECONDS / 2)
         tls = trust_only(settings.data)
         address = f"https://127.0.0.1:{server.port}/upload"
-        async with httpx.AsyncClient(verify=tls) as client:
+        async with httpx.AsyncClient(verify=tls, timeout=SECONDS) as client:
             assert (await client.post(address, content=b"x")).text == '"done"'
             assert await has_ended(silent[0])
             server.pass_time(HEAD_SECONDS / 2)

@@ -27,7 +27,7 @@ from server.platform.settings import Settings
 from tests.server.ports import reserved_port
 from tests.server.serving import Served, next_text, serve
 from tests.server.sign_in.browsers import browser
-from tests.server.waiting import until
+from tests.server.waiting import SOCKET_LIMITS, until
 from tests.waiting import SECONDS
 
 MANUAL = Path(__file__).parents[3] / "docs/run/proxy.md"
@@ -138,6 +138,7 @@ async def test_behind_nginx_as_the_manual_has_it(settings: Settings, tmp_path: P
                 additional_headers={"cookie": cookie},
                 subprotocols=["mucat", secret],  # type: ignore[list-item]
                 max_size=None,
+                **SOCKET_LIMITS,
             )
             async with live as page:
                 assert (await next_text(page, "hello"))["you"]["name"] == "tablet"

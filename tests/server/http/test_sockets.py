@@ -15,7 +15,7 @@ from server.http import websocket_protocol
 from server.http.listener import open_socket
 from server.http.serving import make_server
 from server.http.websocket_protocol import PARTS_MAX, PIECE_BYTES, UNREAD_MAX, WebSocketProtocol
-from tests.waiting import SECONDS
+from tests.server.waiting import SECONDS, SOCKET_LIMITS
 
 SIZES = (0, 1, 125, 126, 65_535, 65_536, 300_000)
 
@@ -31,7 +31,7 @@ async def test_messages_of_every_size_arrive_whole_and_between_texts() -> None:
             await socket.send_text(str(size))
         await socket.close()
 
-    async with _serve(app) as url, connect(url, max_size=None) as client:
+    async with _serve(app) as url, connect(url, max_size=None, **SOCKET_LIMITS) as client:
         for size in SIZES:
             data = await client.recv()
             assert isinstance(data, bytes)
@@ -60,7 +60,7 @@ async def test_nothing_is_sent_to_a_closed_socket() -> None:
         over.set()
 
     async with _serve(app) as url:
-        async with connect(url):
+        async with connect(url, **SOCKET_LIMITS):
             pass
         await over.wait()
     assert [type(problem) for problem in outcomes] == [ClientDisconnected]
@@ -88,7 +88,7 @@ async def test_the_server_ends_in_order_while_a_page_that_has_left_still_has_unr
         remaining.set()
 
     async with _serve(app) as url:
-        clients.append(client := await connect(url, max_size=None))
+        clients.append(client := await connect(url, max_size=None, **SOCKET_LIMITS))
         client.transport.pause_reading()
         client.protocol.send_close(1001)
         client.transport.write(b"".join(client.protocol.data_to_send()))
@@ -125,7 +125,7 @@ async def test_a_burst_of_small_messages_is_taken_in_pieces(protocols: list[WebS
             most = max(most, protocol.queue.qsize())
         done.set()
 
-    async with _serve(app) as url, connect(url) as client:
+    async with _serve(app) as url, connect(url, **SOCKET_LIMITS) as client:
         client.transport.write(b"".join(_frame(str(number).encode()) for number in range(sent)))
         await done.wait()
     assert numbers == list(range(sent))
@@ -151,7 +151,7 @@ async def test_others_have_a_turn_after_each_message() -> None:
             turn += 1
             await asyncio.sleep(0)
 
-    async with _serve(app) as url, connect(url) as client:
+    async with _serve(app) as url, connect(url, **SOCKET_LIMITS) as client:
         counting = asyncio.create_task(count())
         client.transport.write(_frame(b"") * 500)
         await counting
@@ -172,7 +172,7 @@ async def test_a_client_whose_pings_are_answered_and_who_reads_nothing_is_discon
         remaining.set()
 
     async with _serve(app) as url:
-        client = await connect(url, ping_interval=None)
+        client = await connect(url, ping_interval=None, **SOCKET_LIMITS)
         client.transport.pause_reading()
         pings = _frame(bytes(125), 9) * 1000
         while not remaining.is_set() and most < 2 * UNREAD_MAX:
@@ -203,7 +203,7 @@ async def test_what_waits_for_a_client_does_not_outlive_its_socket_for_long(
         await socket.send_bytes(bytes(20_000_000))
 
     async with _serve(app) as url:
-        client = await connect(url, max_size=None)
+        client = await connect(url, max_size=None, **SOCKET_LIMITS)
         client.transport.pause_reading()
         async with asyncio.timeout(SECONDS):
             await ended.wait()
@@ -221,7 +221,7 @@ async def test_a_message_without_an_end_is_ended() -> None:
             received.append(message["text"])
         remaining.set()
 
-    async with _serve(app) as url, connect(url) as client:
+    async with _serve(app) as url, connect(url, **SOCKET_LIMITS) as client:
         first, part, last = _part(b"a", 1), _part(b"", 0), _frame(b"b", 0)
         client.transport.write(first + part * (PARTS_MAX - 2) + last + first + part * PARTS_MAX)
         await remaining.wait()

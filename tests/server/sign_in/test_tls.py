@@ -19,6 +19,7 @@ from server.platform.openssl import CERTIFICATE, KEY, LEAF, make_certificate, re
 from server.platform.running_server import announce, ask
 from server.platform.settings import Settings, SetupError
 from tests.server.serving import Served, next_text, serve
+from tests.waiting import SECONDS
 
 ROOT = Path(__file__).parents[3]
 
@@ -41,7 +42,7 @@ async def test_pages_shell_and_sockets_use_tls_only(encrypted: Settings) -> None
         assert "secure" in paired.headers["set-cookie"].lower()
         announce(served.settings)
         assert (await asyncio.to_thread(ask, encrypted.data, "GET", "/access/me"))["signed_in"]
-        async with httpx.AsyncClient() as client:
+        async with httpx.AsyncClient(timeout=SECONDS) as client:
             with pytest.raises(httpx.RemoteProtocolError):
                 await client.get(f"http://127.0.0.1:{port}/api/access/me")
             with pytest.raises(httpx.ConnectError, match=r"self.signed certificate"):

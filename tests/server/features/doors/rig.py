@@ -21,7 +21,7 @@ from server.features.doors.subscriptions import DoorClient
 from server.http.sign_in.access import Access
 from server.stream import socket_ends
 from tests.server.serving import Served
-from tests.server.waiting import SECONDS
+from tests.server.waiting import SECONDS, SOCKET_LIMITS
 
 OPEN = DoorsConfig(rosbridge=True, foxglove=True)
 LIFE = 3600.0
@@ -122,7 +122,9 @@ class RosbridgeClient:
 
 def open_rosbridge(served: Served, token: str | None, **options: Any) -> connect:
     """Return a connection to the rosbridge door."""
-    return connect(address(served, "rosbridge", token), max_size=None, compression=None, **options)
+    return connect(
+        address(served, "rosbridge", token), max_size=None, compression=None, **(SOCKET_LIMITS | options)
+    )
 
 
 def rows_block(topic: str, first: int, *rows: tuple[float, Record]) -> Block:

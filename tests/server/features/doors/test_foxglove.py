@@ -29,7 +29,7 @@ from tests.server.features.doors.rig import (
     truth,
 )
 from tests.server.serving import Served
-from tests.server.waiting import until
+from tests.server.waiting import SOCKET_LIMITS, until
 
 V1 = "foxglove.websocket.v1"
 
@@ -42,7 +42,11 @@ def settings(settings: Settings) -> Settings:
 def open_foxglove(served: Served, token: str | None, protocol: str = V1) -> connect:
     protocols: list[Any] = [protocol]
     return connect(
-        address(served, "foxglove", token), subprotocols=protocols, max_size=None, compression=None
+        address(served, "foxglove", token),
+        subprotocols=protocols,
+        max_size=None,
+        compression=None,
+        **SOCKET_LIMITS,
     )
 
 
@@ -112,7 +116,10 @@ async def test_without_a_token_or_a_known_subprotocol_it_is_refused(served: Serv
     for given, protocols in ((None, [V1]), ("mucat_wrong", [V1]), (token, [])):
         offered: list[Any] = [*protocols]
         async with connect(
-            address(served, "foxglove", given), subprotocols=offered or None, compression=None
+            address(served, "foxglove", given),
+            subprotocols=offered or None,
+            compression=None,
+            **SOCKET_LIMITS,
         ) as socket:
             with pytest.raises(ConnectionClosed) as closed:
                 await socket.recv()
