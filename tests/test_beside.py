@@ -13,8 +13,9 @@ from robot_runtime.experiments.scenario import __main__ as scenario
 from server.features.comparison import __main__ as comparison
 from server.features.exports import __main__ as exports
 from tests.beside import NICENESS
+from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL
 from tests.stack import ROOT
-from tests.waiting import SECONDS
+from tests.waiting import SECONDS, wait_for
 
 BESIDE = [sys.executable, "-m", "tests.beside"]
 
@@ -36,6 +37,20 @@ sys.exit(3)
     assert ended.returncode == 3
     assert ended.stdout.startswith("True")
     assert own.read_text() not in ended.stdout
+
+
+def test_a_browser_gives_way_with_its_session_as_far_as_its_test() -> None:
+    own = Path("/proc/self/autogroup")
+    if not own.exists():
+        pytest.skip("this kernel does not share the processors by session")
+    line = ["nice", "-n", "3", str(HEADLESS_SHELL), *ARGUMENTS, "--remote-debugging-port=0"]
+    niceness = min(os.getpriority(os.PRIO_PROCESS, 0) + 3 + 5, 19)
+    with subprocess.Popen(line, start_new_session=True, stderr=subprocess.DEVNULL) as browser:
+        try:
+            weight = Path(f"/proc/{browser.pid}/autogroup")
+            wait_for(lambda: weight.read_text().endswith(f"nice {niceness}\n"), "its weight")
+        finally:
+            os.killpg(browser.pid, signal.SIGKILL)
 
 
 def test_a_command_gives_way_to_what_robots_compute_beside_their_swimming() -> None:
