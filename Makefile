@@ -23,13 +23,13 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,portability --i
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
-# Tests in real time that mostly wait, for uploads, downloads or a slow network, and bear a delay.
+# Tests in real time that mostly wait, for uploads, downloads, a slow network or a look at every page, and bear a delay.
 WAITING := $(addprefix tests/,board/test_bootloader.py packages/test_32_bits.py packages/test_wheels.py \
 	$(addprefix runtime/experiments/comm_test/,test_reset_pin.py test_robot_lab.py test_upload.py) \
 	server/http/test_poor_network.py \
 	server/features/board/test_firmware_upload.py server/features/bring_up/test_on_the_robot.py \
 	server/features/comm_tests/test_reserved_board.py server/features/comm_tests/test_thesis_example.py \
-	browser/test_bring_up.py browser/test_firmware_upload.py)
+	$(addprefix browser/,test_accessible.py test_bring_up.py test_compare.py test_firmware_upload.py))
 REAL_TIME = $(filter-out $(WAITING),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
 # All other tests, each part by a process of its own, the longest first, also those that mostly wait. A part lacks what is
 # a part by itself.
