@@ -3,10 +3,16 @@ import { describe, expect, it } from 'vitest';
 
 const CSS = readFileSync(new URL('../src/styles/tokens.css', import.meta.url), 'utf8');
 
-function colours(selector: string): Map<string, string> {
+const ROOT = ':root';
+const SUNLIGHT = ":root[data-theme='sunlight']";
+
+function block(selector: string): string {
   const start = CSS.indexOf(`${selector} {`);
-  const block = CSS.slice(start, CSS.indexOf('}', start));
-  return new Map([...block.matchAll(/--([\w-]+): (#[0-9a-f]{6});/g)].map(([, name = '', value = '']) => [name, value]));
+  return CSS.slice(start, CSS.indexOf('}', start));
+}
+
+function colours(selector: string): Map<string, string> {
+  return new Map([...block(selector).matchAll(/--([\w-]+): (#[0-9a-f]{6});/g)].map(([, name = '', value = '']) => [name, value]));
 }
 
 /** Relative luminance, as in WCAG 2. */
@@ -23,18 +29,35 @@ function contrast(one: string, other: string): number {
   return (high + 0.05) / (low + 0.05);
 }
 
-const dark = colours(':root');
-const sunlight = new Map([...dark, ...colours(":root[data-theme='sunlight']")]);
+/** The ground that a soft colour gives where it lies on another one. */
+function lay(selector: string, soft: string, ground: string): string {
+  const found = new RegExp(`--${soft}: rgb\\((\\d+) (\\d+) (\\d+) / (\\d+)%\\)`).exec(block(selector)) ?? [];
+  const [, red, green, blue, percent] = found.map(Number);
+  const mixed = [red, green, blue].map((part = NaN, at) => {
+    const under = parseInt(ground.slice(1 + 2 * at, 3 + 2 * at), 16);
+    return Math.round(under + ((part - under) * (percent ?? NaN)) / 100);
+  });
+  return `#${mixed.map((part) => part.toString(16).padStart(2, '0')).join('')}`;
+}
+
+const dark = colours(ROOT);
+const sunlight = new Map([...dark, ...colours(SUNLIGHT)]);
 
 describe.each([
-  ['dark', dark, 4.5, 3],
-  ['sunlight', sunlight, 7, 4.5],
-] as const)('%s', (_theme, tokens, textLeast, lineLeast) => {
+  ['dark', ROOT, dark, 4.5, 3],
+  ['sunlight', SUNLIGHT, sunlight, 7, 4.5],
+] as const)('%s', (_theme, selector, tokens, textLeast, lineLeast) => {
   const of = (name: string) => tokens.get(name) ?? '';
 
   it.each(['text', 'muted', 'accent', 'caution', 'alarm', 'replay'])('text in %s can be read on every ground', (name) => {
     for (const ground of ['ground', 'panel', 'well']) {
       expect(contrast(of(name), of(ground)), `${name} on ${ground}`).toBeGreaterThanOrEqual(textLeast);
+    }
+  });
+
+  it('an alarm can be read on its own ground', () => {
+    for (const ground of ['ground', 'panel']) {
+      expect(contrast(of('alarm'), lay(selector, 'alarm-soft', of(ground))), ground).toBeGreaterThanOrEqual(textLeast);
     }
   });
 
