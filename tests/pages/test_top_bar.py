@@ -7,9 +7,12 @@ from playwright.sync_api import Browser, Page, Route, WebSocketRoute, expect
 
 from robot_runtime.contract.topics import BY_ID, BY_NAME
 from robot_runtime.transport.blocks import HEADER, Block
+from tests.browser.opening import DESKTOP
 from tests.browser.people import somebody
 from tests.pages.dive_site import DiveSite
 
+ONE_ROW = 60
+"""px: STOP and its margins."""
 NARROWEST, WIDEST, STEP = 320, 2560, 20
 BREAKS = (900, 1100, 1720, 2200)
 """Widths at which the page itself changes."""
@@ -177,6 +180,16 @@ def test_nothing_in_the_bar_collides_in_a_replay(page: Page, site: DiveSite) -> 
     changed = in_a_frame(page, site, "/#/replay/1")
     changed.state = STATES["manual"][1]
     heights_without_collision(page, "ARMED")
+
+
+def test_the_bar_of_the_flight_view_is_one_row_on_a_desktop(page: Page, site: DiveSite) -> None:
+    changed = in_a_frame(page, site, "/#/flight")
+    changed.state = STATES["manual"][1]
+    session = site.api.post("/sessions", json={"name": "a wide bar"}).raise_for_status().json()["id"]
+    expect(page.frame_locator("iframe").locator(".top .lamp.on")).to_be_visible()
+    heights = heights_without_collision(page, "MANUAL")
+    site.api.post(f"/sessions/{session}/stop").raise_for_status()
+    assert {high for width, high in heights.items() if int(width) >= DESKTOP["width"]} == {ONE_ROW}
 
 
 def test_nothing_in_the_bar_collides_for_who_looks_on(browser: Browser, site: DiveSite) -> None:
