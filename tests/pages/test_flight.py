@@ -13,6 +13,8 @@ from tests.pages.dive_site import DiveSite
 from tests.pages.flying import Flown
 
 SIZES = {"desktop": DESKTOP, "phone": PHONE, "lying phone": LYING_PHONE}
+LAPTOP: ViewportSize = {"width": 1280, "height": 720}
+"""The lowest desktop: with the charts in it, tools and inset have little height."""
 READINGS = re.compile(r"Depth −?0\.00 m, heading \d{3}°, roll .+°, pitch .+°")
 BY_ITSELF = "localStorage.setItem('mucat-flight', 'on')"
 # Of what the instruments' canvas holds: whether it has this colour anywhere (red, green, blue).
@@ -126,6 +128,10 @@ def test_panels_slide_in_and_one_press_swaps_the_views(flying: tuple[Page, Flown
         page.get_by_role("button", name=title, exact=True).press("Enter")
         expect(page.get_by_role("region", name=inside, exact=True)).to_be_visible()
         expect(page.get_by_role("button", name="STOP")).to_be_visible()
+        if page.viewport_size in (DESKTOP, LAPTOP):
+            page.set_viewport_size(LAPTOP)
+            for tool in page.get_by_role("toolbar", name="Flight view").get_by_role("button").all():
+                tool.click(trial=True)
         page.get_by_role("button", name=f"Close {title}").press("Enter")
         expect(page.get_by_role("region", name=inside, exact=True)).to_have_count(0)
     swap = page.get_by_role("button", name="Swap: show the model large")
@@ -140,6 +146,20 @@ def test_panels_slide_in_and_one_press_swaps_the_views(flying: tuple[Page, Flown
     expect(page.get_by_role("application")).to_be_visible()
     flown.show("observer")
     expect(page.get_by_role("img", name="The robot in the simulated water")).to_be_visible()
+
+
+def test_notices_lie_over_neither_each_other_nor_tools(flying: tuple[Page, Flown], site: DiveSite) -> None:
+    page, _ = flying
+    site.api.post("/sessions", json={"name": "noticed"}).raise_for_status()
+    expect(page.get_by_role("button", name=re.compile("^REC"))).to_be_visible()
+    page.keyboard.press("m")
+    page.keyboard.press("p")
+    for name in ("Bookmark", "Snapshots"):
+        page.get_by_role("region", name=name, exact=True).get_by_role("button", name="Close").click(
+            trial=True
+        )
+    for tool in page.get_by_role("toolbar", name="Flight view").get_by_role("button").all():
+        tool.click(trial=True)
 
 
 @pytest.mark.parametrize("desk", [[GRANTED]], indirect=True)
