@@ -30,18 +30,30 @@ export class SoundPlayer {
   play(events: readonly SoundEvent[], volume: Volume, spoken: boolean): void {
     const [first] = events;
     if (first === undefined || volume === 'off') return;
-    try {
+    this.#attempt(() => {
       if (this.#audio?.state === 'running') playTone(this.#audio, first.kind, GAINS[volume]);
+    });
+    this.#attempt(() => {
       vibrate(first.kind);
-      if (spoken) for (const { kind, words } of events) this.#speak(words, volume, kind === KINDS[0]);
-    } catch {
-      // A sound that the browser refuses must not hold up the page.
-    }
+    });
+    if (!spoken) return;
+    this.#attempt(() => {
+      for (const { kind, words } of events) this.#speak(words, volume, kind === KINDS[0]);
+    });
   }
 
   close(): void {
     void this.#audio?.close().catch(() => undefined);
     this.#audio = null;
+  }
+
+  /** What the browser refuses holds up neither the page nor the other sounds. */
+  #attempt(sound: () => void): void {
+    try {
+      sound();
+    } catch {
+      // It stays silent.
+    }
   }
 
   #speak(words: string, volume: Volume, urgent: boolean): void {
