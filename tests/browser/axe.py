@@ -51,11 +51,16 @@ def faults(page: Page, how: str = USUAL) -> list[str]:
     ]
 
 
-def faults_of_view(page: Page, site: Site, view: View) -> list[str]:
-    """Violations of a page in both themes."""
-    show(page, site, view)
+def faults_in_both_themes(page: Page) -> list[str]:
+    """Violations on the present page in both themes; the dark one is left on."""
     dark = faults(page)
     page.evaluate("document.documentElement.dataset.theme = 'sunlight'")
     sunlight = faults(page, FOR_SUNLIGHT)
     page.evaluate("document.documentElement.dataset.theme = 'dark'")
     return dark + sunlight
+
+
+def faults_of_view(page: Page, site: Site, view: View) -> list[str]:
+    """Violations of a page in both themes."""
+    show(page, site, view)
+    return faults_in_both_themes(page)

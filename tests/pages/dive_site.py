@@ -74,6 +74,12 @@ class DiveSite:
         assert self._runtime is not None
         return list(self._runtime.asked)
 
+    @property
+    def driven(self) -> list[dict[str, Any]]:
+        """The driver's messages in the order in which they came."""
+        assert self._runtime is not None
+        return list(self._runtime.driven)
+
     def refuse(self, reason: str | None) -> None:
         """Have every command to the robot but STOP refused with this reason; None: accepted again."""
         assert self._runtime is not None
