@@ -121,6 +121,11 @@ class Firefox:
         """Release the first button of the mouse."""
         self._act("pointer", {"type": "pointerUp", "button": 0})
 
+    def click(self) -> None:
+        """Press and release the first button of the mouse where it is."""
+        self.press_mouse()
+        self.release_mouse()
+
     def press_key(self, key: str) -> None:
         """Press and release a key, by its WebDriver code."""
         self._act("key", {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key})

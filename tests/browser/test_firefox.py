@@ -11,6 +11,10 @@ from tests.browser.people import make_link
 from tests.stack import Stack
 
 ESCAPE = "\ue00c"
+FLYING = "document.querySelector('h1')?.textContent === 'Flight view'"
+PICTURE = "document.querySelector('.stage .picture img')?.naturalWidth > 0"
+TAPES = "document.querySelector('.instruments canvas')"
+DEEP = "Number(/Depth (.+?) m/.exec(document.querySelector('.drawn').ariaLabel)[1].replace('−', '-')) > 0.2"
 DEPTH = "Number([...document.querySelectorAll('.reading')].find((one) => one.textContent.includes('Depth'))"
 DEPTH += "?.querySelector('.value')?.textContent.replace('−', '-'))"
 CONNECTED = "/\\d:\\d/.test(document.querySelector('.top time')?.textContent)"
@@ -26,8 +30,7 @@ def firefox(tmp_path_factory: pytest.TempPathFactory, stack: Stack) -> Iterator[
     with Firefox(tmp_path_factory.mktemp("profile")) as firefox:
         firefox.open(make_link(stack, "operator"))
         firefox.move_to_button("Sign in")
-        firefox.press_mouse()
-        firefox.release_mouse()
+        firefox.click()
         firefox.wait_for("document.querySelector('.stop')")
         yield firefox
         put_to_rest(stack)
@@ -44,13 +47,41 @@ def test_firefox_dives_and_stops_by_a_key(firefox: Firefox, stack: Stack) -> Non
     assert stack.api.get("/robot").json()["armed"]
     firefox.wait_for(f"{DEPTH} > 0.2")
     firefox.move_to_button("you have control")
-    firefox.press_mouse()
-    firefox.release_mouse()
+    firefox.click()
     firefox.wait_for(SHEET)
     firefox.press_key(ESCAPE)
     firefox.wait_for("!document.body.textContent.includes('The fins may move')")
     assert not stack.api.get("/robot").json()["armed"]
     firefox.wait_for(SHEET)
+
+
+def test_firefox_flies_by_the_picture(firefox: Firefox, stack: Stack) -> None:
+    bring_to_surface(stack)
+    firefox.open("about:blank")
+    firefox.open(f"{stack.url}/#/operate")
+    firefox.wait_for("document.body.textContent.includes('Ready to arm')")
+    firefox.press_key("f")
+    firefox.wait_for(FLYING)
+    firefox.wait_for(PICTURE)
+    firefox.move_to_button("Controls")
+    firefox.click()
+    firefox.move_to_button("Hold to arm")
+    firefox.press_mouse()
+    firefox.wait_for("document.body.textContent.includes('The fins may move')")
+    firefox.release_mouse()
+    firefox.evaluate(f"void (globalThis.surface = {TAPES}.toDataURL())")
+    firefox.wait_for(DEEP)
+    firefox.wait_for(f"{TAPES}.toDataURL() !== surface")
+    firefox.move_to_button("STOP")
+    firefox.click()
+    firefox.wait_for("!document.body.textContent.includes('The fins may move')")
+    assert not stack.api.get("/robot").json()["armed"]
+    # Esc is STOP; it does not leave.
+    firefox.press_key(ESCAPE)
+    firefox.wait_for("document.querySelector('.stop').textContent.includes('Stopped')")
+    assert firefox.evaluate(FLYING)["value"] is True
+    firefox.press_key("v")
+    firefox.wait_for(f"!({FLYING}) && document.querySelector('.reading') !== null")
 
 
 def test_firefox_opens_every_page(firefox: Firefox, stack: Stack) -> None:
