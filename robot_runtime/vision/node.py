@@ -2,6 +2,7 @@
 
 import importlib
 import logging
+from base64 import b64encode
 from collections.abc import Callable
 from dataclasses import asdict, fields, replace
 from math import inf
@@ -117,16 +118,22 @@ class VisionNode(Vision):
         return str(self._camera) if self._camera else STARTING
 
     def pick(self, question: dict[str, Any]) -> dict[str, Any]:
-        """Return the colour range around a point of the newest picture, after the white balance."""
+        """Return the colour range around a point of the newest picture, after the white balance.
+
+        With its `share` of the picture, and the `mask` that it would have: a JPEG file, in base64.
+        """
         if self.missing:
             raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
-        from robot_runtime.vision.pipeline import BALANCES, PickPoint, propose
+        from robot_runtime.vision.pipeline import BALANCES, PickPoint, as_jpeg, draw_preview, propose
 
         point = parse(PickPoint, question)
         frame = self._frame
         if frame is None:
             raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
-        return asdict(propose(BALANCES[self._settings.white_balance](frame.picture), point))
+        balanced = BALANCES[self._settings.white_balance](frame.picture)
+        proposal = propose(balanced, point)
+        mask = as_jpeg(draw_preview(balanced, proposal.colour, self._settings))
+        return {**asdict(proposal), "mask": b64encode(mask).decode()}
 
     def take_snapshot(self) -> dict[str, Any]:
         """Send the newest picture at full size to the outputs; return its `time` (s, steady clock)."""

@@ -1,7 +1,7 @@
 """Patches of one colour in a picture: mask, outlines and selection, and the mask as a picture for people."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import cv2
@@ -123,6 +123,16 @@ def _refused(area: float, fill: float, aspect: float, circularity: float, settin
         ("not round enough", circularity < settings.circularity_min),
     )
     return ", ".join(reason for reason, holds in reasons if holds)
+
+
+def draw_preview(picture: Picture, colour: ColourRange, settings: VisionSettings) -> Picture:
+    """Return the mask that a target colour with this range would have, drawn as by `draw_mask`.
+
+    `picture` is BGR, uint8 of shape (height, width, 3), after the white balance.
+    """
+    hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV).astype(np.uint8, copy=False)
+    name = settings.colour
+    return draw_mask(find_patches(hsv, name, replace(settings, colours={**settings.colours, name: colour})))
 
 
 def draw_mask(patches: Patches) -> Picture:

@@ -22,6 +22,7 @@ from robot_runtime.vision.detector import Detector as Detector
 from robot_runtime.vision.detector import choose_target as choose_target
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.patches import draw_mask as draw_mask
+from robot_runtime.vision.patches import draw_preview as draw_preview
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
 from robot_runtime.vision.scene_camera import SceneCamera, SceneMissingError

@@ -64,6 +64,9 @@ def test_a_colour_is_picked_and_acted_on(settings: dict[str, Any], any_page: Pag
     pick_the_middle(page)
     picked = page.get_by_role("region", name="Picked colour")
     expect(picked).to_contain_text("Not saved yet")
+    expect(
+        page.get_by_role("region", name="Mask of the picked colour, not saved").locator("img")
+    ).to_be_visible()
     assert stack.api.get("/vision").json()["settings"] == settings
     picked.get_by_label("Name of the new colour").fill("buoy")
     picked.get_by_role("button", name="Save and detect it").click()

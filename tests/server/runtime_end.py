@@ -120,7 +120,7 @@ class RuntimeEnd:
         self.picked.append(question)
         if self.refusal is not None:
             raise RefusedError(self.refusal)
-        return {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
+        return {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25, "mask": "AAAA"}
 
     def _send_snapshot(self) -> Mapping[str, Any]:
         if self.snapshot is None:

@@ -1813,9 +1813,11 @@ export interface components {
             /** @description share of its height */
             y: number;
         };
-        /** @description A colour range, and the share of the picture within it. */
+        /** @description A colour range, the share of the picture within it, and the mask that it would have. */
         PickedColour: {
             colour: components["schemas"]["ColourRange-Output"];
+            /** @description a JPEG file, in base64 */
+            mask: string;
             share: number;
         };
         /** @description A panel, and its position in columns and rows of the grid from the upper left corner. */

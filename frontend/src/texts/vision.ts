@@ -20,6 +20,9 @@ export const vision = {
     alt: (colour: string) => `Parts of the picture that are ${colour}`,
     counts: 'detected',
     dropped: 'has the colour, filtered out',
+    previewTitle: 'Mask of the picked colour, not saved',
+    previewAlt: 'Parts of the picture that have the picked colour',
+    coversAll: 'This colour covers nearly the whole picture, so it tells nothing apart. Narrow its ranges, or pick another place with a smaller sample.',
     none: 'No mask yet',
     noneText: 'The mask appears here with the first picture.',
   },
@@ -28,7 +31,7 @@ export const vision = {
     title: 'Picked',
     range: (hue: readonly number[], saturation: readonly number[], value: readonly number[]) =>
       `hue ${hue[0]} to ${hue[1]}, saturation ${saturation[0]} to ${saturation[1]}, value ${value[0]} to ${value[1]}`,
-    share: (percent: string) => `Covers ${percent} % of the picture. Not saved yet.`,
+    share: (percent: string) => `Covers ${percent} % of the picture. Not saved yet: the mask is a preview.`,
     saveAs: 'Save as',
     newColour: 'New colour',
     replace: (colour: string) => `Replace ${colour}`,

@@ -52,7 +52,7 @@ async def edit_vision(
 
 @router.operation("POST /pick", Need.VIEWER, {409: "There is no colour, or no picture"}, RuntimeSilentError)
 async def pick_colour(bridge: Provided[Bridge], point: PickPlace) -> PickedColour:
-    """Return the colour range at a point in the newest picture.
+    """Return the colour range at a point in the newest picture, and its mask.
 
     Changes nothing.
     """

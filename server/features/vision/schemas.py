@@ -47,10 +47,11 @@ class PickPlace(RequestBody):
 
 
 class PickedColour(BaseModel):
-    """A colour range, and the share of the picture within it."""
+    """A colour range, the share of the picture within it, and the mask that it would have."""
 
     colour: ColourRange
     share: float
+    mask: Annotated[str, Field(description="a JPEG file, in base64")]
 
 
 class VisionText(RequestBody):

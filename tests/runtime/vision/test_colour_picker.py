@@ -1,7 +1,9 @@
 """Picking a colour in the picture: on cards, at any hue, and without a colour."""
 
 import json
+from base64 import b64decode
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -132,6 +134,16 @@ class TestNode:
         colour = json.loads(json.dumps(node.pick({"x": 0.5, "y": 0.5})))["colour"]
         assert find(drawn(1.0, "blue"), "picked", colours={"picked": parse(ColourRange, colour)}) is not None
         assert node.settings is before
+
+    def test_the_mask_that_the_picked_colour_would_have_comes_with_it(self) -> None:
+        node, _ = self.vision(drawn(1.0, "blue"), SimulatedClock(1.0))
+        node.process_picture()
+        answer = node.pick({"x": 0.5, "y": 0.5})
+        jpeg = np.frombuffer(b64decode(answer["mask"]), np.uint8)
+        mask = cv2.imdecode(jpeg, cv2.IMREAD_GRAYSCALE)
+        assert mask is not None
+        # The target is yellow: what is bright counts as the colour that was picked. JPEG blurs its edge.
+        assert (mask > 180).mean() == pytest.approx(answer["share"], rel=0.1)
 
     def test_without_a_picture_the_reason_is_given(self) -> None:
         clock = SimulatedClock(1.0)

@@ -83,7 +83,8 @@ async def test_invalid_settings_are_refused_by_the_server(served: Served) -> Non
 
 async def test_picking_returns_the_runtime_s_answer(served: Served) -> None:
     answer = await served.api.post("/vision/pick", json={"x": 0.25, "y": 1})
-    assert answer.json() == {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
+    red = VisionSettings().table()["colours"]["red"]
+    assert answer.json() == {"colour": red, "share": 0.25, "mask": "AAAA"}
     assert served.runtime.picked == [{"x": 0.25, "y": 1.0, "radius": 0.02}]
     for wrong in (
         {"x": 0.25},

@@ -20,6 +20,17 @@ export function css(hue: number, saturation: number, value: number): string {
   return `hsl(${(hue % HUES) * 2} ${(100 * chroma).toFixed(1)}% ${(100 * lightness).toFixed(1)}%)`;
 }
 
+/** share of the picture from which on a mask tells nothing apart */
+const ALL = 0.95;
+
+/** Whether a colour covers so much of the picture (a share) that it tells nothing apart. */
+export const coversAll = (share: number): boolean => share >= ALL;
+
+/** The JPEG file of these characters in base64. */
+export function jpegOf(base64: string): Blob {
+  return new Blob([Uint8Array.from(atob(base64), (character) => character.charCodeAt(0))], { type: 'image/jpeg' });
+}
+
 /** The colour in the middle of a range, as CSS. */
 export function middle(range: ColourRange): string {
   const { hue, saturation, value } = range;
