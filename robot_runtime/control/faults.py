@@ -55,15 +55,15 @@ ROBOT_FAULTS["pilot_quiet"] = FaultRule(
     severity="caution",
     limit=0.5,
     action="neutral",
-    what="No pilot input; the fins are stopped.",
-    cause="The page is hidden or closed, the gamepad is off, or the network is slow.",
+    what="No page sends pilot input; the fins are stopped.",
+    cause="The page is hidden or closed, or the network is slow. A page sends its sticks also at rest.",
     remedy="Go back to the page and move the sticks, or switch to automatic.",
 )
 ROBOT_FAULTS["pilot_lost"] = FaultRule(
     limit=3.0,
-    what="No pilot input for 3 s.",
-    cause="The page is hidden or closed, the gamepad is off, or the network is gone.",
-    remedy="Check the network and the gamepad, then arm again.",
+    what="No page has sent pilot input for 3 s.",
+    cause="The page is hidden or closed, or the network is gone. A page sends its sticks also at rest.",
+    remedy="Check the page and the network, then arm again.",
     consequences=("pilot_quiet",),
 )
 ROBOT_FAULTS["server_silent"] = FaultRule(

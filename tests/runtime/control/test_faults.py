@@ -275,6 +275,14 @@ def test_every_fault_has_a_text_a_cause_and_a_remedy() -> None:
         assert all(text.endswith(".") for text in (fault.what, fault.cause, fault.remedy)), name
 
 
+def test_a_pilot_is_lost_with_the_page_and_not_with_the_gamepad() -> None:
+    # A page sends its sticks also at rest, and without a gamepad.
+    for name in ("pilot_quiet", "pilot_lost"):
+        fault = ROBOT_FAULTS[name]
+        assert fault.what.startswith("No page")
+        assert "gamepad" not in fault.cause + fault.remedy
+
+
 def test_in_manual_only_depth_faults_do_not_stop_the_robot() -> None:
     rules = ROBOT_FAULTS.items()
     goes_on = {name for name, fault in rules if fault.stops("automatic") and not fault.stops("manual")}
