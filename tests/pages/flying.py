@@ -35,13 +35,14 @@ def water(time: float, name: str = "picture") -> Block:
 
 
 class Flown:
-    """Changes what a page hears: the mode, the loops that are on, alarms, and whether there is a scene."""
+    """Changes what a page hears: mode, loops that are on, alarms, a scene, and a camera that fails."""
 
     def __init__(self, page: Page) -> None:
         self.mode = "disarmed"
         self.held: set[str] = set()
         self.alarms: list[dict[str, Any]] = []
         self.scene = False
+        self.camera_failure: str | None = None
         self._sockets: list[WebSocketRoute] = []
         page.route_web_socket("**/api/live", self._hand_on)
 
@@ -60,6 +61,11 @@ class Flown:
         answer = json.loads(message)
         if answer["op"] == "health" and self.scene:
             answer["parts"] += [{"name": "scene", "state": "works", "text": ""}]
+        if answer["op"] == "health" and self.camera_failure:
+            failing = {"state": "absent", "text": self.camera_failure}
+            answer["parts"] = [
+                part | failing if part["name"] == "camera" else part for part in answer["parts"]
+            ]
         return json.dumps(answer)
 
     def _blocks(self, message: bytes) -> bytes:

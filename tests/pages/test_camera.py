@@ -1,6 +1,7 @@
 """The camera's picture and the choices beside it."""
 
 import json
+import re
 from collections.abc import Iterator
 
 import cv2
@@ -12,6 +13,7 @@ from robot_runtime.contract.topics import BY_ID, BY_NAME
 from robot_runtime.transport.blocks import HEADER, Block, row
 from tests.browser.people import somebody
 from tests.pages.dive_site import DiveSite
+from tests.pages.flying import Flown
 
 TAKEN = 1.0
 """Time of the picture, s."""
@@ -55,6 +57,30 @@ def test_two_markers_of_one_number_are_drawn(page: Page) -> None:
     expect(camera.get_by_label("Vision rate")).to_be_visible()
     sockets[-1].send(picture())
     expect(camera.locator("svg text", has_text="marker 7")).to_have_count(2)
+
+
+def test_a_picture_that_stops_is_said_with_its_reason(page: Page) -> None:
+    flown = Flown(page)
+    flown.camera_failure = "No picture: the camera /dev/video0 gives no picture; check its plug."
+    page.reload()
+    page.get_by_role("link", name="Operate").click()
+    camera = page.get_by_role("region", name="Camera")
+    expect(camera.get_by_text(flown.camera_failure)).to_be_visible()
+    for topic in ("picture", "camera"):
+        flown.show(topic)
+    expect(camera.get_by_role("alert")).to_have_text(
+        f"The camera’s picture has stopped. {flown.camera_failure}"
+    )
+    expect(camera.get_by_text(re.compile(r"picture is \d.* old"))).to_be_visible()
+    # All else goes on: the depth is of now, and commands are sent.
+    expect(page.get_by_role("region", name="Depth over time").get_by_text("old")).to_have_count(0)
+    camera.get_by_label("Vision rate").select_option("8")
+    expect(camera.get_by_role("alert")).to_have_count(1)
+    page.get_by_role("button", name="STOP").click()
+    expect(page.get_by_role("button", name="Stopped")).to_be_visible()
+    flown.camera_failure = None
+    flown.show("camera")
+    expect(camera.get_by_role("alert")).to_have_count(0)
 
 
 @pytest.fixture

@@ -225,9 +225,18 @@ def test_a_picture_that_stops_is_said(desk: tuple[Page, Flown]) -> None:
     page, flown = desk
     page.keyboard.press("f")
     expect(page.get_by_text("No picture yet")).to_be_visible()
+    flown.camera_failure = "No picture: the camera /dev/video0 gives no picture; check its plug."
+    page.reload()
+    notice = page.locator(".over").get_by_role("alert")
+    expect(notice).to_have_text(flown.camera_failure)
     flown.show()
-    expect(page.get_by_text("The picture has stopped:")).to_be_visible()
+    expect(notice).to_have_text(f"The camera’s picture has stopped. {flown.camera_failure}")
+    expect(page.get_by_text("picture 1.")).to_be_visible()
     assert "grayscale" in page.evaluate("getComputedStyle(document.querySelector('.picture')).filter")
+    expect(page.get_by_role("img", name=READINGS)).to_be_visible()
+    flown.camera_failure = None
+    flown.show()
+    expect(notice).to_have_count(0)
 
 
 @pytest.mark.parametrize("desk", [[DENIED]], indirect=True)

@@ -210,6 +210,17 @@ export class Live {
     return worst(topics.map((topic) => freshness(this.#newest(topic), now, this.period(topic))));
   }
 
+  /** Freshness of the newest picture of the camera: of its stream, or of those that are searched where there is none. */
+  get pictureFreshness(): Freshness {
+    return this.freshness(this.pictures.camera.value ? 'camera' : 'picture');
+  }
+
+  /** why the camera gives no picture, as a sentence; empty where it does, or where that is not known */
+  get cameraFailure(): string {
+    const camera = this.parts.find(({ name }) => name === 'camera');
+    return camera?.state === 'absent' ? camera.text : '';
+  }
+
   /** The instant of a steady time by the calendar of the robot's computer. */
   date(steady: number): Date {
     return calendar(steady, this.instant);

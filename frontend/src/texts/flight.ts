@@ -11,8 +11,7 @@ export const flight = {
   none: (what: string) => `no ${what} yet`,
   picture: {
     none: 'No picture yet',
-    age: (milliseconds: string) => `picture ${milliseconds} ms`,
-    stopped: (age: string) => `The picture has stopped: ${age} old`,
+    age: (age: string) => `picture ${age}`,
   },
   views: { camera: 'camera', bystander: 'bystander', model: 'model' },
   modelHint: 'Drawn from the measured depth, attitude and fins',

@@ -68,6 +68,7 @@ export const parts = {
   camera: (detected: readonly string[]) => `Camera: ${detected.length > 0 ? `${detected.join(', ')} detected` : 'nothing detected'}`,
   lean: 'lean profile',
   oldPicture: (age: string) => `picture is ${age} old`,
+  stopped: 'The camera’s picture has stopped.',
   armed: { unknown: 'Armed?', unknownHint: 'Not known: nothing newer has come from the robot', yes: 'ARMED', no: 'Disarmed' },
   battery: { title: 'Battery', low: 'low' },
   mode: {
