@@ -205,9 +205,10 @@ class Commands:
         self._robot.set_vision(parse(VisionSettings, table))
 
     def _vision_settings(self, command: VisionSettingsBase) -> None:
-        for depth in command.settings.actions.values():
+        settings = command.replace(self._robot.vision.settings)
+        for depth in settings.actions.values():
             self._robot.control.depth.check(depth)
-        self._robot.set_vision(command.settings)
+        self._robot.set_vision(settings)
 
     def _step_experiment(self, command: StepExperimentCommand) -> None:
         self._begin(command, StepExperiment(command, self._robot.clock), command.start, command.target)

@@ -22,7 +22,8 @@ export type CommTestDocument = schemas.TestDocument;
 export type CommTestCheck = schemas.Check;
 export type CommTestSummary = schemas.RunSummary;
 export type CommTestPlace = schemas.CommTestStart['place'];
-export type VisionSettings = schemas.VisionSettingsCommand;
+/** All of them: only an older client leaves some out. */
+export type VisionSettings = { [Name in keyof schemas.VisionSettingsCommand]-?: NonNullable<schemas.VisionSettingsCommand[Name]> };
 export type ColourRange = schemas.ColourRangeOutput;
 export type Course = schemas.SteeringCommand['by'];
 export type TuningStart = schemas.StepStart | schemas.RelayStart;

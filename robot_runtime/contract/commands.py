@@ -6,7 +6,7 @@ performs commands in `robot_runtime.commands`.
 """
 
 from collections.abc import Callable
-from dataclasses import MISSING, Field, asdict, dataclass, field, fields
+from dataclasses import MISSING, Field, asdict, dataclass, field, fields, replace
 from enum import IntEnum
 from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform
 
@@ -28,7 +28,7 @@ from robot_runtime.contract.limits import (
     describe_value,
     make_strict,
 )
-from robot_runtime.contract.vision_settings import VisionSettings
+from robot_runtime.contract.vision_settings import SINCE_0_2, VisionSettings
 
 Piloting = Literal["automatic", "manual"]
 
@@ -321,15 +321,21 @@ class VisionCommand(RobotCommand):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VisionSettingsBase(RobotCommand):
-    """Replaces all settings of the vision node, also for later starts. None may be left out."""
+    """Replaces all settings of the vision node, also for later starts.
+
+    A setting that version 0.2 did not have stays if it is left out. No other may be left out.
+    """
 
     def __post_init__(self) -> None:
-        _ = self.settings
+        self.replace(VisionSettings())
 
-    @property
-    def settings(self) -> VisionSettings:
-        """The settings. Raise ConfigError where they contradict each other."""
-        return VisionSettings(**{field.name: getattr(self, field.name) for field in fields(VisionSettings)})
+    def replace(self, present: VisionSettings) -> VisionSettings:
+        """Return the settings, with those of `present` where they are left out.
+
+        Raise ConfigError where they contradict each other.
+        """
+        given = {field.name: getattr(self, field.name) for field in fields(VisionSettings)}
+        return replace(present, **{name: value for name, value in given.items() if value is not None})
 
 
 # The fields of VisionSettings, without their defaults.
@@ -338,7 +344,11 @@ VisionSettingsCommand: type[VisionSettingsBase] = command("vision_settings", Nee
         "VisionSettingsCommand",
         (VisionSettingsBase,),
         {
-            "__annotations__": {field.name: field.type for field in fields(VisionSettings)},
+            "__annotations__": {
+                field.name: field.type | None if field.name in SINCE_0_2 else field.type  # type: ignore[operator]
+                for field in fields(VisionSettings)
+            },
+            **dict.fromkeys(SINCE_0_2),
             "__doc__": VisionSettingsBase.__doc__,
             "__module__": __name__,
         },

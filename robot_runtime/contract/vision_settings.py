@@ -49,6 +49,9 @@ MARKER = re.compile(r"marker (0|[1-9]\d{0,3})")
 COLOURS_MAX = 16
 MARKERS_MAX = 64
 
+SINCE_0_2 = ("confirmation", "turn", "mirror", "exposure", "gain", "colour_temperature")
+"""Settings that a client of version 0.2 does not send."""
+
 
 def marker_name(number: int) -> str:
     """Return the name of the marker with this number."""

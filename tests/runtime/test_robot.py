@@ -35,7 +35,7 @@ from robot_runtime.contract.packets import (
     Stop,
 )
 from robot_runtime.contract.topics import Kind
-from robot_runtime.contract.vision_settings import VisionSettings
+from robot_runtime.contract.vision_settings import SINCE_0_2, VisionSettings
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import read_blocks, read_rows
@@ -358,6 +358,12 @@ def test_vision_settings_survive_a_restart_of_the_runtime(tmp_path: Path) -> Non
     report = second.query("query/vision")
     assert (report["settings"], report["configured"]) == (changed.table(), usual.table())
     assert second.listener.newest_state()["vision_colour"] == "buoy"
+    # A client of version 0.2 does not know how the picture is turned, which stays.
+    second.ask("vision_settings", **replace(usual, turn=90, gain=2.0, confirmation=(3, 4)).table())
+    older = {name: value for name, value in changed.table().items() if name not in SINCE_0_2}
+    second.ask("vision_settings", **older)
+    kept = replace(changed, turn=90, gain=2.0, confirmation=(3, 4))
+    assert second.query("query/vision")["settings"] == kept.table()
     second.ask("vision_settings", **usual.table())
     assert not (tmp_path / "vision.json").exists()
     second.close()

@@ -2706,7 +2706,11 @@ export interface components {
              */
             white_balance: "none" | "grey_world" | "underwater";
         };
-        /** @description Replaces all settings of the vision node, also for later starts. None may be left out. */
+        /**
+         * @description Replaces all settings of the vision node, also for later starts.
+         *
+         *     A setting that version 0.2 did not have stays if it is left out. No other may be left out.
+         */
         VisionSettingsCommand: {
             actions: {
                 [key: string]: number;
@@ -2719,25 +2723,24 @@ export interface components {
             ];
             circularity_min: number;
             colour: string;
-            colour_temperature: number;
+            colour_temperature?: number | null;
             colours: {
                 [key: string]: components["schemas"]["ColourRange-Input"];
             };
-            confirmation: [
+            confirmation?: [
                 number,
                 number
-            ];
-            exposure: number;
+            ] | null;
+            exposure?: number | null;
             fill_min: number;
-            gain: number;
+            gain?: number | null;
             marker_numbers: number[];
             /** @enum {string} */
             markers: "none" | "4x4_50" | "5x5_100" | "6x6_250" | "7x7_1000" | "original" | "april_36h11";
-            mirror: boolean;
+            mirror?: boolean | null;
             opening: number;
             rate: number;
-            /** @enum {integer} */
-            turn: 0 | 90 | 180 | 270;
+            turn?: (0 | 90 | 180 | 270) | null;
             /** @enum {string} */
             white_balance: "none" | "grey_world" | "underwater";
         };

@@ -40,11 +40,11 @@ async def edit_vision(
 
     async def check() -> None:
         if edit.base is not None:
-            began = edit.base.settings
             present = parse(VisionSettings, (await bridge.query("vision"))["settings"])
+            began = edit.base.replace(present)
             names = [field.name for field in fields(present)]
             differing = [name for name in names if getattr(present, name) != getattr(began, name)]
-            if differing and present != edit.settings.settings:
+            if differing and present != edit.settings.replace(present):
                 raise ChangedMeanwhileError(f"A vision setting ({', '.join(differing)})", "")
 
     await changes.command(caller.name, edit.settings, check=check)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_runtime.contract.parsing import parse
-from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
+from robot_runtime.contract.vision_settings import COLOURS, SINCE_0_2, ColourRange, VisionSettings
 from server.features.vision.routes import read_document
 from server.platform.settings import Settings
 from tests.server.serving import Served, serve
@@ -48,6 +48,16 @@ async def test_settings_that_have_changed_meanwhile_are_not_replaced_unasked(
         assert (await served.api.put("/vision", json=edit | {"base": usual})).status_code == 204
         assert (await served.api.put("/vision", json={"settings": SETTINGS})).status_code == 204
         assert served.runtime.asked == 2 * [("vision_settings", SETTINGS)]
+
+
+async def test_settings_of_a_client_of_version_0_2_are_passed_on_and_leave_the_others(served: Served) -> None:
+    usual = VisionSettings().table()
+    older, before = (
+        {name: value for name, value in table.items() if name not in SINCE_0_2} for table in (SETTINGS, usual)
+    )
+    assert (await served.api.post(SET, json=older)).status_code == 200
+    assert (await served.api.put("/vision", json={"settings": older, "base": before})).status_code == 204
+    assert served.runtime.asked == 2 * [("vision_settings", older)]
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [
