@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
 from robot_runtime.vision import file_camera
-from robot_runtime.vision.camera import Camera, CameraError
+from robot_runtime.vision.camera import NO_CONTROLS, Camera, CameraError, SensorControls
 from robot_runtime.vision.card_camera import ATTENUATION, CARD_DISTANCE, NOISE, CardCamera
 from robot_runtime.vision.cards import CameraCard, make_card
 from robot_runtime.vision.detector import Detector
@@ -28,6 +28,7 @@ from robot_runtime.vision.usb_camera import UsbCamera
 from tests.runtime.vision.harness import drawn, find
 
 FPS = 10.0
+FIXED = SensorControls(exposure=12.5, gain=4.0, colour_temperature=5500)
 
 
 class TestCardCamera:
@@ -300,6 +301,7 @@ class StandIn:
     failure: Exception | None
     cameras: list[dict[str, Any]]
     stamp: int | None
+    camera_controls: dict[str, tuple[Any, Any, Any]]
 
     def __init__(self) -> None:
         self.calls: list[Any] = []
@@ -347,6 +349,14 @@ def library(monkeypatch: pytest.MonkeyPatch) -> type[StandIn]:
         failure = None
         cameras: list[dict[str, Any]] = [{"Model": "imx219"}]  # noqa: RUF012 - one a test
         stamp = None
+        # libcamera's, each with its least, greatest and usual value.
+        camera_controls: dict[str, tuple[Any, Any, Any]] = {  # noqa: RUF012 - one a test
+            "FrameDurationLimits": (33333, 120000, 33333),
+            "ExposureTime": (1, 66666, 20000),
+            "AnalogueGain": (1.0, 16.0, 1.0),
+            "AwbEnable": (False, True, None),
+            "ColourTemperature": (100, 100000, None),
+        }
 
     module: Any = ModuleType("picamera2")
     module.Picamera2 = Fresh
@@ -378,6 +388,24 @@ class TestPiCamera:
     ) -> None:
         library.stamp = stamp
         assert PiCamera(320, 240, 4.0, SimulatedClock(4.0)).read().taken == pytest.approx(taken)
+
+    def test_exposure_gain_and_white_are_fixed_in_libcamera_s_units(self, library: type[StandIn]) -> None:
+        PiCamera(320, 240, 4.0, SimulatedClock(), FIXED)
+        assert library.made[0].calls[0]["controls"] == {
+            "FrameRate": 4.0,
+            "ExposureTime": 12500,
+            "AnalogueGain": 4.0,
+            "AwbEnable": False,
+            "ColourTemperature": 5500,
+        }
+
+    def test_a_control_that_libcamera_does_not_know_is_left_out_and_named(
+        self, library: type[StandIn]
+    ) -> None:
+        del library.camera_controls["ColourTemperature"]
+        camera = PiCamera(320, 240, 4.0, SimulatedClock(), FIXED)
+        assert "ColourTemperature" not in library.made[0].calls[0]["controls"]
+        assert str(camera) == "Pi camera (320 × 240; this libcamera does not know ColourTemperature)"
 
     def test_a_missing_library_is_reported_with_its_installation(
         self, monkeypatch: pytest.MonkeyPatch
@@ -423,6 +451,86 @@ class TestPiCamera:
         library.failure = RuntimeError("timeout")
         with pytest.raises(CameraError, match=r"gives no picture \(timeout\)"):
             camera.read()
+
+
+class VideoControls:
+    """Stands in for cv2.VideoCapture of a device whose controls are not `fixed`, and notes what is set."""
+
+    def __init__(self, fixed: tuple[int, ...] = ()) -> None:
+        self._fixed = fixed
+        self.set_to: list[tuple[int, float]] = []
+
+    def __call__(self, _: str, backend: int) -> "VideoControls":
+        assert backend == cv2.CAP_V4L2
+        return self
+
+    def isOpened(self) -> bool:  # noqa: N802 - OpenCV's name
+        return True
+
+    def set(self, control: int, value: float) -> bool:
+        # Video4Linux refuses an exposure or a white by number while the camera chooses it.
+        chosen = dict(self.set_to)
+        automatic = {
+            cv2.CAP_PROP_EXPOSURE: chosen.get(cv2.CAP_PROP_AUTO_EXPOSURE, 3) != 1,
+            cv2.CAP_PROP_WB_TEMPERATURE: chosen.get(cv2.CAP_PROP_AUTO_WB, 1) != 0,
+        }
+        if control in self._fixed or automatic.get(control, False):
+            return False
+        self.set_to.append((control, value))
+        return True
+
+
+@pytest.fixture
+def device(tmp_path: Path) -> str:
+    (tmp_path / "video9").touch()
+    return str(tmp_path / "video9")
+
+
+class TestUsbControls:
+    CONTROLS = (
+        cv2.CAP_PROP_AUTO_EXPOSURE,
+        cv2.CAP_PROP_EXPOSURE,
+        cv2.CAP_PROP_GAIN,
+        cv2.CAP_PROP_AUTO_WB,
+        cv2.CAP_PROP_WB_TEMPERATURE,
+    )
+
+    def opened(
+        self, monkeypatch: pytest.MonkeyPatch, device: str, capture: VideoControls, controls: SensorControls
+    ) -> tuple[str, dict[int, float]]:
+        """Return the text of a camera, and the values of its controls."""
+        monkeypatch.setattr(cv2, "VideoCapture", capture)
+        camera = UsbCamera(device, 320, 240, 4.0, SimulatedClock(), controls)
+        return str(camera), {name: value for name, value in capture.set_to if name in self.CONTROLS}
+
+    def test_exposure_gain_and_white_are_fixed_in_video4linux_units(
+        self, monkeypatch: pytest.MonkeyPatch, device: str
+    ) -> None:
+        text, values = self.opened(monkeypatch, device, VideoControls(), FIXED)
+        # An exposure is in units of 0.1 ms; 1 is the manual kind.
+        assert list(values.values()) == [1, 125, 4, 0, 5500]
+        assert tuple(values) == self.CONTROLS
+        assert text == f"USB camera {device} (320 × 240)"
+
+    @pytest.mark.parametrize(("fixed", "kind"), [((), 3), ((3,), 0)], ids=["of an aperture", "of any"])
+    def test_what_is_not_fixed_is_the_camera_s_again(
+        self, monkeypatch: pytest.MonkeyPatch, device: str, fixed: tuple[int, ...], kind: int
+    ) -> None:
+        class Kinds(VideoControls):
+            def set(self, control: int, value: float) -> bool:
+                refused = control == cv2.CAP_PROP_AUTO_EXPOSURE and value in fixed
+                return not refused and super().set(control, value)
+
+        _, values = self.opened(monkeypatch, device, Kinds(), NO_CONTROLS)
+        assert values == {cv2.CAP_PROP_AUTO_EXPOSURE: kind, cv2.CAP_PROP_AUTO_WB: 1}
+
+    def test_what_a_camera_refuses_to_fix_is_named(
+        self, monkeypatch: pytest.MonkeyPatch, device: str
+    ) -> None:
+        text, _ = self.opened(monkeypatch, device, VideoControls(self.CONTROLS), FIXED)
+        assert text == (
+            f"USB camera {device} (320 × 240; it does not fix the exposure, the gain, the colour temperature)"
+        )
 
 
 class TestUsbCamera:
