@@ -16,6 +16,7 @@ from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.transport.blocks import read_blocks, read_rows
+from server.library.replay import RANGE_MAX
 from tests.exports import export_session
 from tests.stack import ROOT, Stack
 from tests.two_hosts import HERE, TwoHosts
@@ -110,7 +111,8 @@ class LoopDive:
 
     def has_turned(self) -> bool:
         """Return True once the robot was below its set point and rises again; to be asked often."""
-        span = {"start": max(time.monotonic() - self._began - LATEST, 0.0), "end": SECONDS}
+        start = max(time.monotonic() - self._began - LATEST, 0.0)
+        span = {"start": start, "end": start + RANGE_MAX}
         answer = self._stack.api.get(f"/sessions/{self._session}/blocks", params=span)
         blocks = [block for block in read_blocks(answer.raise_for_status().content) if block.topic is DEPTH]
         rows = [record for block in blocks for _, record in read_rows(block)]

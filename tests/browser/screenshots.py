@@ -1,5 +1,7 @@
 """`python -m tests.browser.screenshots FOLDER`: every page, both sizes, both themes, of a robot in operation.
 
+The flight view also on a phone that lies.
+
 docs/pictures has a few of them: copy one there only when what it shows has changed.
 """
 
@@ -12,13 +14,13 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.browser.driving import wait_for_depth
-from tests.browser.opening import DESKTOP, PHONE
+from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE
 from tests.browser.pages import PAGES, SESSIONS, settle, show
 from tests.browser.people import somebody
 from tests.stack import Stack
 from tests.waiting import wait_for
 
-SIZES = {"desktop": (DESKTOP, 1.0), "phone": (PHONE, 1.5)}
+SIZES = {"desktop": (DESKTOP, 1.0), "phone": (PHONE, 1.5), "lying": (LYING_PHONE, 1.5)}
 """The window, and dots for each of its pixels."""
 QUALITY = 50
 """Of the JPEG: letters stay sharp, and a picture takes less than 90 kB."""
@@ -27,6 +29,7 @@ SHOWN = """() => [...document.images].every((one) => {
     return one.complete || left > innerWidth || top > innerHeight;
 })"""
 """Whether all pictures in the window are there; others are fetched when they come into it."""
+STREAMED = "() => [...document.images].some((one) => one.naturalWidth === 640)"
 CONTROLLERS = ("bang_bang", "pid")
 TUNED = ("pid", "predictive")
 DEPTH = 0.5
@@ -92,13 +95,13 @@ def prepare(stack: Stack, watcher: Page) -> None:
 
 
 def take(browser: Browser, stack: Stack, folder: Path) -> None:
-    """Write NAME-SIZE-THEME.jpg for every page."""
+    """Write NAME-SIZE-THEME.jpg for every page, and for the flight view."""
     for size, (window, dots) in SIZES.items():
         for theme in ("dark", "sunlight"):
             context = browser.new_context(
                 viewport=window,
                 device_scale_factor=dots,
-                has_touch=size == "phone",
+                has_touch=size != "desktop",
                 reduced_motion="reduce",
             )
             sign_in(context, stack.url, stack.data)
@@ -106,13 +109,21 @@ def take(browser: Browser, stack: Stack, folder: Path) -> None:
             page = context.new_page()
             page.goto(stack.url)
             expect(page.get_by_role("button", name=re.compile("^Control: you have control"))).to_be_visible()
-            for view in PAGES:
+            for view in PAGES if size != "lying" else ():
                 show(page, stack, view)
-                draw(page)
-                path = folder / f"{view.name}-{size}-{theme}.jpg"
-                path.write_bytes(page.screenshot(type="jpeg", quality=QUALITY))
-                print(f"{path}: {path.stat().st_size / 1000:.0f} kB")  # noqa: T201 - it is run from a shell
+                write(page, folder / f"{view.name}-{size}-{theme}.jpg")
+            page.goto(f"{stack.url}/#/flight")
+            # The stream of the camera is on its way, too.
+            page.wait_for_function(STREAMED)
+            write(page, folder / f"flight-{size}-{theme}.jpg")
             context.close()
+
+
+def write(page: Page, path: Path) -> None:
+    """Write a picture of the page once everything is drawn."""
+    draw(page)
+    path.write_bytes(page.screenshot(type="jpeg", quality=QUALITY))
+    print(f"{path}: {path.stat().st_size / 1000:.0f} kB")  # noqa: T201 - it is run from a shell
 
 
 def draw(page: Page) -> None:

@@ -62,7 +62,7 @@ def test_a_colour_is_picked_and_acted_on(settings: dict[str, Any], any_page: Pag
     expect(page.get_by_text("no set point of its own")).to_be_visible()
 
     pick_the_middle(page)
-    picked = page.get_by_role("region", name="Picked colour")
+    picked = page.get_by_role("region", name="Picked colour", exact=True)
     expect(picked).to_contain_text("Not saved yet")
     expect(
         page.get_by_role("region", name="Mask of the picked colour, not saved").locator("img")
