@@ -16,7 +16,7 @@ ANSWER_SECONDS = 90.0
 PAGE_SECONDS = 60.0
 """s to wait for something on the page."""
 LISTENING = re.compile(r"WebDriver BiDi listening on (ws://\S+)")
-MOVES = 5
+MOVES = 20
 """Moves of the pointer, which follows a button, before the button counts as restless."""
 PREFERENCES = {
     # No proxy is there, and none is asked for the loopback: nothing else can be reached.
