@@ -113,7 +113,7 @@ def _tables(
     readers = {
         name: partial(_read_topic, name, described, zero, chunks)
         for name, described in topics.items()
-        if name in names and described["kind"] != "picture"
+        if name in names and described["kind"] in ("rows", "documents")
     }
     return SessionTables(about, readers)
 

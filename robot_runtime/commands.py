@@ -14,6 +14,7 @@ from robot_runtime.contract.commands import (
     ControllerCommand,
     EndExperimentCommand,
     ExperimentCommand,
+    FilmCommand,
     LeaseCommand,
     LoopCommand,
     MeasureGyroCommand,
@@ -66,6 +67,7 @@ class Commands:
             ZeroDepthCommand: self._zero_depth,
             SteeringCommand: self._steering,
             CardCommand: self._card,
+            FilmCommand: self._film,
             VisionCommand: self._vision,
             VisionSettingsCommand: self._vision_settings,
             StepExperimentCommand: self._step_experiment,
@@ -195,6 +197,9 @@ class Commands:
 
     def _steering(self, command: SteeringCommand) -> None:
         self._robot.control.steer(command.by)
+
+    def _film(self, command: FilmCommand) -> None:
+        self._robot.vision.film(command)
 
     def _card(self, command: CardCommand) -> None:
         self._robot.vision.show_card(command.colour)

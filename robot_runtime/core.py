@@ -126,6 +126,7 @@ class Core:
             picture=outbox.send_picture,
             thumbnail=partial(outbox.add_picture, THUMBNAIL),
             snapshot=partial(outbox.add_picture, SNAPSHOT),
+            film=outbox.add_film,
             watched=lambda topic: watched(topic.name),
         )
         self.vision = open_vision(outputs)

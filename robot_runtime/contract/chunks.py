@@ -5,6 +5,7 @@ says), with all first bytes of the rows first, then all second bytes, and so on;
 numbers have nearly equal high bytes, which lie side by side that way.
 "lines-zlib": a JSON object a line; then zlib.
 "pictures": of each picture its size (u32, little-endian), its time (f64), and the JPEG file, of that size.
+"film": the same of pictures that build on those before them (`robot_runtime.contract.topics.FilmPicture`).
 Each session stores the description of its fields (`describe_topics`), so that a recording stays readable
 when the definitions change.
 """
@@ -24,7 +25,13 @@ from robot_runtime.contract.topics import RECORDED, TIME, AnyTopic, Kind
 ROWS_ENCODING = "shuffle-zlib"
 DOCUMENTS_ENCODING = "lines-zlib"
 PICTURES_ENCODING = "pictures"
-ENCODINGS = {"rows": ROWS_ENCODING, "documents": DOCUMENTS_ENCODING, "picture": PICTURES_ENCODING}
+FILM_ENCODING = "film"
+ENCODINGS = {
+    "rows": ROWS_ENCODING,
+    "documents": DOCUMENTS_ENCODING,
+    "picture": PICTURES_ENCODING,
+    "film": FILM_ENCODING,
+}
 """By the kinds of topics, as descriptions name them."""
 PICTURE_SIZE = Struct("<I")
 LEVEL = 1
@@ -135,6 +142,8 @@ def encode(topic: AnyTopic, payloads: Sequence[bytes], count: int) -> tuple[str,
         return ROWS_ENCODING, *encode_rows(payloads, topic.row_bytes)
     if topic.kind is Kind.PICTURE:
         return PICTURES_ENCODING, *encode_pictures(payloads)
+    if topic.kind is Kind.FILM:
+        return FILM_ENCODING, *encode_pictures(payloads)
     return DOCUMENTS_ENCODING, *encode_documents(payloads, count)
 
 
@@ -205,7 +214,7 @@ def encode_pictures(payloads: Sequence[bytes]) -> tuple[bytes, float, float]:
 
 
 def decode_pictures(data: bytes) -> Iterator[tuple[float, bytes]]:
-    """Yield the time (s) and the JPEG file of each picture of a chunk.
+    """Yield the time (s) and the bytes of each picture of a chunk.
 
     Raise ValueError where it is damaged.
     """
@@ -265,7 +274,7 @@ def row_layout(topic: Mapping[str, Any]) -> RowLayout:
 
 def _describe(topic: AnyTopic) -> dict[str, Any]:
     described: dict[str, Any] = {"meaning": topic.meaning, "kind": topic.kind.name.lower()}
-    if topic.kind is Kind.PICTURE:
+    if topic.kind in (Kind.PICTURE, Kind.FILM):
         described["fields"] = []
     elif issubclass(topic.record, Record):
         described["row_bytes"] = topic.row_bytes

@@ -20,6 +20,8 @@ from robot_runtime.contract.limits import (
     ConfigError,
     DepthSetPoint,
     ExperimentSeconds,
+    FilmRate,
+    FilmSeconds,
     LoopName,
     RelayAmplitude,
     RelayCycles,
@@ -31,6 +33,7 @@ from robot_runtime.contract.limits import (
 from robot_runtime.contract.vision_settings import SINCE_0_2, VisionSettings
 
 Piloting = Literal["automatic", "manual"]
+FilmQuality = Literal["low", "medium", "high"]
 
 
 class Need(IntEnum):
@@ -317,6 +320,15 @@ class VisionCommand(RobotCommand):
         parts = [] if self.rate is None else [f"at {self.rate:g} Hz"]
         parts += [] if self.colour is None else [f"for {self.colour}"]
         return f"Look {' '.join(parts)}"
+
+
+@command("film", None)
+class FilmCommand(RobotCommand):
+    """Films with the camera for some time from now on. The server repeats it while a session is recorded."""
+
+    seconds: FilmSeconds = field(metadata={"description": "0: no longer"})
+    rate: FilmRate = field(default=15.0, metadata={"description": "pictures a second"})
+    quality: FilmQuality = "medium"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

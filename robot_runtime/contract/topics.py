@@ -11,6 +11,7 @@ from typing import Any, Generic, Literal, TypeVar
 
 from robot_runtime.contract import documents, packets
 from robot_runtime.contract.declarations import Declarations
+from robot_runtime.contract.film_picture import FilmPicture
 from robot_runtime.contract.link_statistics import LinkStatistics
 from robot_runtime.contract.packets.layout import Record
 
@@ -26,6 +27,7 @@ class Kind(IntEnum):
     ROWS = 0
     DOCUMENTS = 1
     PICTURE = 2
+    FILM = 3
 
 
 S = TypeVar("S")
@@ -37,7 +39,8 @@ BY_NAME: Declarations[str, "AnyTopic"] = Declarations("the name of a topic")
 class Topic(Generic[S]):
     """One stream of samples of type S, and its rules; a topic that is made is declared.
 
-    `record` is S, the class of its rows or documents, which says the kind; pictures are bytes, JPEG.
+    `record` is S, the class of its rows or documents, which says the kind; pictures are bytes, JPEG; a
+    film is only recorded.
     `sender` names the process that sends it. `newest_only`: each document states everything, so a page that
     connects is sent the newest only. `standing`: sent at changes and every ten seconds, and in force until
     the next one, so that a recording begins with the newest. `lines`: each document is a line for a person,
@@ -61,9 +64,15 @@ class Topic(Generic[S]):
     def __post_init__(self) -> None:
         """Declare it. Raise DeclaredTwiceError where its number or name is another's."""
         other = Kind.ROWS if issubclass(self.record, Record) else Kind.DOCUMENTS
-        object.__setattr__(self, "kind", Kind.PICTURE if self.record is bytes else other)
+        pictures: dict[type, Kind] = {bytes: Kind.PICTURE, FilmPicture: Kind.FILM}
+        object.__setattr__(self, "kind", pictures.get(self.record, other))
         BY_NAME.add(self.name, self, depth=2)
         BY_ID.add(self.id, self, depth=2)
+
+    @property
+    def only_recorded(self) -> bool:
+        """True where pages and programs are not sent it."""
+        return self.stands_for is not None or self.kind is Kind.FILM
 
     @property
     def row_bytes(self) -> int:
@@ -128,6 +137,7 @@ MASK = Topic(35, "mask", bytes, "mask of the target colour, and the patches that
 BALANCED = Topic(36, "balanced", bytes, "the camera's picture after the white balance", recorded=False)
 CAMERA = Topic(37, "camera", bytes, "the camera's stream, for driving by sight", recorded=False)
 SNAPSHOT = Topic(38, "snapshot", bytes, "a snapshot: the camera's picture at full size", stands_for=PICTURE)
+FILM = Topic(39, "film", FilmPicture, "the film of the camera, picture by picture")
 
 TOPICS: tuple[AnyTopic, ...] = tuple(BY_ID.values())
 ROW_BYTES = {stream.id: stream.row_bytes for stream in TOPICS if stream.kind is Kind.ROWS}

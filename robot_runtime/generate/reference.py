@@ -160,14 +160,15 @@ def topics_page() -> str:
     head = ("topic", "number", "kind", "sender", "recorded", "", "meaning")
     parts = [TOPICS_INTRODUCTION, table(head, map(_topic_row, TOPICS))]
     for topic in TOPICS:
-        if topic.kind is not Kind.PICTURE:
+        if topic.kind in (Kind.ROWS, Kind.DOCUMENTS):
             parts += [f"## {topic.name}\n", f"{_one_line(topic.record)}\n"]
             parts.append(table(("field", "type", "meaning"), _topic_fields(topic.record)))
     return page("Topics", TOPICS_SOURCE, *parts)
 
 
 def _topic_row(topic: AnyTopic) -> tuple[str, ...]:
-    name = f"`{topic.name}`" if topic.kind is Kind.PICTURE else f"[{topic.name}](#{topic.name})"
+    described = topic.kind in (Kind.ROWS, Kind.DOCUMENTS)
+    name = f"[{topic.name}](#{topic.name})" if described else f"`{topic.name}`"
     rules = [rule for rule, holds in (("newest only", topic.newest_only), ("lines", topic.lines)) if holds]
     return (
         name,

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Callable
 
 from robot_runtime.contract.documents import Document
-from robot_runtime.contract.topics import TOPICS, AnyTopic
+from robot_runtime.contract.topics import FILM, TOPICS, AnyTopic
 from robot_runtime.transport.blocks import Block, pack_documents, row
 from robot_runtime.transport.replay_cache import ReplayCache
 
@@ -39,6 +39,7 @@ class Outbox:
         self._sending = threading.Lock()
         self._rows: defaultdict[AnyTopic, list[bytes]] = defaultdict(list)
         self._documents: defaultdict[AnyTopic, list[Document]] = defaultdict(list)
+        self._film: list[bytes] = []
         self._next = dict.fromkeys((topic.name for topic in TOPICS), 0)
 
     def add_row(self, topic: AnyTopic, time: float, record: bytes) -> None:
@@ -51,6 +52,11 @@ class Outbox:
         with self._lock:
             self._rows[topic] = [row(time, jpeg)]
 
+    def add_film(self, time: float, picture: bytes) -> None:
+        """Queue a picture of the film, none of which may be left out: later ones build on it."""
+        with self._lock:
+            self._film.append(row(time, picture))
+
     def add_document(self, topic: AnyTopic, document: Document) -> None:
         """Queue one document."""
         with self._lock:
@@ -62,13 +68,15 @@ class Outbox:
             with self._lock:
                 rows, self._rows = self._rows, defaultdict(list)
                 documents, self._documents = self._documents, defaultdict(list)
+                film, self._film = self._film, []
             blocks = {
                 topic: self._block(topic, len(waiting), b"".join(waiting)) for topic, waiting in rows.items()
             }
             for topic, batch in documents.items():
                 blocks[topic] = self._block(topic, len(batch), pack_documents(batch))
-            if blocks:
-                message = b"".join(blocks.values())
+            pictures = [self._block(FILM, 1, picture) for picture in film]
+            if blocks or pictures:
+                message = b"".join([*blocks.values(), *pictures])
                 if self._cache is not None:
                     self._cache.add(message, self._next)
                 self._send(self._stream, message)

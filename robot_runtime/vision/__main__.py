@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.config import VisionConfig
+from robot_runtime.contract.commands import FilmCommand
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import VisionSettings
@@ -84,6 +85,7 @@ class PictureLoop:
             picture=lambda topic, time, jpeg: self._send({"picture": topic.name, "time": time}, jpeg),
             thumbnail=lambda time, jpeg: self._send({"thumbnail": time}, jpeg),
             snapshot=lambda time, jpeg: self._send({"snapshot": time}, jpeg),
+            film=lambda time, picture: self._send({"film": time}, picture),
             watched=lambda topic: topic.name in self._watched,
         )
         self._node = VisionNode(config, self._clock, outputs, open_camera, self._connect)
@@ -113,6 +115,8 @@ class PictureLoop:
             self._show_card()
         elif "watched" in table:
             self._watched = table["watched"]
+        elif "film" in table:
+            self._node.film(parse(FilmCommand, table["film"]))
         elif "pick" in table:
             self._answer(table, lambda: self._node.pick(table["pick"]))
         elif "snapshot" in table:

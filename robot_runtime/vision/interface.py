@@ -7,6 +7,7 @@ from typing import Any
 
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS
+from robot_runtime.contract.commands import FilmCommand
 from robot_runtime.contract.documents import Detection, Event
 from robot_runtime.contract.topics import Topic
 from robot_runtime.contract.vision_settings import VisionSettings, marker_name
@@ -24,7 +25,7 @@ class VisionOutputs:
 
     While `watched` is true of a topic of pictures, `picture` gets that topic, the picture's time (s) and
     its JPEG file; `thumbnail` always gets a small picture from time to time, `snapshot` the one that
-    `Vision.take_snapshot` was asked for.
+    `Vision.take_snapshot` was asked for, `film` each picture of the film, a `FilmPicture`.
     """
 
     detection: Callable[[Detection], None]
@@ -32,6 +33,7 @@ class VisionOutputs:
     picture: Callable[[Topic[bytes], float, bytes], None] = lambda *_: None
     thumbnail: Callable[[float, bytes], None] = lambda *_: None
     snapshot: Callable[[float, bytes], None] = lambda *_: None
+    film: Callable[[float, bytes], None] = lambda *_: None
     watched: Callable[[Topic[bytes]], bool] = lambda _: False
 
 
@@ -97,6 +99,10 @@ class Vision(ABC):
 
         Raise RefusedError where there is no picture, or an old one alone.
         """
+
+    @abstractmethod
+    def film(self, command: FilmCommand) -> None:
+        """Film for `command.seconds` from now on, at its rate and quality."""
 
     @abstractmethod
     def refusals(self) -> list[str]:

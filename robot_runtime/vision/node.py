@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from robot_runtime.clock import Clock
 from robot_runtime.config import VisionConfig
+from robot_runtime.contract.commands import FilmCommand, FilmQuality
 from robot_runtime.contract.documents import Detection, Event, Severity
 from robot_runtime.contract.limits import VISION_RATE
 from robot_runtime.contract.parsing import parse
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from robot_runtime.transport.zenoh_transport import ZenohTransport
     from robot_runtime.vision.cards import CameraCard
     from robot_runtime.vision.detector import Detector, Sight
+    from robot_runtime.vision.film import FilmCoder
     from robot_runtime.vision.picture import Picture
     from robot_runtime.vision.repetition import PictureRepetition
 
@@ -101,6 +103,10 @@ class VisionNode(Vision):
         self._timer = RateTimer(clock, config.rate)
         self._stream_timer = RateTimer(clock, config.stream_rate)
         self._quality = StreamQuality(config.stream_rate)
+        self._film_timer = RateTimer(clock, config.stream_rate)
+        self._film_until = -inf
+        self._film_quality: FilmQuality = "medium"
+        self._film_coder: FilmCoder | None = None
         self._detector: Detector | None = None
         self._sightings = Sightings()
         self._repetition: PictureRepetition | None = None
@@ -153,6 +159,15 @@ class VisionNode(Vision):
         self._outputs.snapshot(frame.taken, as_snapshot(frame.picture))
         return {"time": frame.taken}
 
+    def film(self, command: FilmCommand) -> None:
+        """Film for `command.seconds` from now on, at its rate, which is the stream's at most, and quality."""
+        rate = min(command.rate, self._config.stream_rate)
+        self._film_until = self._clock.now() + command.seconds
+        if (rate, command.quality) != (self._film_timer.rate, self._film_quality):
+            self._film_timer = RateTimer(self._clock, rate)
+            self._film_quality = command.quality
+            self._film_coder = None
+
     def refusals(self) -> list[str]:
         """Return nothing: a camera is no reason against arming."""
         return []
@@ -175,14 +190,16 @@ class VisionNode(Vision):
         """Release the camera."""
         self._drop_camera()
 
-    def process_picture(self, search: bool = True, stream: bool = False) -> None:
-        """Take a picture to search or to stream, or drop it; a failing camera is reported and retried later.
+    def process_picture(self, search: bool = True, stream: bool = False, film: bool = False) -> None:
+        """Take a picture to search, stream or film, or drop it.
+
+        A failing camera is reported and retried later.
 
         Raise MemoryError where memory is exhausted: trying again does not help.
         """
         began = self._clock.now()
         try:
-            frame = self._take(skip=not (search or stream), large=stream)
+            frame = self._take(self._size(stream, film) if search or stream or film else None)
         except CameraError as problem:
             self._fail(str(problem), problem.patience)
         except Exception as problem:
@@ -198,6 +215,8 @@ class VisionNode(Vision):
                 self._examine(frame)
             if frame is not None and stream:
                 self._send_stream(frame, began)
+            if frame is not None and film:
+                self._send_film(frame)
 
     def tick(self) -> float:
         """Process a picture if it is due and return 0; otherwise return the time (s) until then.
@@ -205,9 +224,15 @@ class VisionNode(Vision):
         Raise MemoryError.
         """
         stream = self._outputs.watched(CAMERA)
+        film = self._clock.now() < self._film_until
+        if not film:
+            # The next film begins with a key picture.
+            self._film_coder = None
         # A device keeps its oldest pictures, if nobody takes them.
         device = self._camera is not None and self._camera.rate is not None
-        timers = [self._timer, self._stream_timer] if stream or device else [self._timer]
+        timers = [self._timer]
+        timers += [self._stream_timer] if stream or device else []
+        timers += [self._film_timer] if film else []
         remaining = min(timer.remaining() for timer in timers)
         if remaining > 0:
             return remaining
@@ -217,17 +242,25 @@ class VisionNode(Vision):
         for timer in due:
             timer.begin()
         try:
-            self.process_picture(self._timer in due, stream and self._stream_timer in due)
+            self.process_picture(
+                self._timer in due, stream and self._stream_timer in due, self._film_timer in due
+            )
         except Exception as problem:
             if _lacks_memory(problem):
                 raise MemoryError(str(problem)) from problem
             log.exception("a picture could not be processed")
         return 0.0
 
-    def _take(self, skip: bool, large: bool) -> CameraFrame | None:
-        """Return the newest picture, turned; None if it is dropped, or a failed camera is not tried yet.
+    def _size(self, stream: bool, film: bool) -> tuple[int, int]:
+        """Return the width and height of a picture for these, or for the search alone."""
+        width, height = self._config.stream_size
+        scale = 1.0 if film else self._quality.step.scale if stream else 0.0
+        return max(self._config.size, (round(width * scale), round(height * scale)))
 
-        It is `large` enough for the stream, or of the size that is searched.
+    def _take(self, size: tuple[int, int] | None) -> CameraFrame | None:
+        """Return the newest picture of this width and height, turned.
+
+        None if it is dropped, since no size is asked for, or a failed camera is not tried yet.
         """
         is_device = self._camera is not None and self._camera.rate is not None
         if is_device and self._opened_for != self._device_settings:
@@ -237,16 +270,12 @@ class VisionNode(Vision):
                 return None
             self._opened_for = self._device_settings
             self._camera = self._open_camera()
-        if skip:
+        if size is None:
             self._camera.skip()
             return None
         from robot_runtime.vision import pipeline
 
-        settings, size = self._settings, self._config.size
-        if large:
-            width, height = self._config.stream_size
-            scale = self._quality.step.scale
-            size = max(size, (round(width * scale), round(height * scale)))
+        settings = self._settings
         self._camera.size = pipeline.before_turn(size, settings.turn)
         frame = self._camera.read()
         self._check_repetition(frame.picture)
@@ -265,6 +294,15 @@ class VisionNode(Vision):
         self._outputs.picture(CAMERA, frame.taken, jpeg)
         now = self._clock.now()
         self._quality.take(now, now - began, len(jpeg))
+
+    def _send_film(self, frame: CameraFrame) -> None:
+        """Send a picture of the film."""
+        if self._film_coder is None:
+            from robot_runtime.vision.film import open_coder
+
+            rate, size = self._film_timer.rate, self._config.stream_size
+            self._film_coder = open_coder(rate, self._film_quality, size)
+        self._outputs.film(frame.taken, self._film_coder.code(frame.taken, frame.picture))
 
     @property
     def _device_settings(self) -> tuple[float, bool, SensorControls]:

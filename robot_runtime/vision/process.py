@@ -13,6 +13,7 @@ import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from signal import SIGKILL, Signals
@@ -22,6 +23,7 @@ from typing import Any
 from robot_runtime.backoff import Backoff, describe_pause, is_killed
 from robot_runtime.clock import Clock
 from robot_runtime.config import VisionConfig
+from robot_runtime.contract.commands import FilmCommand
 from robot_runtime.contract.documents import Detection, Event, Severity
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.topics import WATCHABLE
@@ -107,6 +109,10 @@ class VisionProcess(Vision):
     def take_snapshot(self) -> dict[str, Any]:
         """Send the newest picture at full size to the outputs; return its `time` (s, steady clock)."""
         return self._ask({"snapshot": True}, "There is no picture to take")
+
+    def film(self, command: FilmCommand) -> None:
+        """Film for `command.seconds` from now on; a process that is started later waits for the next one."""
+        self._tell({"film": asdict(command)})
 
     def refusals(self) -> list[str]:
         """Return the reason against arming while OpenCV is loaded: a slow computer is then held up."""
@@ -252,6 +258,8 @@ class VisionProcess(Vision):
                 return partial(self._outputs.thumbnail, float(table["thumbnail"]), message.attachment)
             if "snapshot" in table:
                 return partial(self._outputs.snapshot, float(table["snapshot"]), message.attachment)
+            if "film" in table:
+                return partial(self._outputs.film, float(table["film"]), message.attachment)
             if "camera" in table:
                 return partial(self._take_camera, str(table["camera"]))
             if "missing" in table:

@@ -46,6 +46,11 @@ def compressed_image(time: int, data: str | bytes) -> Message:
     return {"timestamp": timestamp(time), "frame_id": "camera", "data": data, "format": "jpeg"}
 
 
+def compressed_video(time: int, data: str | bytes) -> Message:
+    """Return a foxglove.CompressedVideo of one picture of H.264 with start codes; `data` as of an image."""
+    return {"timestamp": timestamp(time), "frame_id": "camera", "data": data, "format": "h264"}
+
+
 def log_line(time: int, topic: str, document: Mapping[str, Any]) -> Message:
     """Return a foxglove.Log of a debug line, an event or a bookmark."""
     if topic == topics.DEBUG.name:

@@ -75,6 +75,13 @@ WELL_KNOWN = {
         data={"type": "string", "contentEncoding": "base64"},
         format=TEXT,
     ),
+    "foxglove.CompressedVideo": _object(
+        "foxglove.CompressedVideo",
+        timestamp=_TIME,
+        frame_id=TEXT,
+        data={"type": "string", "contentEncoding": "base64"},
+        format=TEXT,
+    ),
 }
 """Names, fields and required fields of docs.foxglove.dev/docs/visualization/message-schemas."""
 

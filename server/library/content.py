@@ -21,6 +21,7 @@ from robot_runtime.contract.chunks import (
     unpack,
     unpack_rows,
 )
+from robot_runtime.contract.topics import FILM
 from server.platform.errors import ApiError
 from server.platform.models import Chunk, SessionRow
 from server.platform.store import Reader
@@ -137,9 +138,11 @@ class Recording:
 
     def pictures(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[tuple[float, bytes]]:
         """Yield the pictures between `start` and `end`: their times and their JPEG files."""
-        for chunk in self.chunks(topic, start, end):
-            with _reading(chunk, topic, "picture"):
-                yield from (picture for picture in decode_pictures(chunk.data) if start <= picture[0] <= end)
+        return self._pictures(topic, "picture", start, end)
+
+    def film(self, start: float = -inf, end: float = inf) -> Iterator[tuple[float, bytes]]:
+        """Yield the pictures of the film between `start` and `end`: their times, each a `FilmPicture`."""
+        return self._pictures(FILM.name, "film", start, end)
 
     def columns(
         self, topic: str, names: Sequence[str], start: float = -inf, end: float = inf
@@ -195,6 +198,11 @@ class Recording:
                         yield json.loads(line)
             except (ValueError, KeyError) as problem:
                 raise _damaged(chunk, topic, problem) from problem
+
+    def _pictures(self, topic: str, kind: str, start: float, end: float) -> Iterator[tuple[float, bytes]]:
+        for chunk in self.chunks(topic, start, end):
+            with _reading(chunk, topic, kind):
+                yield from (picture for picture in decode_pictures(chunk.data) if start <= picture[0] <= end)
 
     def _tables(self, topic: str, start: float, end: float) -> "Iterator[NDArray[np.uint8]]":
         """Yield the bytes of rows in the shape (chunks, size of a row, samples), of chunks of one length.

@@ -24,7 +24,7 @@ from robot_runtime.contract.chunks import (
     describe_topics,
     unpack,
 )
-from robot_runtime.contract.topics import BY_NAME, CHART_SECONDS, LINES, STATE, TIME, AnyTopic
+from robot_runtime.contract.topics import BY_NAME, CHART_SECONDS, FILM, LINES, STATE, TIME, AnyTopic
 from robot_runtime.transport.blocks import COUNT_MAX, Block
 from server import VERSION
 from server.library.content import Recording, read_some
@@ -49,7 +49,7 @@ class ReplayBlocks:
     """Blocks in order of the times of their first samples, and the number of samples left out.
 
     Left out are damaged ones, and those without a counterpart in this version's definitions. Thumbnails and
-    snapshots come as the camera's pictures.
+    snapshots come as the camera's pictures, the film not at all: pages play it by itself.
     """
 
     data: bytes
@@ -92,6 +92,8 @@ def read_blocks_between(
     for name, limits in ranges.items():
         chunks = _find(recording, name, limits)
         recorded, topic = recording.topics[name], BY_NAME.get(name)
+        if topic is FILM:
+            continue
         if topic is None or recorded["kind"] != topic.kind.name.lower():
             left_out += sum(chunk.count for chunk in chunks if start <= chunk.first_time < end)
             continue

@@ -50,7 +50,7 @@ class RecordedTopic(BaseModel):
 
     name: str
     meaning: str
-    kind: Literal["rows", "documents", "picture"]
+    kind: Literal["rows", "documents", "picture", "film"]
     count: int
     first: float
     last: float

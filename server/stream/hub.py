@@ -205,7 +205,7 @@ class Hub:
         rows: list[Block] = []
         documents: list[Block] = []
         for block in blocks:
-            if block.topic.stands_for is not None:
+            if block.topic.only_recorded:
                 continue
             if block.topic.kind is Kind.PICTURE:
                 self._picture_number += 1

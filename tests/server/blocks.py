@@ -42,6 +42,10 @@ def snapshot_block(number: int, time: float, jpeg: bytes) -> Block:
     return Block.of(BY_NAME["snapshot"], 1, number, row(time, jpeg))
 
 
+def film_block(number: int, time: float, picture: bytes) -> Block:
+    return Block.of(BY_NAME["film"], 1, number, row(time, picture))
+
+
 def link_block(first: int, bytes_received: int) -> Block:
     values: dict[str, Any] = dict.fromkeys(LinkStatistics.wires, 0) | {"bytes_received": bytes_received}
     return Block.of(BY_NAME["link"], 1, first, row(100.0, LinkStatistics(**values).to_bytes()))

@@ -44,13 +44,15 @@ class PatientTransport(ZenohTransport):
 class RuntimeEnd:
     """A Zenoh peer in place of the runtime.
 
-    `asked` holds every command that came, but for the control's epochs, which are in `epochs`; each is
-    answered once its gate is open. `driven` holds what the driver sends, `heartbeats` the server's.
+    `asked` holds every command that came, but for the control's epochs, which are in `epochs`, and the
+    film's, which are in `filmed`; each is answered once its gate is open. `driven` holds what the driver
+    sends, `heartbeats` the server's.
     """
 
     def __init__(self, socket: Path, robot: str) -> None:
         self.asked: list[tuple[str, dict[str, Any]]] = []
         self.epochs: list[int] = []
+        self.filmed: list[dict[str, Any]] = []
         self.driven: list[dict[str, Any]] = []
         self.heartbeats: list[str] = []
         self.refusal: str | None = None
@@ -130,7 +132,10 @@ class RuntimeEnd:
 
     def _answer(self, name: str, gate: threading.Event) -> None:
         def handle(question: dict[str, Any]) -> Mapping[str, Any] | None:
-            self.asked.append((name, question))
+            if name == "film":
+                self.filmed.append(question)
+            else:
+                self.asked.append((name, question))
             gate.wait(SECONDS)
             if self.refusal is not None and name != "stop":
                 raise RefusedError(self.refusal)

@@ -295,6 +295,12 @@ export interface paths {
     "/api/sessions/{session}/blocks": {
         get: operations["getBlocks"];
     };
+    "/api/sessions/{session}/film": {
+        get: operations["getFilm"];
+    };
+    "/api/sessions/{session}/film/part": {
+        get: operations["getFilmPart"];
+    };
     "/api/sessions/{session}/markers": {
         post: operations["addMark"];
     };
@@ -1131,7 +1137,7 @@ export interface components {
             /** @description s since the session's start; null for its end */
             end: number | null;
             /** @enum {string} */
-            format: "csv" | "csv-grid" | "xlsx" | "parquet" | "mcap" | "archive" | "report";
+            format: "csv" | "csv-grid" | "xlsx" | "parquet" | "mcap" | "archive" | "report" | "mp4";
             /**
              * @description s between the lines of csv-grid
              * @default 0.1
@@ -1179,6 +1185,18 @@ export interface components {
             name: string;
             title: string;
             unit: string;
+        };
+        /** @description The film of a session: its times, the number of its pictures, and their coding. */
+        FilmDescription: {
+            /** @description of its parts as browsers name it, such as "avc1.42c016" */
+            codec: string;
+            pictures: number;
+            spans: components["schemas"]["FilmSpan"][];
+        };
+        /** @description A time without a gap, s since the session's start. */
+        FilmSpan: {
+            end: number;
+            start: number;
         };
         /** @description A fin that is turned by hand. */
         FinTurn: {
@@ -1678,7 +1696,7 @@ export interface components {
             /** @description s since the session's start; null for its end */
             end?: number | null;
             /** @enum {string} */
-            format: "csv" | "csv-grid" | "xlsx" | "parquet" | "mcap" | "archive" | "report";
+            format: "csv" | "csv-grid" | "xlsx" | "parquet" | "mcap" | "archive" | "report" | "mp4";
             /** @description s between the lines of csv-grid */
             period?: number;
             session: number;
@@ -1950,7 +1968,7 @@ export interface components {
             count: number;
             first: number;
             /** @enum {string} */
-            kind: "rows" | "documents" | "picture";
+            kind: "rows" | "documents" | "picture" | "film";
             last: number;
             meaning: string;
             name: string;
@@ -2823,6 +2841,8 @@ export type ExportOptions = components['schemas']['ExportOptions'];
 export type Figure = components['schemas']['Figure'];
 export type FigureMark = components['schemas']['FigureMark'];
 export type FigureMeaning = components['schemas']['FigureMeaning'];
+export type FilmDescription = components['schemas']['FilmDescription'];
+export type FilmSpan = components['schemas']['FilmSpan'];
 export type FinTurn = components['schemas']['FinTurn'];
 export type Finding = components['schemas']['Finding'];
 export type FittedSession = components['schemas']['FittedSession'];
@@ -4564,6 +4584,42 @@ export interface operations {
             200: {
                 content: {
                     "application/octet-stream": unknown;
+                };
+            };
+        };
+    };
+    getFilm: {
+        parameters: {
+            query?: never;
+            path: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["FilmDescription"];
+                };
+            };
+        };
+    };
+    getFilmPart: {
+        parameters: {
+            query: {
+                /** @description s since the start */
+                start: number;
+                seconds?: number;
+            };
+            path: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "video/mp4": unknown;
                 };
             };
         };

@@ -78,7 +78,7 @@ def foxglove_channels(simulated: bool) -> list[DoorChannel]:
             lossless=topic.lines,
         )
         for topic in TOPICS
-        if topic.kind is not Kind.PICTURE and (simulated or topic.sender != "simulator")
+        if topic.kind in (Kind.ROWS, Kind.DOCUMENTS) and (simulated or topic.sender != "simulator")
     ]
     pictures = [
         DoorChannel(name, "foxglove.CompressedImage", (topic,), _picture) for topic, name in PICTURES.items()

@@ -279,7 +279,7 @@ def ros_channels() -> list[DoorChannel]:
             lossless=topic.lines,
         )
         for topic in TOPICS
-        if topic.kind is not Kind.PICTURE
+        if topic.kind in (Kind.ROWS, Kind.DOCUMENTS)
     ]
     return [*standard_channels(), *own]
 

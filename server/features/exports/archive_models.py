@@ -45,7 +45,7 @@ class ArchivedTopic(_Strict):
     """A topic, as `chunks.describe_topics` writes it."""
 
     meaning: Words
-    kind: Literal["rows", "documents", "picture"]
+    kind: Literal["rows", "documents", "picture", "film"]
     row_bytes: int = 0
     fields: Annotated[list[TopicField], Field(max_length=1000)]
 

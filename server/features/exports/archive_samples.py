@@ -58,7 +58,7 @@ def check_document(document: object, name: str, described: ArchivedTopic | None 
 
 
 def _read_times(chunk: StoredChunk, name: str, topic: ArchivedTopic) -> Sequence[float]:
-    if topic.kind == "picture":
+    if topic.kind in ("picture", "film"):
         return [time for time, _ in decode_pictures(chunk.data)]
     if topic.kind == "rows":
         announced = chunk.count * topic.row_bytes

@@ -16,7 +16,7 @@ from server.platform.terminal import echo
 if TYPE_CHECKING:
     from server.features.exports.selection import ExportSelection
 
-FORMATS = ("csv", "csv-grid", "xlsx", "parquet", "mcap", "archive", "report")
+FORMATS = ("csv", "csv-grid", "xlsx", "parquet", "mcap", "archive", "report", "mp4")
 IMPORT_SECONDS = 3600.0
 
 

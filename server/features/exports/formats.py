@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import BinaryIO, NamedTuple
 
+from robot_runtime.contract.topics import FILM
 from server.analysis.schemas import DEFAULT_SIGNALS, REPORT_POINTS, ComparisonQuery
 from server.features.exports.archive import write_archive
 from server.features.exports.grid import write_grid
@@ -12,6 +13,7 @@ from server.features.exports.schemas import ExportOptions, Format
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import write_tables
 from server.features.exports.workbook import require_sheets, write_workbook
+from server.library.film import film_from, write_mp4
 from server.platform.store import Reader
 
 Write = Callable[[Reader, ExportSelection, BinaryIO], None]
@@ -45,6 +47,24 @@ def write_report(store: Reader, source: ExportSelection, output: BinaryIO) -> No
     output.write(report.write_report(Comparer(store).compare(query)).encode())
 
 
+def require_film(source: ExportSelection) -> None:
+    """Raise ExportRequestError where there is no film in the range."""
+    if FILM.name not in source.samples:
+        raise ExportRequestError(
+            "The camera was not filmed then. Sessions are filmed where robot.toml says so: [film], "
+            "record = true."
+        )
+
+
+def write_film(_: Reader, source: ExportSelection, output: BinaryIO) -> None:
+    """Write the film of the range as an MP4 file.
+
+    Raise ExportRequestError, NoFilmError, CodecMissingError, StoreError, RecordingError.
+    """
+    require_film(source)
+    write_mp4(film_from(source, source.start, source.end), output)
+
+
 ZIP = "application/zip"
 WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 KINDS: dict[Format, ExportFormat] = {
@@ -55,17 +75,24 @@ KINDS: dict[Format, ExportFormat] = {
     "mcap": ExportFormat(write_mcap, ".mcap", "application/octet-stream", check_mcap),
     "archive": ExportFormat(write_archive, ".mucat.zip", ZIP),
     "report": ExportFormat(write_report, ".html", "text/html"),
+    "mp4": ExportFormat(write_film, ".mp4", "video/mp4", require=require_film),
 }
 
 WHOLE_ONLY = ("archive", "report")
+NO_TOPICS = {
+    "csv-grid": "columns",
+    "mp4": "nothing: it holds the film",
+    **dict.fromkeys(WHOLE_ONLY, "nothing: it holds the whole session"),
+}
+"""Choice in place of topics, by formats."""
 
 
 def check(options: ExportOptions) -> ExportFormat:
     """Return the chosen format. Raise ExportRequestError for options that exclude each other."""
     if options.columns is not None and options.format != "csv-grid":
         raise ExportRequestError("Columns are chosen for csv-grid alone; the other formats take topics.")
-    if options.topics is not None and options.format in ("csv-grid", *WHOLE_ONLY):
-        choose = "columns" if options.format == "csv-grid" else "nothing: it holds the whole session"
+    if options.topics is not None and options.format in NO_TOPICS:
+        choose = NO_TOPICS[options.format]
         raise ExportRequestError(f"For {options.format} choose {choose}, not topics.")
     if options.format in WHOLE_ONLY and (options.start is not None or options.end is not None):
         raise ExportRequestError(f"The {options.format} holds the whole session; leave start and end out.")

@@ -16,6 +16,7 @@ from typing import Any, BinaryIO
 from sqlmodel import col, select
 
 from robot_runtime.contract import topics
+from robot_runtime.contract.film_picture import FilmPicture
 from server.features.exports.description import craft_files, describe_session, dump_readable
 from server.features.exports.schemas import Compression
 from server.features.exports.selection import ExportRequestError, ExportSelection
@@ -24,6 +25,7 @@ from server.interchange.foxglove_messages import (
     Message,
     body_transform,
     compressed_image,
+    compressed_video,
     log_line,
     pose_in_frame,
     world_transform,
@@ -38,7 +40,7 @@ from server.platform.store import Reader
 
 LIBRARY = "mucat"
 LOG, TRANSFORMS, FRAMES, POSE, CAMERA = "/log", "/tf", "/tf_static", "/pose", "/camera"
-IMAGE = "foxglove.CompressedImage"
+IMAGE, VIDEO = "foxglove.CompressedImage", "foxglove.CompressedVideo"
 PACKAGES = {"zstd": "zstandard", "lz4": "lz4"}
 ABSENT = re.compile(rb',"\w+":null')
 """A member of a row that is NaN: schemas that Foxglove reads know no null."""
@@ -89,7 +91,7 @@ def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None
     tracker, posing = _pose_tracker(source)
     if posing:
         channels.add(FRAMES, "foxglove.FrameTransform", first, world_transform(first))
-    own = [channels.of(name, source.topics[name]) for name in source.names]
+    own = [channels.of(source, name) for name in source.names]
     for time, index, data, document in heapq.merge(*_samples(store, source)):
         if index < len(own):
             writer.add_message(own[index], time, data, time)
@@ -110,9 +112,14 @@ class _Channels:
         self._writer = writer
         self._numbers: dict[str, int] = {}
 
-    def of(self, name: str, described: dict[str, Any]) -> int:
+    def of(self, source: ExportSelection, name: str) -> int:
+        described = source.topics[name]
         if described["kind"] == "picture":
             return self.open(CAMERA, IMAGE, WELL_KNOWN[IMAGE])
+        if described["kind"] == "film":
+            _, first = next(source.film(source.start, source.end), (0.0, b""))
+            message = IMAGE if FilmPicture(first).is_jpeg else VIDEO
+            return self.open(f"/{name}", message, WELL_KNOWN[message])
         return self.open(f"/{name}", f"mucat.{name}", topic_schema(name, described))
 
     def open(self, topic: str, name: str, schema: dict[str, Any]) -> int:
@@ -197,7 +204,7 @@ def _gains(state: dict[str, Any] | None) -> dict[str, str]:
 
 
 def _samples(store: Reader, source: ExportSelection) -> list[Iterator[_Sample]]:
-    readers = {"rows": _rows, "documents": _documents, "picture": _pictures}
+    readers = {"rows": _rows, "documents": _documents, "picture": _pictures, "film": _film}
     streams = [
         readers[source.topics[name]["kind"]](source, name, index) for index, name in enumerate(source.names)
     ]
@@ -227,6 +234,13 @@ def _pictures(source: ExportSelection, name: str, index: int) -> Iterator[_Sampl
         time = source.utc_ns(moment)
         image = compressed_image(time, base64.b64encode(jpeg).decode())
         yield (time, index, _dump(image), None)
+
+
+def _film(source: ExportSelection, name: str, index: int) -> Iterator[_Sample]:  # noqa: ARG001
+    for moment, picture in source.film(source.start, source.end):
+        time, data = source.utc_ns(moment), base64.b64encode(picture).decode()
+        make = compressed_image if FilmPicture(picture).is_jpeg else compressed_video
+        yield (time, index, _dump(make(time, data)), None)
 
 
 def _bookmarks(store: Reader, source: ExportSelection) -> Iterator[_Sample]:

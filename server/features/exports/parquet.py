@@ -100,7 +100,17 @@ def _pictures(source: ExportSelection, name: str) -> tuple[Any, Iterator[tuple[A
     )
 
 
-_READERS = {"rows": _rows, "documents": _documents, "picture": _pictures}
+def _film(source: ExportSelection, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:  # noqa: ARG001
+    import pyarrow as pa
+
+    pictures = source.film(source.start, source.end)
+    return (
+        pa.schema([*_head(), pa.field("picture", pa.binary())]),
+        (([time], [[picture]]) for time, picture in pictures),
+    )
+
+
+_READERS = {"rows": _rows, "documents": _documents, "picture": _pictures, "film": _film}
 
 
 def _head() -> list[Any]:

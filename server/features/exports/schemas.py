@@ -10,7 +10,7 @@ from server.platform.csv_cells import Spreadsheet
 from server.platform.models import IDENTIFIER_MAX
 
 Compression = Literal["none", "zstd", "lz4"]
-Format = Literal["csv", "csv-grid", "xlsx", "parquet", "mcap", "archive", "report"]
+Format = Literal["csv", "csv-grid", "xlsx", "parquet", "mcap", "archive", "report", "mp4"]
 State = Literal["waiting", "running", "done", "failed"]
 
 PERIOD_MIN, PERIOD_MAX = 0.001, 3600.0

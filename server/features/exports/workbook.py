@@ -37,7 +37,7 @@ def require_sheets(source: ExportSelection) -> None:
 
 
 def write_workbook(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """Write a workbook: the session's description, and a sheet for each topic but pictures.
+    """Write a workbook: the session's description, and a sheet for each topic but pictures and film.
 
     Raise ExportRequestError for a topic that no sheet holds, StoreError, RecordingError.
     """
@@ -46,7 +46,7 @@ def write_workbook(store: Reader, source: ExportSelection, output: BinaryIO) -> 
 
     require_sheets(source)
     book = Workbook(ForwardOnly(output), {"constant_memory": True, "use_zip64": True})
-    names = [name for name in source.names if source.topics[name]["kind"] != "picture"]
+    names = [name for name in source.names if source.topics[name]["kind"] in ("rows", "documents")]
     _Sheet(book, ABOUT, ["", ""]).extend(_describe(store, source))
     for name, title in zip(names, _sheet_names(names), strict=True):
         if source.topics[name]["kind"] == "rows":

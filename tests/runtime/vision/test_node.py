@@ -32,6 +32,7 @@ class VisionListener:
     pictures: list[tuple[str, float, bytes]] = field(default_factory=list)
     thumbnails: list[tuple[float, bytes]] = field(default_factory=list)
     snapshots: list[tuple[float, bytes]] = field(default_factory=list)
+    film: list[tuple[float, bytes]] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
 
     def node(
@@ -47,6 +48,7 @@ class VisionListener:
             picture=lambda topic, time, jpeg: self.pictures.append((topic.name, time, jpeg)),
             thumbnail=lambda time, jpeg: self.thumbnails.append((time, jpeg)),
             snapshot=lambda time, jpeg: self.snapshots.append((time, jpeg)),
+            film=lambda time, picture: self.film.append((time, picture)),
             watched=lambda topic: topic.name in self.watching,
         )
 

@@ -327,7 +327,7 @@ def test_an_impossible_export_is_refused_with_the_reason(
 
 
 # Parquet's writer and the report add the time of writing.
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("parquet", "report")])
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("parquet", "report", "mp4")])
 def test_the_same_session_gives_the_same_bytes(store: Store, session: int, kind: str) -> None:
     assert write(store, session, format=kind).getvalue() == write(store, session, format=kind).getvalue()
 
@@ -335,8 +335,9 @@ def test_the_same_session_gives_the_same_bytes(store: Store, session: int, kind:
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_empty_session_gives_a_file(store: Store, settings: Settings, kind: str) -> None:
     number = record(store, settings)
-    if kind == "csv-grid":
-        with pytest.raises(ExportRequestError, match="No topic has numbers"):
+    without = {"csv-grid": "No topic has numbers", "mp4": "was not filmed then"}
+    if kind in without:
+        with pytest.raises(ExportRequestError, match=without[kind]):
             write(store, number, format=kind)
     else:
         write(store, number, format=kind)

@@ -1,0 +1,11 @@
+"""Film: the camera's pictures, recorded with a session and played from it."""
+
+from server.feature import Feature
+from server.features.film.config import FilmConfig
+
+FEATURE = Feature(
+    name="film",
+    section=FilmConfig,
+    routes=("server.features.film.routes:router",),
+    plug="server.features.film.plug:FilmPlug",
+)

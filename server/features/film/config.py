@@ -1,0 +1,15 @@
+"""The section [film] of robot.toml."""
+
+from dataclasses import dataclass
+
+from robot_runtime.contract.commands import FilmQuality
+from robot_runtime.contract.limits import FilmRate
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilmConfig:
+    """Film of recorded sessions, in the size of the camera's stream; `rate` in Hz, at most the stream's."""
+
+    record: bool = True
+    rate: FilmRate = 15.0
+    quality: FilmQuality = "medium"

@@ -1,0 +1,65 @@
+"""The film of a session: what there is, and parts of it."""
+
+from typing import Annotated
+
+from fastapi import Depends, Query
+from fastapi.responses import Response
+
+from server.http.dependencies import Provided
+from server.http.heavy_requests import RecordingTurn, TooManyHeavyError
+from server.http.operations import Identifier, Operations
+from server.http.sign_in.policy import Need
+from server.library.content import Recording, reading_content
+from server.library.film import (
+    PART_SECONDS_MAX,
+    CodecMissingError,
+    FilmDescription,
+    NoFilmError,
+    describe_film,
+    film_part,
+)
+from server.platform.store import Store
+from server.recording.session import UnknownSessionError, find_row
+
+SECONDS_MAX = 1e9
+FILM_START = "Film-Start"
+
+router = Operations(prefix="/api", tags=["sessions"])
+
+
+def _open(store: Provided[Store], session: Identifier) -> Recording:
+    return Recording(store, find_row(store, session))
+
+
+OpenRecording = Annotated[Recording, Depends(_open)]
+_REFUSALS = (UnknownSessionError, NoFilmError, CodecMissingError, TooManyHeavyError)
+
+
+@router.operation("GET /sessions/{session}/film", Need.VIEWER, *_REFUSALS)
+def get_film(_: RecordingTurn, recording: OpenRecording) -> FilmDescription:
+    """Return what there is of a session's film."""
+    with reading_content(recording.row):
+        return describe_film(recording)
+
+
+@router.operation(
+    "GET /sessions/{session}/film/part", Need.VIEWER, *_REFUSALS, media_type="video/mp4", linked=True
+)
+def get_film_part(
+    _: RecordingTurn,
+    recording: OpenRecording,
+    start: Annotated[
+        float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False, description="s since the start")
+    ],
+    seconds: Annotated[float, Query(gt=0, le=PART_SECONDS_MAX, allow_inf_nan=False)] = 10.0,
+) -> Response:
+    """Return a part of the film as a fragmented MP4 file, from the picture that is shown at `start` on.
+
+    It begins with a picture that needs none before it, perhaps a second earlier: the header `Film-Start` has
+    its time (s since the session's start), which is 0 in the file.
+    """
+    zero = recording.row.started_steady
+    with reading_content(recording.row):
+        origin, part = film_part(recording, zero + start, seconds)
+    headers = {FILM_START: f"{origin - zero:.6f}", "cache-control": "private, no-cache"}
+    return Response(part, media_type="video/mp4", headers=headers)

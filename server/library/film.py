@@ -1,0 +1,174 @@
+"""The film of a session: what there is of it, and parts of it as MP4 files.
+
+Pictures of H.264 are only packed anew. JPEG files, which a robot without PyAV records, are coded first.
+"""
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from io import BytesIO
+from itertools import chain, dropwhile
+from math import inf
+from typing import IO, TYPE_CHECKING, Any
+
+from pydantic import BaseModel, Field
+
+from robot_runtime.contract.film_picture import FilmPicture
+from robot_runtime.contract.topics import FILM
+from server.library.content import Recording
+from server.platform.errors import NotFoundError, UnavailableError
+
+if TYPE_CHECKING:
+    import av
+
+Picture = tuple[float, FilmPicture]
+"""Its time (s, steady clock), and the picture."""
+
+PART_SECONDS_MAX = 60.0
+GAP_SECONDS = 2.0
+"""s between two pictures from which on the film counts as interrupted."""
+KEY_SECONDS_MAX = 5.0
+"""s before a moment within which the key picture is sought from which it can be shown."""
+LAST_SECONDS = 1 / 15
+"""s for which the last picture is shown."""
+_CRF = 23
+"""x264's rate factor for pictures that were JPEG files."""
+_MICROSECONDS = 1_000_000
+_FRAGMENTED = {"movflags": "frag_keyframe+empty_moov+default_base_moof"}
+"""Written forward only, cut off it plays to its end, and a browser adds it to others."""
+
+
+class NoFilmError(NotFoundError):
+    """The session has no film there"""
+
+
+class CodecMissingError(UnavailableError):
+    """This computer cannot read films"""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "Films need the package av (PyAV), which is not installed here. Install it where µ-CAT is "
+            "installed, with `pip install av`, or take the session's archive to a computer that has it."
+        )
+
+
+class FilmSpan(BaseModel):
+    """A time without a gap, s since the session's start."""
+
+    start: float
+    end: float
+
+
+class FilmDescription(BaseModel):
+    """The film of a session: its times, the number of its pictures, and their coding."""
+
+    spans: list[FilmSpan]
+    pictures: int
+    codec: str = Field(description='of its parts as browsers name it, such as "avc1.42c016"')
+
+
+def describe_film(recording: Recording) -> FilmDescription:
+    """Return what there is of a film. Raise NoFilmError, CodecMissingError, StoreError, RecordingError."""
+    spans = list[FilmSpan]()
+    pictures = 0
+    for first, last, count in recording.spans(FILM.name):
+        start, end = first - recording.row.started_steady, last - recording.row.started_steady
+        pictures += count
+        if spans and start - spans[-1].end < GAP_SECONDS:
+            spans[-1].end = end
+        else:
+            spans.append(FilmSpan(start=start, end=end))
+    _, first_picture = next(film_from(recording, -inf, inf))
+    (_, shown), *_ = as_h264([(0.0, first_picture)])
+    if not shown.codec:
+        raise ValueError("its first picture does not say how it is coded")
+    return FilmDescription(spans=spans, pictures=pictures, codec=shown.codec)
+
+
+def film_from(recording: Recording, start: float, end: float) -> Iterator[Picture]:
+    """Yield the pictures from the one that is shown at `start` up to `end` (s, steady clock).
+
+    It begins with the key picture on which that builds, or else with the next one. Raise NoFilmError,
+    StoreError, RecordingError.
+    """
+    key = start
+    for time, picture in _read(recording, start - KEY_SECONDS_MAX, start):
+        if picture.is_key:
+            key = time
+    pictures = dropwhile(lambda item: not item[1].is_key, _read(recording, key, end))
+    first = next(pictures, None)
+    if first is None:
+        raise NoFilmError("The camera was not filmed there, or the film was deleted to make room.")
+    return chain([first], pictures)
+
+
+def as_h264(pictures: Iterable[Picture]) -> Iterator[Picture]:
+    """Yield the pictures, JPEG files as H.264. Raise CodecMissingError."""
+    coder: Any = None
+    for time, picture in pictures:
+        if not picture.is_jpeg:
+            yield time, picture
+            continue
+        frame = _decode(picture)
+        if coder is None:
+            from robot_runtime.vision.h264 import H264Coder
+
+            coder = H264Coder(1 / LAST_SECONDS, _CRF, (frame.width, frame.height))
+        yield time, FilmPicture(coder.code(time, frame))
+
+
+def write_mp4(pictures: Iterator[Picture], output: IO[bytes]) -> None:
+    """Write pictures as a fragmented MP4 file that begins with the time of the first, a key picture.
+
+    Raise CodecMissingError.
+    """
+    try:
+        import av
+    except ImportError as problem:
+        raise CodecMissingError from problem
+    coded = as_h264(pictures)
+    origin, first = next(coded)
+    shown = _decode(first)
+    unit = Fraction(1, _MICROSECONDS)
+    with av.open(output, "w", format="mp4", options=_FRAGMENTED) as file:
+        stream = file.add_mux_stream("h264", rate=15, width=shown.width, height=shown.height)
+        for time, picture in chain([(origin, first)], coded):
+            packet = av.Packet(picture)
+            packet.stream, packet.time_base = stream, unit
+            packet.pts = packet.dts = round((time - origin) * _MICROSECONDS)
+            # It counts for the last one alone.
+            packet.duration = round(LAST_SECONDS * _MICROSECONDS)
+            packet.is_keyframe = picture.is_key
+            file.mux(packet)
+
+
+def film_part(recording: Recording, start: float, seconds: float) -> tuple[float, bytes]:
+    """Return the time of a part's first picture (s, steady clock), and the part as a fragmented MP4 file.
+
+    Raise NoFilmError, CodecMissingError, StoreError, RecordingError.
+    """
+    pictures = film_from(recording, start, start + seconds)
+    origin, first = next(pictures)
+    output = BytesIO()
+    write_mp4(chain([(origin, first)], pictures), output)
+    return origin, output.getvalue()
+
+
+def _read(recording: Recording, start: float, end: float) -> Iterator[Picture]:
+    return ((time, FilmPicture(picture)) for time, picture in recording.film(start, end))
+
+
+def _decode(picture: FilmPicture) -> "av.VideoFrame":
+    """Return a key picture, decoded. Raise CodecMissingError, ValueError where it is damaged."""
+    try:
+        import av
+    except ImportError as problem:
+        raise CodecMissingError from problem
+    decoder = av.CodecContext.create("mjpeg" if picture.is_jpeg else "h264", "r")
+    assert isinstance(decoder, av.VideoCodecContext)
+    try:
+        frames = [*decoder.decode(av.Packet(bytes(picture))), *decoder.decode(None)]
+    except av.FFmpegError as problem:
+        raise ValueError(f"a picture of the film is damaged: {problem}") from problem
+    if not frames:
+        raise ValueError("a picture of the film is damaged")
+    return frames[0]

@@ -1,0 +1,282 @@
+"""The film of a session over HTTP: recorded, described, played in parts, exported; refusals in words."""
+
+import asyncio
+import base64
+import json
+import sys
+import time
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
+
+import av
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from mcap.reader import make_reader
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.film_picture import FilmPicture
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block
+from robot_runtime.vision.film import JpegFilmCoder, open_coder
+from server.features.exports.formats import check
+from server.features.exports.schemas import ExportOptions
+from server.features.exports.selection import ExportSelection
+from server.features.film import plug
+from server.features.film.plug import LEASE_SECONDS
+from server.library.retention import RetentionWorker
+from server.platform.store import Store
+from server.recording.recorder import Recorder
+from server.recording.session import find_row
+from tests.film import HEIGHT, RATE, WIDTH, code_numbers, read_film, read_number
+from tests.server.blocks import depth_block, film_block
+from tests.server.serving import Served
+from tests.server.waiting import until
+
+COUNT = 60
+Pictures = list[tuple[float, bytes]]
+
+
+def h264(start: float) -> Pictures:
+    return code_numbers(open_coder(RATE, "medium", (WIDTH, HEIGHT)), range(COUNT), start)
+
+
+async def record(served: Served, pictures: Pictures) -> int:
+    """Record these pictures in a session of their own; return its number."""
+    session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
+    served.runtime.publish(*(film_block(number, *picture) for number, picture in enumerate(pictures)))
+    recorder = served.get(Recorder)
+
+    async def arrived() -> bool:
+        await recorder.flush()
+        return recorder.session is not None and recorder.session.samples >= len(pictures)
+
+    while not await arrived():
+        pass
+    await served.api.post(f"/sessions/{session}/stop")
+    return session
+
+
+def now(served: Served) -> float:
+    return served.get(Clock).now()  # type: ignore[type-abstract]
+
+
+async def test_a_film_is_described_and_every_picture_is_played_at_its_time(served: Served) -> None:
+    start = now(served) + 1.0
+    session = await record(served, h264(start))
+    film = (await served.api.get(f"/sessions/{session}/film")).json()
+    assert film["pictures"] == COUNT
+    assert film["codec"].startswith("avc1.")
+    (span,) = film["spans"]
+    assert span["end"] - span["start"] == pytest.approx((COUNT - 1) / RATE)
+    answer = await served.api.get(
+        f"/sessions/{session}/film/part", params={"start": span["start"], "seconds": 30}
+    )
+    assert answer.headers["content-type"] == "video/mp4"
+    assert float(answer.headers["film-start"]) == pytest.approx(span["start"], abs=1e-5)
+    played = read_film(answer.content)
+    assert [number for _, number in played] == list(range(COUNT))
+    assert [time for time, _ in played] == pytest.approx([number / RATE for number in range(COUNT)], abs=1e-5)
+
+
+async def test_a_part_begins_with_the_key_picture_before_it(served: Served) -> None:
+    session = await record(served, h264(now(served) + 1.0))
+    (span,) = (await served.api.get(f"/sessions/{session}/film")).json()["spans"]
+    answer = await served.api.get(
+        f"/sessions/{session}/film/part", params={"start": span["start"] + 2.5, "seconds": 1}
+    )
+    assert float(answer.headers["film-start"]) == pytest.approx(span["start"] + 2.0, abs=0.07)
+    numbers = [number for _, number in read_film(answer.content)]
+    assert numbers == list(range(numbers[0], numbers[-1] + 1))
+    assert numbers[0] == round((float(answer.headers["film-start"]) - span["start"]) * RATE)
+    assert numbers[-1] == int(3.5 * RATE + 1e-6)
+
+
+async def test_a_film_of_jpeg_files_is_played_too(served: Served) -> None:
+    jpegs = code_numbers(JpegFilmCoder("high", (WIDTH, HEIGHT)), range(COUNT), now(served) + 1.0)
+    session = await record(served, jpegs)
+    film = (await served.api.get(f"/sessions/{session}/film")).json()
+    assert film["codec"].startswith("avc1.")
+    part = await served.api.get(
+        f"/sessions/{session}/film/part", params={"start": film["spans"][0]["start"], "seconds": 30}
+    )
+    assert [number for _, number in read_film(part.content)] == list(range(COUNT))
+
+
+async def test_a_pause_of_the_film_parts_its_times(served: Served) -> None:
+    start = now(served) + 1.0
+    first = h264(start)
+    later = code_numbers(open_coder(RATE, "medium", (WIDTH, HEIGHT)), range(COUNT, 2 * COUNT), start + 60.0)
+    session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
+    recorder = served.get(Recorder)
+    for number, pictures in enumerate((first, later)):
+        served.runtime.publish(
+            *(film_block(COUNT * number + index, *picture) for index, picture in enumerate(pictures))
+        )
+        while recorder.session is None or recorder.session.samples < COUNT * (number + 1):
+            await recorder.flush()
+    await served.api.post(f"/sessions/{session}/stop")
+    spans = (await served.api.get(f"/sessions/{session}/film")).json()["spans"]
+    assert [span["end"] - span["start"] for span in spans] == pytest.approx([(COUNT - 1) / RATE] * 2)
+
+
+async def ask(served: Served, session: int) -> list[tuple[int, str]]:
+    """Return status and text of the answers for its description and a part."""
+    answers = [
+        await served.api.get(f"/sessions/{session}/film"),
+        await served.api.get(f"/sessions/{session}/film/part", params={"start": 0}),
+    ]
+    return [(answer.status_code, answer.json()["detail"]) for answer in answers]
+
+
+async def test_a_session_without_a_film_says_so(served: Served) -> None:
+    session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
+    served.runtime.publish(depth_block(0, 10, start=now(served)))
+    assert [status for status, _ in await ask(served, session)] == [404, 404]
+    assert all("was not filmed there" in text for _, text in await ask(served, session))
+
+
+async def test_without_pyav_it_says_what_to_install(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = await record(served, code_numbers(JpegFilmCoder("low", (WIDTH, HEIGHT)), range(5), now(served)))
+    monkeypatch.setitem(sys.modules, "av", None)
+    assert [status for status, _ in await ask(served, session)] == [503, 503]
+    assert all("pip install av" in text for _, text in await ask(served, session))
+
+
+@pytest.mark.parametrize("junk", [b"\0\0\1\x65" + bytes(50), b"\xff\xd8 no picture", b"\0"])
+async def test_a_damaged_film_is_refused_in_words(served: Served, junk: bytes) -> None:
+    start = now(served) + 1.0
+    session = await record(served, [(start + number / RATE, junk) for number in range(5)])
+    for status, text in await ask(served, session):
+        assert status in (404, 500)
+        assert "not filmed there" in text or "cannot be read whole" in text
+
+
+async def test_a_film_that_is_cut_off_plays_to_its_end(served: Served) -> None:
+    pictures = h264(now(served) + 1.0)
+    session = await record(served, [*pictures[:40], (pictures[40][0], pictures[40][1][:9])])
+    (span,) = (await served.api.get(f"/sessions/{session}/film")).json()["spans"]
+    part = await served.api.get(
+        f"/sessions/{session}/film/part", params={"start": span["start"], "seconds": 30}
+    )
+    assert [number for _, number in read_film(part.content)][:40] == list(range(40))
+
+
+async def test_a_film_is_asked_for_while_a_session_is_recorded(
+    served: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    filmed = served.runtime.filmed
+    assert filmed == []
+    monkeypatch.setattr(plug, "RENEWAL_SECONDS", 0.02)
+    session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
+    await until(lambda: len(filmed) >= 3, "the film to be asked for again and again")
+    assert {question["seconds"] for question in filmed} == {LEASE_SECONDS}
+    await served.api.post(f"/sessions/{session}/stop")
+    await until(lambda: filmed[-1]["seconds"] == 0.0, "the film to be ended")
+
+
+async def test_pages_and_their_history_are_not_sent_the_film(served: Served) -> None:
+    async with served.connect() as socket:
+        await socket.recv()
+        served.runtime.publish(*(film_block(number, *picture) for number, picture in enumerate(h264(100.0))))
+        served.runtime.publish(depth_block(0, 1, start=now(served)))
+        names: set[str] = set()
+        while "depth" not in names:
+            message: Any = await socket.recv()
+            names |= topics_of(message)
+    assert "film" not in names
+
+
+def topics_of(message: str | bytes) -> set[str]:
+    from robot_runtime.transport.blocks import read_blocks
+
+    blocks: list[Block] = [] if isinstance(message, str) else read_blocks(message)
+    return {block.topic.name for block in blocks if block.topic.name in BY_NAME}
+
+
+@pytest.fixture
+async def filmed(served: Served) -> tuple[int, float]:
+    """Return a session with a film, and the time of its first picture (s since the session's start)."""
+    session = await record(served, h264(now(served) + 1.0))
+    start = (await served.api.get(f"/sessions/{session}/film")).json()["spans"][0]["start"]
+    return session, start
+
+
+def export(served: Served, session: int, tmp_path: Path, **options: Any) -> bytes:
+    """Return what an export of these options writes."""
+    path = tmp_path / "export"
+    store = served.get(Store)
+    chosen = ExportOptions(**options)
+    with path.open("wb") as file:
+        source = ExportSelection(store, find_row(store, session), chosen)
+        check(chosen).write_unpurged(store, source, file)
+    return path.read_bytes()
+
+
+async def test_the_film_is_exported_as_an_mp4_file(
+    served: Served, filmed: tuple[int, float], tmp_path: Path
+) -> None:
+    whole = await asyncio.to_thread(export, served, filmed[0], tmp_path, format="mp4")
+    assert whole == await asyncio.to_thread(export, served, filmed[0], tmp_path, format="mp4")
+    assert [number for _, number in read_film(whole)] == list(range(COUNT))
+
+
+async def test_tables_have_the_film_beside_them(
+    served: Served, filmed: tuple[int, float], tmp_path: Path
+) -> None:
+    data = await asyncio.to_thread(export, served, filmed[0], tmp_path, format="csv")
+    with ZipFile(BytesIO(data)) as archive:
+        assert [number for _, number in read_film(archive.read("film.mp4"))] == list(range(COUNT))
+    table = await asyncio.to_thread(export, served, filmed[0], tmp_path, format="parquet")
+    with ZipFile(BytesIO(table)) as archive:
+        rows = pq.read_table(BytesIO(archive.read("film.parquet")))
+    assert rows.num_rows == COUNT
+    assert FilmPicture(rows["picture"][0].as_py()).is_key
+
+
+async def test_mcap_has_the_film_as_video(served: Served, filmed: tuple[int, float], tmp_path: Path) -> None:
+    session, start = filmed
+    data = await asyncio.to_thread(export, served, session, tmp_path, format="mcap")
+    messages = [
+        (schema.name if schema else "", message.log_time, json.loads(message.data))
+        for schema, channel, message in make_reader(BytesIO(data)).iter_messages(topics=["/film"])
+    ]
+    assert {name for name, _, _ in messages} == {"foxglove.CompressedVideo"}
+    row = find_row(served.get(Store), session)
+    times = [log_time / 1e9 - row.started - start for _, log_time, _ in messages]
+    assert times == pytest.approx([number / RATE for number in range(COUNT)], abs=1e-4)
+    decoder = av.CodecContext.create("h264", "r")
+    assert isinstance(decoder, av.VideoCodecContext)
+    frames = [
+        frame
+        for _, _, message in messages
+        for frame in decoder.decode(av.Packet(base64.b64decode(message["data"])))
+    ]
+    numbers = [read_number(frame.to_ndarray(format="bgr24").astype(np.uint8)) for frame in frames]
+    assert numbers == list(range(len(numbers)))
+    assert len(numbers) >= COUNT - 1
+
+
+async def test_an_archive_brings_the_film_to_another_computer(
+    served: Served, filmed: tuple[int, float], tmp_path: Path
+) -> None:
+    session, start = filmed
+    archive = await asyncio.to_thread(export, served, session, tmp_path, format="archive")
+    await served.api.delete(f"/sessions/{session}")
+    await served.api.post(f"/sessions/{session}/purge")
+    retention = served.get(RetentionWorker)
+    await retention.apply(time.time())
+    answer = await served.api.post("/imports", content=archive)
+    assert answer.status_code == 201, answer.text
+    imported = answer.json()["id"]
+    part = await served.api.get(f"/sessions/{imported}/film/part", params={"start": start, "seconds": 30})
+    assert [number for _, number in read_film(part.content)] == list(range(COUNT))
+
+
+async def test_the_film_is_no_block_of_a_replay(served: Served, filmed: tuple[int, float]) -> None:
+    session, start = filmed
+    answer = await served.api.get(f"/sessions/{session}/blocks", params={"start": start, "end": start + 5.0})
+    assert answer.status_code == 200
+    assert "film" not in topics_of(answer.content)
