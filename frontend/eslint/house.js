@@ -15,7 +15,7 @@ const LAYERS = [
   ['floor'],
   ['access', 'drive'],
   ['live'],
-  ['capture', 'sound'],
+  ['capture', 'film', 'sound'],
   ['parts'],
   ['charts'],
   ['panels/*'],

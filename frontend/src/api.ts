@@ -47,6 +47,12 @@ export interface SessionMissions {
   readonly leftOut: number;
 }
 
+/** A part of a film as an MP4 file, which begins `start` s after the session. */
+export interface FilmPart {
+  readonly data: ArrayBuffer;
+  readonly start: number;
+}
+
 /** Blocks as on the live socket, and how many samples could not be given. */
 export interface Stretch {
   readonly blocks: ArrayBuffer;
@@ -153,6 +159,13 @@ export const api = {
     ask(server.GET('/api/sessions/{session}/snapshots', { params: { path: { session }, query: after === null ? {} : { after } } })),
   snapshotPicture: (session: number, time: number) => address('/api/sessions/{session}/snapshot', { path: { session }, query: { time } }),
   thumbnail: (session: number, time: number) => address('/api/sessions/{session}/thumbnail', { path: { session }, query: { time } }),
+  film: (session: number) => ask(server.GET('/api/sessions/{session}/film', { params: { path: { session } } })),
+  /** from the picture on that is shown at `start`, s since the session's start */
+  filmPart: (session: number, start: number, seconds: number) =>
+    askFor(
+      server.GET('/api/sessions/{session}/film/part', { params: { path: { session }, query: { start, seconds } }, parseAs: 'arrayBuffer', fetch: within(TIMEOUT_PAST) }),
+      (data, { headers }): FilmPart => ({ data: bytes(data), start: Number(headers.get('Film-Start')) }),
+    ),
   sessionMissions: (session: number) =>
     askFor(server.GET('/api/sessions/{session}/missions', { params: { path: { session } } }), (missions, response) => ({ missions, leftOut: leftOut(response) })),
   timeline: (session: number) => ask(server.GET('/api/sessions/{session}/timeline', { params: { path: { session } } })),

@@ -105,6 +105,7 @@ class VisionNode(Vision):
         self._quality = StreamQuality(config.stream_rate)
         self._film_timer = RateTimer(clock, config.stream_rate)
         self._film_until = -inf
+        self._filmed = -inf
         self._film_quality: FilmQuality = "medium"
         self._film_coder: FilmCoder | None = None
         self._detector: Detector | None = None
@@ -296,7 +297,10 @@ class VisionNode(Vision):
         self._quality.take(now, now - began, len(jpeg))
 
     def _send_film(self, frame: CameraFrame) -> None:
-        """Send a picture of the film."""
+        """Send a picture of the film, unless the camera has given it already."""
+        if frame.taken <= self._filmed:
+            return
+        self._filmed = frame.taken
         if self._film_coder is None:
             from robot_runtime.vision.film import open_coder
 

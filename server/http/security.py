@@ -27,7 +27,8 @@ OWN_POLICY = frozenset({"content-security-policy", "x-frame-options"})
 STREAMED = frozenset({"/api/imports", "/api/update/release"})
 """Paths that read bodies of any size piece by piece, and check their limits themselves."""
 HEADERS = {
-    "content-security-policy": "default-src 'self'; img-src 'self' blob:; object-src 'none'; "
+    "content-security-policy": "default-src 'self'; img-src 'self' blob:; media-src 'self' blob:; "
+    "object-src 'none'; "
     "base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
     "x-content-type-options": "nosniff",
     "x-frame-options": "DENY",

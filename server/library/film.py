@@ -33,7 +33,10 @@ LAST_SECONDS = 1 / 15
 _CRF = 23
 """x264's rate factor for pictures that were JPEG files."""
 _MICROSECONDS = 1_000_000
-_FRAGMENTED = {"movflags": "frag_keyframe+empty_moov+default_base_moof"}
+_FRAGMENTED = {
+    "movflags": "frag_keyframe+empty_moov+default_base_moof",
+    "video_track_timescale": str(_MICROSECONDS),
+}
 """Written forward only, cut off it plays to its end, and a browser adds it to others."""
 
 
@@ -131,10 +134,13 @@ def write_mp4(pictures: Iterator[Picture], output: IO[bytes]) -> None:
     unit = Fraction(1, _MICROSECONDS)
     with av.open(output, "w", format="mp4", options=_FRAGMENTED) as file:
         stream = file.add_mux_stream("h264", rate=15, width=shown.width, height=shown.height)
+        last = -1
         for time, picture in chain([(origin, first)], coded):
             packet = av.Packet(picture)
             packet.stream, packet.time_base = stream, unit
-            packet.pts = packet.dts = round((time - origin) * _MICROSECONDS)
+            # The file takes no two pictures of one time, and later ones build on each.
+            last = max(last + 1, round((time - origin) * _MICROSECONDS))
+            packet.pts = packet.dts = last
             # It counts for the last one alone.
             packet.duration = round(LAST_SECONDS * _MICROSECONDS)
             packet.is_keyframe = picture.is_key

@@ -1,4 +1,5 @@
 import { createContext } from 'svelte';
+import type { FilmDescription } from '../api';
 import { DOCUMENT_TOPICS, PICTURE_TOPICS, type Alarm, type DebugLine, type Detection, type Documents, type RobotEvent, type Rows, type State } from '../generated/topics';
 import { readDocuments, readPicture, type Block } from './blocks';
 import { calendar, type Instant } from './clock';
@@ -40,6 +41,14 @@ const byNumber = <Name extends string>(topics: Record<Name, number>) => new Map(
 const DOCUMENT_NAMES = byNumber(DOCUMENT_TOPICS);
 const PICTURE_NAMES = byNumber(PICTURE_TOPICS);
 
+/** A film, and where its replay stands. */
+export interface ReplayedFilm {
+  readonly session: number;
+  readonly film: FilmDescription;
+  /** s since the session's start */
+  readonly following: { readonly position: number; readonly playing: boolean; readonly speed: number };
+}
+
 /** Everything the page shows of the robot. It comes from the live socket (feed.ts) or from a replay. */
 export class Live {
   connection = $state<'connecting' | 'open' | 'lost'>('connecting');
@@ -61,6 +70,8 @@ export class Live {
   readonly documents = createNewest<Documents>(namesOf(DOCUMENT_TOPICS));
   /** the newest picture of each topic: of the camera, and of what somebody asked for with `watch` */
   readonly pictures = createNewest<Record<PictureTopic, Picture>>(namesOf(PICTURE_TOPICS));
+  /** the film of the session that is replayed, where there is one */
+  film = $state.raw<ReplayedFilm | null>(null);
   serverError = $state('');
   /** alarms of the server, which sees what the runtime cannot: that it is silent, for one */
   serverAlarms = $state.raw<readonly Alarm[]>([]);

@@ -148,6 +148,7 @@ export const sessions = {
       mcap: { title: 'MCAP', text: 'For Foxglove and Lichtblick: depth, attitude, camera and log.' },
       parquet: { title: 'Parquet', text: 'For pandas and other tools for large tables: small files, exact numbers.' },
       report: { title: 'Report', text: 'For reading and printing: charts and figures in one HTML file that works offline.' },
+      mp4: { title: 'Film', text: 'For any player: the camera’s film as an MP4 file.' },
       archive: { title: 'Archive', text: 'For another µ-CAT: import the whole session there to replay and compare it.' },
     },
     topics: 'Topics',

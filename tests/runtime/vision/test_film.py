@@ -9,6 +9,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.commands import FilmCommand
 from robot_runtime.contract.film_picture import FilmPicture
+from robot_runtime.vision.camera import CameraFrame
 from robot_runtime.vision.film import open_coder
 from tests.film import HEIGHT, WIDTH, code_numbers, draw_number
 from tests.runtime.vision.harness import ShakyCamera, drawn
@@ -25,6 +26,13 @@ def clock() -> SimulatedClock:
 @pytest.fixture
 def listener() -> VisionListener:
     return VisionListener()
+
+
+class SlowCamera(ShakyCamera):
+    """A camera that has a new picture every half second."""
+
+    def read(self) -> CameraFrame:
+        return CameraFrame(self.picture, self.clock.now() // 0.5 * 0.5)
 
 
 def film(
@@ -71,6 +79,19 @@ def test_a_film_that_begins_again_begins_with_a_key_picture(
     begins = [FilmPicture(picture).is_key for _, picture in listener.film]
     assert begins[0]
     assert sum(begins) == 2
+
+
+def test_a_picture_that_the_camera_gives_twice_is_filmed_once(
+    listener: VisionListener, clock: SimulatedClock
+) -> None:
+    camera = SlowCamera(drawn(1.0, None), clock)
+    node = listener.node(clock, camera.open)
+    node.film(FilmCommand(seconds=60.0))
+    while clock.now() < START + 5.0:
+        clock.forward(node.tick())
+    times = [time for time, _ in listener.film]
+    assert times == sorted(set(times))
+    assert len(times) in range(9, 12)
 
 
 def test_each_picture_is_coded_at_once_and_says_how() -> None:

@@ -105,6 +105,14 @@ async def test_a_film_of_jpeg_files_is_played_too(served: Served) -> None:
     assert [number for _, number in read_film(part.content)] == list(range(COUNT))
 
 
+async def test_pictures_of_one_time_are_played_one_after_the_other(served: Served) -> None:
+    start = now(served) + 1.0
+    session = await record(served, [(start, picture) for _, picture in h264(start)])
+    (span,) = (await served.api.get(f"/sessions/{session}/film")).json()["spans"]
+    part = await served.api.get(f"/sessions/{session}/film/part", params={"start": span["start"]})
+    assert [number for _, number in read_film(part.content)] == list(range(COUNT))
+
+
 async def test_a_pause_of_the_film_parts_its_times(served: Served) -> None:
     start = now(served) + 1.0
     first = h264(start)

@@ -5,8 +5,8 @@ import { sessions as texts } from '../../../texts/sessions';
 
 export interface Choice {
   readonly format: ExportFormat;
-  /** what can be chosen besides: topics, or columns and a period; and whether a range */
-  readonly parts: 'topics' | 'columns' | 'whole';
+  /** what can be chosen besides: topics, or columns and a period, with a range; or a range alone; or nothing */
+  readonly parts: 'topics' | 'columns' | 'range' | 'whole';
 }
 
 export const CHOICES: readonly Choice[] = [
@@ -17,6 +17,7 @@ export const CHOICES: readonly Choice[] = [
   { format: 'parquet', parts: 'topics' },
   { format: 'report', parts: 'whole' },
   { format: 'archive', parts: 'whole' },
+  { format: 'mp4', parts: 'range' },
 ];
 
 /** Who reads the CSV: programs, or a spreadsheet with this decimal sign. */

@@ -1,0 +1,51 @@
+import { describe, expect, it } from 'vitest';
+import { nextPart } from '../src/film/screening';
+import { filmedMoment, isFilmed } from '../src/film/spans';
+
+const WHOLE = [{ start: 1, end: 100 }];
+
+describe('the next part of a film', () => {
+  it('begins short where the film stands, so that it comes soon', () => {
+    expect(nextPart(20, [], WHOLE)).toEqual({ start: 20, seconds: 2 });
+  });
+
+  it('follows what is stored, in longer parts', () => {
+    expect(nextPart(20, [{ start: 19.5, end: 22.05 }], WHOLE)).toEqual({ start: 22.05, seconds: 10 });
+  });
+
+  it('follows parts that hardly touch', () => {
+    expect(nextPart(20, [{ start: 19, end: 22 }, { start: 22.1, end: 32 }], WHOLE)).toEqual({ start: 32, seconds: 10 });
+  });
+
+  it('is none while enough is in store, and at the end of the film', () => {
+    expect(nextPart(20, [{ start: 19, end: 36 }], WHOLE)).toBeNull();
+    expect(nextPart(99, [{ start: 90, end: 99.9 }], WHOLE)).toBeNull();
+  });
+
+  it('begins with the first picture of a film that begins later', () => {
+    expect(nextPart(0, [], WHOLE)).toEqual({ start: 1, seconds: 2 });
+  });
+
+  it('comes before a pause of the film ends', () => {
+    const spans = [{ start: 0, end: 10 }, { start: 20, end: 30 }];
+    expect(nextPart(8, [{ start: 0, end: 10.06 }], spans)).toEqual({ start: 20, seconds: 10 });
+    expect(nextPart(2, [{ start: 0, end: 10.06 }], spans)).toBeNull();
+  });
+
+  it('is none without a film', () => {
+    expect(nextPart(0, [], [])).toBeNull();
+  });
+});
+
+describe('moments of a film', () => {
+  const spans = [{ start: 5, end: 10 }, { start: 20, end: 30 }];
+
+  it('are the next ones that were filmed', () => {
+    expect([0, 7, 15, 25, 40].map((at) => filmedMoment(at, spans))).toEqual([5, 7, 20, 25, 30]);
+    expect(filmedMoment(3, [])).toBe(3);
+  });
+
+  it('are shown a little before and after it, too', () => {
+    expect([3.9, 4.1, 10.9, 12, 19.5].map((at) => isFilmed(at, spans))).toEqual([false, true, true, false, true]);
+  });
+});
