@@ -10,6 +10,6 @@ from robot_runtime.contract.limits import FilmRate
 class FilmConfig:
     """Film of recorded sessions, in the size of the camera's stream; `rate` in Hz, at most the stream's."""
 
-    record: bool = True
+    record: bool = False
     rate: FilmRate = 15.0
     quality: FilmQuality = "medium"

@@ -25,14 +25,16 @@ from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.film import plug
+from server.features.film.config import FilmConfig
 from server.features.film.plug import LEASE_SECONDS
 from server.library.retention import RetentionWorker
+from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.recorder import Recorder
 from server.recording.session import find_row
 from tests.film import HEIGHT, RATE, WIDTH, code_numbers, read_film, read_number
 from tests.server.blocks import depth_block, film_block
-from tests.server.serving import Served
+from tests.server.serving import Served, serve
 from tests.server.waiting import until
 
 COUNT = 60
@@ -173,16 +175,24 @@ async def test_a_film_that_is_cut_off_plays_to_its_end(served: Served) -> None:
 
 
 async def test_a_film_is_asked_for_while_a_session_is_recorded(
-    served: Served, monkeypatch: pytest.MonkeyPatch
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    filmed = served.runtime.filmed
-    assert filmed == []
     monkeypatch.setattr(plug, "RENEWAL_SECONDS", 0.02)
+    async with serve(settings.with_section(FilmConfig(record=True, rate=10.0, quality="low"))) as served:
+        filmed = served.runtime.filmed
+        assert filmed == []
+        session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
+        await until(lambda: len(filmed) >= 3, "the film to be asked for again and again")
+        assert filmed[0] == {"seconds": LEASE_SECONDS, "rate": 10.0, "quality": "low"}
+        assert filmed[-1] == filmed[0]
+        await served.api.post(f"/sessions/{session}/stop")
+        await until(lambda: filmed[-1]["seconds"] == 0.0, "the film to be ended")
+
+
+async def test_no_film_is_asked_for_where_robot_toml_does_not_say_so(served: Served) -> None:
     session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
-    await until(lambda: len(filmed) >= 3, "the film to be asked for again and again")
-    assert {question["seconds"] for question in filmed} == {LEASE_SECONDS}
     await served.api.post(f"/sessions/{session}/stop")
-    await until(lambda: filmed[-1]["seconds"] == 0.0, "the film to be ended")
+    assert served.runtime.filmed == []
 
 
 async def test_pages_and_their_history_are_not_sent_the_film(served: Served) -> None:
