@@ -1,6 +1,6 @@
 """The film: pictures of the camera, coded one by one as they come.
 
-Where PyAV is, they are H.264; elsewhere JPEG files, which are twenty times as large.
+Where PyAV is, they are H.264; elsewhere JPEG files, which are some five times as large.
 """
 
 from typing import TYPE_CHECKING, Protocol
