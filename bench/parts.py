@@ -42,6 +42,7 @@ PARTS = {
         BenchPart("camera"),
         BenchPart("vision"),
         BenchPart("fly"),
+        BenchPart("film"),
         BenchPart("codec"),
         BenchPart("outage"),
         BenchPart("store"),

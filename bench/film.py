@@ -1,0 +1,59 @@
+"""The film of the whole simulated robot: what it costs, its pictures a second, and its bytes.
+
+The jitter of the control loop and the processor time of each process are measured of a robot that records
+without a film and of one that records with it, one after the other.
+"""
+
+import tempfile
+import time
+from pathlib import Path
+
+from bench import jitter
+from bench.processes import core_percent
+from server.features.film.config import FilmConfig
+from server.library.content import Recording
+from server.platform.settings import DataFolder
+from server.platform.store import Reader
+from server.recording.session import find_row
+from tests.stack import ROOT, Stack
+
+_SETTLE = 8.0
+"""s: the first picture waits for the scene."""
+_SECONDS = 30.0
+
+
+def measure() -> dict[str, float]:
+    """Measure half a minute without a film and half a minute with one."""
+    return _record("film_off", FilmConfig(record=False)) | _record("film_on", FilmConfig(record=True))
+
+
+def _record(name: str, config: FilmConfig) -> dict[str, float]:
+    with tempfile.TemporaryDirectory() as folder:
+        data = Path(folder)
+        text = (ROOT / "robot.toml").read_text()
+        (data / "robot.toml").write_text(
+            text.replace("record = false", f"record = {str(config.record).lower()}")
+        )
+        with Stack(data, "--config", str(data / "robot.toml")) as stack:
+            session = stack.api.post("/sessions", json={"name": "bench"}).raise_for_status().json()["id"]
+            stack.arm()
+            time.sleep(_SETTLE)
+            processes = {part: stack.part(part) for part in ("runtime", "vision", "scene")}
+            began = time.monotonic()
+            cpu = core_percent(processes | {"server": stack.server}, _SECONDS)
+            stack.api.post("/robot/stop").raise_for_status()
+            stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+        end = began + _SECONDS
+        figures = {f"film.cpu.{part}_percent.{name}": value for part, value in cpu.items()}
+        figures |= jitter.figures(data, session, {name: (began, end)})
+        return figures | (_sizes(data, session, began, end) if config.record else {})
+
+
+def _sizes(data: Path, session: int, start: float, end: float) -> dict[str, float]:
+    store = Reader(DataFolder(data).database)
+    sizes = [len(picture) for _, picture in Recording(store, find_row(store, session)).film(start, end)]
+    store.close()
+    return {
+        "film.picture_hz": len(sizes) / _SECONDS,
+        "film.mb_a_minute": sum(sizes) / 1e6 / _SECONDS * 60,
+    }
