@@ -1,6 +1,8 @@
 """The interface of all cameras."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -38,12 +40,27 @@ NO_CONTROLS = SensorControls()
 """A sensor that chooses all by itself."""
 
 
-class CameraFrame(NamedTuple):
-    """One picture, uint8 of shape (height, width, 3) in the order blue, green, red."""
+class CameraFrame:
+    """One picture, `taken` at a time (s) of the steady clock.
 
-    picture: "Picture"
-    taken: float
-    """s on the steady clock."""
+    `jpeg` is the camera's own JPEG file of just this picture, if it gave one; `picture` is then the function
+    that decodes it.
+    """
+
+    def __init__(
+        self, picture: "Picture | Callable[[], Picture]", taken: float, jpeg: bytes | None = None
+    ) -> None:
+        self._picture = picture
+        self.taken = taken
+        self.jpeg = jpeg
+
+    @cached_property
+    def picture(self) -> "Picture":
+        """The picture, uint8 of shape (height, width, 3) in the order blue, green, red.
+
+        It is decoded when it is first read. Raise CameraError if that fails.
+        """
+        return self._picture() if callable(self._picture) else self._picture
 
 
 class Camera(ABC):

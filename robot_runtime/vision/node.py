@@ -19,7 +19,7 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.vision.camera import Camera, CameraError, CameraFrame, SensorControls
 from robot_runtime.vision.interface import NO_PICTURE, STARTING, Vision, VisionOutputs
 from robot_runtime.vision.sightings import Sightings
-from robot_runtime.vision.stream_quality import StreamQuality
+from robot_runtime.vision.stream_quality import BYTES_MAX, STEPS, StreamQuality
 
 if TYPE_CHECKING:
     from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -157,7 +157,7 @@ class VisionNode(Vision):
         if frame.taken == self._snapshot_taken:
             raise RefusedError("This picture is a snapshot already, and the camera has sent no newer one.")
         self._snapshot_taken = frame.taken
-        self._outputs.snapshot(frame.taken, as_snapshot(frame.picture))
+        self._outputs.snapshot(frame.taken, frame.jpeg or as_snapshot(frame.picture))
         return {"time": frame.taken}
 
     def film(self, command: FilmCommand) -> None:
@@ -200,7 +200,7 @@ class VisionNode(Vision):
         """
         began = self._clock.now()
         try:
-            frame = self._take(self._size(stream, film) if search or stream or film else None)
+            frame = self._take(search, stream, film)
         except CameraError as problem:
             self._fail(str(problem), problem.patience)
         except Exception as problem:
@@ -258,10 +258,10 @@ class VisionNode(Vision):
         scale = 1.0 if film else self._quality.step.scale if stream else 0.0
         return max(self._config.size, (round(width * scale), round(height * scale)))
 
-    def _take(self, size: tuple[int, int] | None) -> CameraFrame | None:
-        """Return the newest picture of this width and height, turned.
+    def _take(self, search: bool, stream: bool, film: bool) -> CameraFrame | None:
+        """Return the newest picture, turned; None if it is dropped, or a failed camera is not tried yet.
 
-        None if it is dropped, since no size is asked for, or a failed camera is not tried yet.
+        It is large enough for stream and film, or of the size that is searched.
         """
         is_device = self._camera is not None and self._camera.rate is not None
         if is_device and self._opened_for != self._device_settings:
@@ -271,27 +271,34 @@ class VisionNode(Vision):
                 return None
             self._opened_for = self._device_settings
             self._camera = self._open_camera()
-        if size is None:
+        if not (search or stream or film):
             self._camera.skip()
             return None
         from robot_runtime.vision import pipeline
 
-        settings = self._settings
+        settings, size = self._settings, self._size(stream, film)
         self._camera.size = pipeline.before_turn(size, settings.turn)
         frame = self._camera.read()
-        self._check_repetition(frame.picture)
+        self._check_repetition(frame)
+        turned = settings.turn != 0 or settings.mirror
+        if search or film or turned or not self._own_jpeg(frame):
+            # Decoded here: a damaged picture is a failure of the camera.
+            picture = pipeline.turn(frame.picture, settings.turn, settings.mirror)
+            frame = CameraFrame(picture, frame.taken, None if turned else frame.jpeg)
         self._failing_since = None
         if self._failure is not None:
             self._failure = None
             self._report("info", f"Camera: {self.text}.")
-        self._newest = frame._replace(picture=pipeline.turn(frame.picture, settings.turn, settings.mirror))
-        return self._newest
+        self._newest = frame
+        return frame
 
     def _send_stream(self, frame: CameraFrame, began: float) -> None:
         """Send a picture of the stream, which was begun at `began` (s)."""
         from robot_runtime.vision import pipeline
 
-        jpeg = pipeline.as_stream(frame.picture, self._config.stream_size, self._quality.step)
+        jpeg = self._own_jpeg(frame) or pipeline.as_stream(
+            frame.picture, self._config.stream_size, self._quality.step
+        )
         self._outputs.picture(CAMERA, frame.taken, jpeg)
         now = self._clock.now()
         self._quality.take(now, now - began, len(jpeg))
@@ -308,6 +315,13 @@ class VisionNode(Vision):
             self._film_coder = open_coder(rate, self._film_quality, size)
         self._outputs.film(frame.taken, self._film_coder.code(frame.taken, frame.picture))
 
+    def _own_jpeg(self, frame: CameraFrame) -> bytes | None:
+        """Return the camera's own JPEG file of a picture if the stream can send it unchanged, else None."""
+        fits = self._camera is not None and self._camera.size == self._config.stream_size
+        if frame.jpeg is None or not fits or self._quality.step != STEPS[0]:
+            return None
+        return frame.jpeg if len(frame.jpeg) <= BYTES_MAX else None
+
     @property
     def _device_settings(self) -> tuple[float, bool, SensorControls]:
         """Rate, shape and controls that a device is opened for; where they change, it is opened again."""
@@ -315,7 +329,7 @@ class VisionNode(Vision):
         controls = SensorControls(now.exposure, now.gain, now.colour_temperature)
         return max(now.rate, self._config.stream_rate), now.turn in (90, 270), controls
 
-    def _check_repetition(self, picture: "Picture") -> None:
+    def _check_repetition(self, frame: CameraFrame) -> None:
         """Raise CameraError where a real camera repeats one picture for ever, also after a reopening."""
         if self._config.camera not in REAL_CAMERAS:
             return
@@ -323,14 +337,14 @@ class VisionNode(Vision):
             from robot_runtime.vision.repetition import PictureRepetition
 
             self._repetition = PictureRepetition()
-        if self._repetition.repeats(picture, self._clock.now()):
+        if self._repetition.repeats(frame, self._clock.now()):
             raise CameraError("the camera repeats one picture: it hangs, or its lens is covered")
 
     def _examine(self, frame: CameraFrame) -> None:
         # Imports NumPy and OpenCV, the slowest part of the start.
         from robot_runtime.vision import pipeline
 
-        frame = frame._replace(picture=pipeline.fit(frame.picture, *self._config.size))
+        frame = CameraFrame(pipeline.fit(frame.picture, *self._config.size), frame.taken)
         settings = self._settings
         if self._detector is None or self._detector.settings is not settings:
             self._detector = pipeline.Detector(settings)

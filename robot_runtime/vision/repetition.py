@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from robot_runtime.vision.camera import CameraFrame
 from robot_runtime.vision.picture import Picture
 
 REPEATS = 10
@@ -16,17 +17,23 @@ class PictureRepetition:
     """The repetitions of a camera's picture."""
 
     def __init__(self) -> None:
-        self._picture: Picture | None = None
+        self._frame: CameraFrame | None = None
         self._since, self._count = 0.0, 0
 
-    def repeats(self, picture: Picture, now: float) -> bool:
-        """Take a picture at `now` (s); return True if it has repeated for too often and too long."""
-        before, self._picture = self._picture, picture
-        if before is None or not _equal(before, picture):
+    def repeats(self, frame: CameraFrame, now: float) -> bool:
+        """Take a frame at `now` (s); return True if its picture has repeated for too often and too long."""
+        before, self._frame = self._frame, frame
+        if before is None or not _same_picture(before, frame):
             self._since, self._count = now, 0
             return False
         self._count += 1
         return self._count >= REPEATS and now - self._since >= REPEATING_SECONDS
+
+
+def _same_picture(frame: CameraFrame, other: CameraFrame) -> bool:
+    if frame.jpeg is not None and other.jpeg is not None:
+        return frame.jpeg == other.jpeg
+    return _equal(frame.picture, other.picture)
 
 
 def _equal(picture: Picture, other: Picture) -> bool:

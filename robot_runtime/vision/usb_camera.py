@@ -14,15 +14,21 @@ from robot_runtime.vision.camera import (
     SensorControls,
     taken_at,
 )
+from robot_runtime.vision.picture import Picture
 from robot_runtime.vision.shape import describe_fit, fit
 from robot_runtime.vision.video_device import check_device
 
 FIRST_DEVICE = "/dev/video0"
 BUFFERS = 2
 """Pictures that the driver holds: the newest is the second one at most."""
+DAMAGED_MAX = 5
+"""JPEG files in a row that are cut off; most cameras cut off one now and then, and their first."""
 MILLISECONDS = 1e3
 EXPOSURE_UNITS = 10
 """Of Video4Linux in a ms."""
+MOTION_JPEG = cv2.VideoWriter.fourcc(*"MJPG")
+_START, _END, _CODES, _SCAN = b"\xff\xd8", b"\xff\xd9", b"\xff\xc4", b"\xff\xda"
+"""Markers of a JPEG file (ITU-T T.81, table B.1): start and end, Huffman tables, start of the scan."""
 _FIXED_EXPOSURE, _OWN_EXPOSURES = 1, (3, 0)
 """Video4Linux' kinds of exposure: manual; by the camera for a fixed aperture, or for any."""
 
@@ -30,6 +36,7 @@ _FIXED_EXPOSURE, _OWN_EXPOSURES = 1, (3, 0)
 class UsbCamera(Camera):
     """A camera by a Video4Linux device, asked for pictures of `width` × `height` pixels.
 
+    Where the device gives Motion JPEG, each picture has its JPEG file and is decoded only if it is read.
     `device` is its path, or the first one if empty. What `controls` leaves automatic is set so: a camera
     remembers what another program has fixed. Raises CameraError where there is none, where it may not be
     opened, and where it is in use.
@@ -45,7 +52,7 @@ class UsbCamera(Camera):
         controls: SensorControls = NO_CONTROLS,
     ) -> None:
         self._path = device or FIRST_DEVICE
-        self.size = self._given = (width, height)
+        self.size = (width, height)
         self._clock = clock
         check_device(Path(self._path))
         self._capture = cv2.VideoCapture(self._path, cv2.CAP_V4L2)
@@ -55,21 +62,37 @@ class UsbCamera(Camera):
                 "name the camera's device in robot.toml: [vision] file"
             )
         self.rate = rate
-        self._capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*"MJPG"))
+        self._capture.set(cv2.CAP_PROP_FOURCC, MOTION_JPEG)
         self._capture.set(cv2.CAP_PROP_FRAME_WIDTH, width)
         self._capture.set(cv2.CAP_PROP_FRAME_HEIGHT, height)
         self._capture.set(cv2.CAP_PROP_FPS, rate)
         self._capture.set(cv2.CAP_PROP_BUFFERSIZE, BUFFERS)
+        self._given = (
+            round(self._capture.get(cv2.CAP_PROP_FRAME_WIDTH)),
+            round(self._capture.get(cv2.CAP_PROP_FRAME_HEIGHT)),
+        )
         self._refused = self._control(controls)
+        # The driver decides on the format with the size.
+        self._gives_jpeg = self._capture.get(cv2.CAP_PROP_FOURCC) == MOTION_JPEG and self._capture.set(
+            cv2.CAP_PROP_CONVERT_RGB, 0
+        )
 
     def read(self) -> CameraFrame:
         """Return the newest picture. Raise CameraError if the camera gives none."""
-        ok, picture = self._capture.read()
-        if not ok or picture is None:
-            raise CameraError(f"the camera {self._path} gives no picture; check its plug")
-        self._given = (picture.shape[1], picture.shape[0])
-        fitted = fit(picture.astype(np.uint8, copy=False), *self.size)
-        return CameraFrame(fitted, self._taken())
+        size = self.size
+        if not self._gives_jpeg:
+            return CameraFrame(self._fit(self._receive(), size), self._taken())
+        for _ in range(DAMAGED_MAX):
+            jpeg = self._receive().tobytes()
+            if not jpeg.startswith(_START):
+                # The device names Motion JPEG but gives something else: OpenCV converts what it can.
+                self._gives_jpeg = False
+                self._capture.set(cv2.CAP_PROP_CONVERT_RGB, 1)
+                return self.read()
+            if (end := jpeg.rfind(_END)) >= 0:
+                # A driver may leave something behind the file's end.
+                return self._frame(jpeg[: end + len(_END)], size)
+        raise CameraError(f"the camera {self._path} gives damaged pictures; check its plug and cable")
 
     def skip(self) -> None:
         """Take the next picture from the driver without decoding it. Raise CameraError."""
@@ -82,10 +105,35 @@ class UsbCamera(Camera):
 
     def __str__(self) -> str:
         width, height = self._given
-        notes = [describe_fit(self._given, *self.size) or f"{width} × {height}"]
+        form = " as JPEG" if self._gives_jpeg else ""
+        notes = [describe_fit(self._given, *self.size) or f"{width} × {height}{form}"]
         if self._refused:
             notes.append(f"it does not fix {', '.join(self._refused)}")
         return f"USB camera {self._path} ({'; '.join(notes)})"
+
+    def _receive(self) -> Picture:
+        """Return what the device gives next: a picture, or the bytes of a JPEG file."""
+        ok, data = self._capture.read()
+        if not ok or data is None:
+            raise CameraError(f"the camera {self._path} gives no picture; check its plug")
+        return data.astype(np.uint8, copy=False)
+
+    def _frame(self, jpeg: bytes, size: tuple[int, int]) -> CameraFrame:
+        """Return the frame of a JPEG file, which has `size` when it is decoded."""
+
+        def decode() -> Picture:
+            picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+            if picture is None:
+                raise CameraError(f"the camera {self._path} gives damaged pictures; check its plug and cable")
+            return self._fit(picture.astype(np.uint8, copy=False), size)
+
+        # Old cameras leave out the Huffman tables; not every browser then knows the usual ones.
+        is_complete = self._given == size and _CODES in jpeg[: jpeg.find(_SCAN)]
+        return CameraFrame(decode, self._taken(), jpeg if is_complete else None)
+
+    def _fit(self, picture: Picture, size: tuple[int, int]) -> Picture:
+        self._given = (picture.shape[1], picture.shape[0])
+        return fit(picture, *size)
 
     def _control(self, controls: SensorControls) -> list[str]:
         """Fix what `controls` fixes, leave the rest to the camera, and return what it refuses to fix."""

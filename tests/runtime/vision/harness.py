@@ -1,8 +1,13 @@
 """Pictures and cameras for the vision tests."""
 
 from collections.abc import Mapping
+from itertools import cycle
 from struct import Struct
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Box
@@ -66,6 +71,71 @@ class ShakyCamera(Camera):
 
     def __str__(self) -> str:
         return "shaky camera"
+
+
+class VideoControls:
+    """Stands in for cv2.VideoCapture of a device whose controls are not `fixed`, and notes what is set."""
+
+    def __init__(self, fixed: tuple[int, ...] = ()) -> None:
+        self._fixed = fixed
+        self.set_to: list[tuple[int, float]] = []
+
+    def __call__(self, _: str, backend: int) -> "VideoControls":
+        assert backend == cv2.CAP_V4L2
+        return self
+
+    def isOpened(self) -> bool:  # noqa: N802 - OpenCV's name
+        return True
+
+    def set(self, control: int, value: float) -> bool:
+        # Video4Linux refuses an exposure or a white by number while the camera chooses it.
+        chosen = dict(self.set_to)
+        automatic = {
+            cv2.CAP_PROP_EXPOSURE: chosen.get(cv2.CAP_PROP_AUTO_EXPOSURE, 3) != 1,
+            cv2.CAP_PROP_WB_TEMPERATURE: chosen.get(cv2.CAP_PROP_AUTO_WB, 1) != 0,
+        }
+        if control in self._fixed or automatic.get(control, False):
+            return False
+        self.set_to.append((control, value))
+        return True
+
+    def get(self, control: int) -> float:
+        return dict(self.set_to).get(control, -1.0)
+
+
+class JpegDevice(VideoControls):
+    """Stands in for cv2.VideoCapture of a camera that gives these JPEG files in turn, of 640 × 480 pixels.
+
+    `code` is the format that it really has. OpenCV decodes its pictures unless it is set not to.
+    """
+
+    def __init__(self, files: list[bytes], code: str = "MJPG") -> None:
+        super().__init__()
+        self.files = cycle(files)
+        self._format = float(cv2.VideoWriter.fourcc(*code))
+
+    @property
+    def converts(self) -> bool:
+        return bool(self.get(cv2.CAP_PROP_CONVERT_RGB))
+
+    def get(self, control: int) -> float:
+        own = {
+            cv2.CAP_PROP_FOURCC: self._format,
+            cv2.CAP_PROP_FRAME_WIDTH: 640.0,
+            cv2.CAP_PROP_FRAME_HEIGHT: 480.0,
+        }
+        return own.get(control, super().get(control))
+
+    def grab(self) -> bool:
+        next(self.files)
+        return True
+
+    def read(self) -> tuple[bool, NDArray[Any] | None]:
+        data = np.frombuffer(next(self.files), np.uint8).reshape(1, -1)
+        return True, cv2.imdecode(data, cv2.IMREAD_COLOR) if self.converts else data
+
+    def release(self) -> None:
+        """Do nothing; nothing is open."""
 
 
 def uncompressed_video() -> bytes:

@@ -25,7 +25,7 @@ from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
 from robot_runtime.vision.usb_camera import UsbCamera
-from tests.runtime.vision.harness import drawn, find
+from tests.runtime.vision.harness import VideoControls, drawn, find
 
 FPS = 10.0
 FIXED = SensorControls(exposure=12.5, gain=4.0, colour_temperature=5500)
@@ -453,33 +453,6 @@ class TestPiCamera:
             camera.read()
 
 
-class VideoControls:
-    """Stands in for cv2.VideoCapture of a device whose controls are not `fixed`, and notes what is set."""
-
-    def __init__(self, fixed: tuple[int, ...] = ()) -> None:
-        self._fixed = fixed
-        self.set_to: list[tuple[int, float]] = []
-
-    def __call__(self, _: str, backend: int) -> "VideoControls":
-        assert backend == cv2.CAP_V4L2
-        return self
-
-    def isOpened(self) -> bool:  # noqa: N802 - OpenCV's name
-        return True
-
-    def set(self, control: int, value: float) -> bool:
-        # Video4Linux refuses an exposure or a white by number while the camera chooses it.
-        chosen = dict(self.set_to)
-        automatic = {
-            cv2.CAP_PROP_EXPOSURE: chosen.get(cv2.CAP_PROP_AUTO_EXPOSURE, 3) != 1,
-            cv2.CAP_PROP_WB_TEMPERATURE: chosen.get(cv2.CAP_PROP_AUTO_WB, 1) != 0,
-        }
-        if control in self._fixed or automatic.get(control, False):
-            return False
-        self.set_to.append((control, value))
-        return True
-
-
 @pytest.fixture
 def device(tmp_path: Path) -> str:
     (tmp_path / "video9").touch()
@@ -510,7 +483,7 @@ class TestUsbControls:
         # An exposure is in units of 0.1 ms; 1 is the manual kind.
         assert list(values.values()) == [1, 125, 4, 0, 5500]
         assert tuple(values) == self.CONTROLS
-        assert text == f"USB camera {device} (320 × 240)"
+        assert text == f"USB camera {device} (320 × 240 as JPEG)"
 
     @pytest.mark.parametrize(("fixed", "kind"), [((), 3), ((3,), 0)], ids=["of an aperture", "of any"])
     def test_what_is_not_fixed_is_the_camera_s_again(
@@ -529,12 +502,17 @@ class TestUsbControls:
     ) -> None:
         text, _ = self.opened(monkeypatch, device, VideoControls(self.CONTROLS), FIXED)
         assert text == (
-            f"USB camera {device} (320 × 240; it does not fix the exposure, the gain, the colour temperature)"
+            f"USB camera {device} (320 × 240 as JPEG; it does not fix the exposure, the gain, the colour "
+            "temperature)"
         )
 
 
 class TestUsbCamera:
     """The camera's device is a file, which OpenCV's other reader plays: the kernel here has no camera."""
+
+    @pytest.fixture
+    def video(self, tmp_path: Path) -> Path:
+        return make_video(tmp_path / "camera.mp4", "mp4v")
 
     def test_pictures_come_scaled_and_with_a_time_of_the_steady_clock(
         self, video: Path, monkeypatch: pytest.MonkeyPatch
