@@ -16,7 +16,7 @@ from robot_runtime.vision.camera import (
 )
 from robot_runtime.vision.picture import Picture
 from robot_runtime.vision.shape import describe_fit, fit
-from robot_runtime.vision.video_device import check_device
+from robot_runtime.vision.video_device import check_device, describe_sizes
 
 FIRST_DEVICE = "/dev/video0"
 BUFFERS = 2
@@ -71,11 +71,11 @@ class UsbCamera(Camera):
             round(self._capture.get(cv2.CAP_PROP_FRAME_WIDTH)),
             round(self._capture.get(cv2.CAP_PROP_FRAME_HEIGHT)),
         )
+        # Listed once: the text is read after each picture.
+        self._sizes = "" if self._given == self.size else describe_sizes(Path(self._path), self._format)
         self._refused = self._control(controls)
         # The driver decides on the format with the size.
-        self._gives_jpeg = self._capture.get(cv2.CAP_PROP_FOURCC) == MOTION_JPEG and self._capture.set(
-            cv2.CAP_PROP_CONVERT_RGB, 0
-        )
+        self._gives_jpeg = self._format == MOTION_JPEG and self._capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)
 
     def read(self) -> CameraFrame:
         """Return the newest picture. Raise CameraError if the camera gives none."""
@@ -107,9 +107,16 @@ class UsbCamera(Camera):
         width, height = self._given
         form = " as JPEG" if self._gives_jpeg else ""
         notes = [describe_fit(self._given, *self.size) or f"{width} × {height}{form}"]
+        if self._sizes:
+            notes.append(f"it gives {self._sizes}")
         if self._refused:
             notes.append(f"it does not fix {', '.join(self._refused)}")
         return f"USB camera {self._path} ({'; '.join(notes)})"
+
+    @property
+    def _format(self) -> int:
+        """The four characters of the device's format as a number."""
+        return round(self._capture.get(cv2.CAP_PROP_FOURCC))
 
     def _receive(self) -> Picture:
         """Return what the device gives next: a picture, or the bytes of a JPEG file."""

@@ -1,4 +1,4 @@
-"""Video4Linux devices: the kernel's word on what a device is, and on whether another program has it."""
+"""Video4Linux devices: what the kernel says of their kind, their sizes and their use by another program."""
 
 import errno
 import os
@@ -15,6 +15,11 @@ _QUERY_CAPABILITY = 0x80685600
 _REQUEST_BUFFERS = 0xC0145608
 _RELEASE_BUFFERS = Struct("=IIIII").pack(0, 1, 1, 0, 0)
 """struct v4l2_requestbuffers for none: refused, where another program has buffers."""
+_FRAME_SIZE = Struct("=9I8x")
+"""struct v4l2_frmsizeenum: index, format, kind; width and height, or least, greatest and step of each."""
+_ENUMERATE_SIZES = 0xC02C564A
+_ONE_SIZE = 1
+_SIZES_MAX = 64
 _CAPTURES, _METADATA, _BY_DEVICE = 0x00000001, 0x00800000, 0x80000000
 
 
@@ -40,6 +45,33 @@ def check_device(path: Path) -> None:
         _check_use(path, device)
     finally:
         os.close(device)
+
+
+def describe_sizes(path: Path, pixel_format: int) -> str:
+    """Return the sizes of a device's pictures in a format, its four characters as a number, as text.
+
+    Empty where the driver does not list them.
+    """
+    sizes: list[str] = []
+    # The driver ends its list by refusing the next index.
+    with suppress(OSError):
+        device = os.open(path, os.O_RDWR | os.O_NONBLOCK)
+        try:
+            for index in range(_SIZES_MAX):
+                data = bytearray(_FRAME_SIZE.pack(index, pixel_format, *[0] * 7))
+                ioctl(device, _ENUMERATE_SIZES, data)
+                sizes.append(_describe_size(bytes(data)))
+        finally:
+            os.close(device)
+    return ", ".join(dict.fromkeys(sizes))
+
+
+def _describe_size(answer: bytes) -> str:
+    _, _, kind, *numbers = _FRAME_SIZE.unpack(answer)
+    if kind == _ONE_SIZE:
+        return f"{numbers[0]} × {numbers[1]}"
+    least_width, most_width, _, least_height, most_height, _ = numbers
+    return f"{least_width} × {least_height} to {most_width} × {most_height}"
 
 
 def _check_capabilities(path: Path, device: int) -> None:

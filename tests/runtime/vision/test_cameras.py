@@ -25,7 +25,7 @@ from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
 from robot_runtime.vision.usb_camera import UsbCamera
-from tests.runtime.vision.harness import VideoControls, drawn, find
+from tests.runtime.vision.harness import JpegDevice, VideoControls, drawn, find
 
 FPS = 10.0
 FIXED = SensorControls(exposure=12.5, gain=4.0, colour_temperature=5500)
@@ -505,6 +505,43 @@ class TestUsbControls:
             f"USB camera {device} (320 × 240 as JPEG; it does not fix the exposure, the gain, the colour "
             "temperature)"
         )
+
+
+class TestUsbSizes:
+    def sizes(self, monkeypatch: pytest.MonkeyPatch, device: str, answers: list[tuple[int, ...]]) -> str:
+        """Return the text of a camera, asked for 800 × 600, whose driver lists `answers`: kind, sizes."""
+
+        def answer(_: int, request: int, data: bytearray) -> int:
+            # VIDIOC_ENUM_FRAMESIZES; the file that stands in for the device answers nothing else.
+            if request != 0xC02C564A:
+                raise OSError(errno.ENOTTY, "Inappropriate ioctl for device")
+            index, pixel_format = struct.unpack_from("=II", data)
+            assert pixel_format == cv2.VideoWriter.fourcc(*"MJPG")
+            if index >= len(answers):
+                raise OSError(errno.EINVAL, "Invalid argument")
+            struct.pack_into(f"={len(answers[index])}I", data, 8, *answers[index])
+            return 0
+
+        monkeypatch.setattr("robot_runtime.vision.video_device.ioctl", answer)
+        monkeypatch.setattr(cv2, "VideoCapture", JpegDevice([]))
+        return str(UsbCamera(device, 800, 600, 15.0, SimulatedClock()))
+
+    def test_a_camera_without_the_size_names_those_it_gives(
+        self, monkeypatch: pytest.MonkeyPatch, device: str
+    ) -> None:
+        # Drivers list their usual size a second time.
+        answers: list[tuple[int, ...]] = [(1, 640, 480), (1, 320, 240), (1, 640, 480), (1, 1280, 720)]
+        assert self.sizes(monkeypatch, device, answers) == (
+            f"USB camera {device} (640 × 480, scaled to 800 × 600; it gives 640 × 480, 320 × 240, 1280 × 720)"
+        )
+
+    def test_a_range_of_sizes_is_named(self, monkeypatch: pytest.MonkeyPatch, device: str) -> None:
+        text = self.sizes(monkeypatch, device, [(3, 32, 1920, 2, 16, 1080, 4)])
+        assert text.endswith("; it gives 32 × 16 to 1920 × 1080)")
+
+    def test_a_driver_without_a_list_names_none(self, monkeypatch: pytest.MonkeyPatch, device: str) -> None:
+        text = self.sizes(monkeypatch, device, [])
+        assert text == f"USB camera {device} (640 × 480, scaled to 800 × 600)"
 
 
 class TestUsbCamera:
