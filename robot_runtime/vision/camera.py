@@ -43,8 +43,8 @@ NO_CONTROLS = SensorControls()
 class CameraFrame:
     """One picture, `taken` at a time (s) of the steady clock.
 
-    `jpeg` is the camera's own JPEG file of just this picture, if it gave one; `picture` is then the function
-    that decodes it.
+    `jpeg` is the camera's own JPEG file of just this picture, if it gave one. `picture` is the function that
+    decodes it, or the picture that the camera gave besides.
     """
 
     def __init__(
@@ -61,6 +61,11 @@ class CameraFrame:
         It is decoded when it is first read. Raise CameraError if that fails.
         """
         return self._picture() if callable(self._picture) else self._picture
+
+    @property
+    def original(self) -> bytes | None:
+        """The JPEG file that the picture is decoded from; None for a camera that gave the picture itself."""
+        return self.jpeg if callable(self._picture) else None
 
 
 class Camera(ABC):

@@ -157,7 +157,7 @@ class VisionNode(Vision):
         if frame.taken == self._snapshot_taken:
             raise RefusedError("This picture is a snapshot already, and the camera has sent no newer one.")
         self._snapshot_taken = frame.taken
-        self._outputs.snapshot(frame.taken, frame.jpeg or as_snapshot(frame.picture))
+        self._outputs.snapshot(frame.taken, frame.original or as_snapshot(frame.picture))
         return {"time": frame.taken}
 
     def film(self, command: FilmCommand) -> None:
@@ -280,11 +280,11 @@ class VisionNode(Vision):
         self._camera.size = pipeline.before_turn(size, settings.turn)
         frame = self._camera.read()
         self._check_repetition(frame)
-        turned = settings.turn != 0 or settings.mirror
-        if search or film or turned or not self._own_jpeg(frame):
+        if settings.turn or settings.mirror:
+            frame = CameraFrame(pipeline.turn(frame.picture, settings.turn, settings.mirror), frame.taken)
+        elif search or film or not self._own_jpeg(frame):
             # Decoded here: a damaged picture is a failure of the camera.
-            picture = pipeline.turn(frame.picture, settings.turn, settings.mirror)
-            frame = CameraFrame(picture, frame.taken, None if turned else frame.jpeg)
+            _ = frame.picture
         self._failing_since = None
         if self._failure is not None:
             self._failure = None

@@ -1,5 +1,6 @@
 """The Raspberry Pi's own camera, through picamera2."""
 
+import logging
 from importlib import import_module
 from typing import Any
 
@@ -14,7 +15,10 @@ from robot_runtime.vision.camera import (
     SensorControls,
     taken_at,
 )
+from robot_runtime.vision.pi_encoder import PiEncoder
 from robot_runtime.vision.shape import describe_fit, fit
+
+log = logging.getLogger(__name__)
 
 BUFFERS = 2
 """Pictures that the camera fills in turn: one is searched while the next one comes. More would be older."""
@@ -26,6 +30,7 @@ MICROSECONDS = 1e3
 class PiCamera(Camera):
     """A camera that is asked for `rate` pictures of `width` × `height` pixels a second.
 
+    Where the Pi's hardware encodes JPEG files, each picture has its own.
     Raises CameraError without picamera2 or a camera, and where the camera is in use.
     """
 
@@ -36,6 +41,7 @@ class PiCamera(Camera):
         self.rate = rate
         self.size = self._given = (width, height)
         self._device = _open_device(width, height, rate, _table(controls))
+        self._encoder = self._open_encoder()
         known = getattr(self._device, "camera_controls", {})
         self._refused = [name for name in _table(controls) if known and name not in known]
 
@@ -45,14 +51,16 @@ class PiCamera(Camera):
             request = self._device.capture_request()
             try:
                 picture = np.ascontiguousarray(request.make_array("main")[:, :, :3], dtype=np.uint8)
+                self._given = (picture.shape[1], picture.shape[0])
+                jpeg = self._encode(request) if self._given == self.size else None
                 stamp = request.get_metadata().get("SensorTimestamp")
             finally:
                 request.release()
         except Exception as problem:
             raise CameraError(f"the Pi camera gives no picture ({problem}); check its cable") from problem
-        self._given = (picture.shape[1], picture.shape[0])
         # libcamera counts from the computer's start; a Pi never sleeps, so that this is the steady clock.
-        return CameraFrame(fit(picture, *self.size), taken_at((stamp or 0) / NANOSECONDS, self._clock.now()))
+        taken = taken_at((stamp or 0) / NANOSECONDS, self._clock.now())
+        return CameraFrame(fit(picture, *self.size), taken, jpeg)
 
     def skip(self) -> None:
         """Give the next picture back to the camera. Raise CameraError."""
@@ -63,14 +71,44 @@ class PiCamera(Camera):
 
     def close(self) -> None:
         """Release the camera."""
+        self._close_encoder()
         self._device.close()
 
     def __str__(self) -> str:
         width, height = self._given
-        notes = [describe_fit(self._given, *self.size) or f"{width} × {height}"]
+        form = " as JPEG" if self._encoder is not None else ""
+        notes = [describe_fit(self._given, *self.size) or f"{width} × {height}{form}"]
         if self._refused:
             notes.append(f"this libcamera does not know {', '.join(self._refused)}")
         return f"Pi camera ({'; '.join(notes)})"
+
+    def _open_encoder(self) -> PiEncoder | None:
+        """Return the Pi's encoder; None where there is none, and OpenCV encodes."""
+        assert self.rate is not None
+        try:
+            return PiEncoder(self._device, self.rate)
+        except Exception as problem:
+            log.info("the Pi's JPEG encoder is not used: %s", problem)
+            return None
+
+    def _encode(self, request: Any) -> bytes | None:
+        if self._encoder is None:
+            return None
+        try:
+            return self._encoder.encode(request)
+        except Exception:
+            # A file that comes late would be another picture's.
+            log.warning("the Pi's JPEG encoder failed; OpenCV encodes", exc_info=True)
+            self._close_encoder()
+            return None
+
+    def _close_encoder(self) -> None:
+        encoder, self._encoder = self._encoder, None
+        if encoder is not None:
+            try:
+                encoder.close()
+            except Exception:
+                log.warning("the Pi's JPEG encoder could not be closed", exc_info=True)
 
 
 def _table(controls: SensorControls) -> dict[str, float]:

@@ -31,8 +31,8 @@ class PictureRepetition:
 
 
 def _same_picture(frame: CameraFrame, other: CameraFrame) -> bool:
-    if frame.jpeg is not None and other.jpeg is not None:
-        return frame.jpeg == other.jpeg
+    if frame.original is not None and other.original is not None:
+        return frame.original == other.original
     return _equal(frame.picture, other.picture)
 
 

@@ -1,4 +1,4 @@
-"""The cameras: drawn, from files, and the Pi's with a stand-in for its library."""
+"""The cameras: drawn, from files, and of USB with a stand-in for its device."""
 
 import errno
 import os
@@ -6,7 +6,7 @@ import struct
 import sys
 from math import inf, nan
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 import cv2
@@ -22,7 +22,6 @@ from robot_runtime.vision.card_camera import ATTENUATION, CARD_DISTANCE, NOISE, 
 from robot_runtime.vision.cards import CameraCard, make_card
 from robot_runtime.vision.detector import Detector
 from robot_runtime.vision.file_camera import FileCamera
-from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
 from robot_runtime.vision.usb_camera import UsbCamera
 from tests.runtime.vision.harness import JpegDevice, VideoControls, drawn, find
@@ -291,166 +290,6 @@ class TestFileCamera:
             CameraError, match=f"{name} (is neither a video nor a|holds no) picture that OpenCV can"
         ):
             FileCamera(file, 320, 240, SimulatedClock()).read()
-
-
-class StandIn:
-    """Stands in for picamera2.Picamera2, as far as PiCamera uses it."""
-
-    made: "list[StandIn]"
-    picture: Picture
-    failure: Exception | None
-    cameras: list[dict[str, Any]]
-    stamp: int | None
-    camera_controls: dict[str, tuple[Any, Any, Any]]
-
-    def __init__(self) -> None:
-        self.calls: list[Any] = []
-        self.made.append(self)
-
-    @classmethod
-    def global_camera_info(cls) -> list[dict[str, Any]]:
-        return cls.cameras
-
-    def create_video_configuration(self, **parts: Any) -> dict[str, Any]:
-        return parts
-
-    def configure(self, configuration: dict[str, Any]) -> None:
-        self.calls.append(configuration)
-
-    def start(self) -> None:
-        if self.failure:
-            raise self.failure
-        self.calls.append("start")
-
-    def capture_request(self) -> "StandIn":
-        if self.failure:
-            raise self.failure
-        return self
-
-    def make_array(self, name: str) -> Picture:
-        self.calls.append(name)
-        return self.picture
-
-    def get_metadata(self) -> dict[str, Any]:
-        return {} if self.stamp is None else {"SensorTimestamp": self.stamp}
-
-    def release(self) -> None:
-        self.calls.append("release")
-
-    def close(self) -> None:
-        self.calls.append("close")
-
-
-@pytest.fixture
-def library(monkeypatch: pytest.MonkeyPatch) -> type[StandIn]:
-    class Fresh(StandIn):
-        made: list[StandIn] = []  # noqa: RUF012 - one a test
-        picture = drawn(1.0, "yellow")
-        failure = None
-        cameras: list[dict[str, Any]] = [{"Model": "imx219"}]  # noqa: RUF012 - one a test
-        stamp = None
-        # libcamera's, each with its least, greatest and usual value.
-        camera_controls: dict[str, tuple[Any, Any, Any]] = {  # noqa: RUF012 - one a test
-            "FrameDurationLimits": (33333, 120000, 33333),
-            "ExposureTime": (1, 66666, 20000),
-            "AnalogueGain": (1.0, 16.0, 1.0),
-            "AwbEnable": (False, True, None),
-            "ColourTemperature": (100, 100000, None),
-        }
-
-    module: Any = ModuleType("picamera2")
-    module.Picamera2 = Fresh
-    monkeypatch.setitem(sys.modules, "picamera2", module)
-    return Fresh
-
-
-class TestPiCamera:
-    def test_pictures_come_from_the_library(self, library: type[StandIn]) -> None:
-        camera = PiCamera(320, 240, 4.0, SimulatedClock(4.0))
-        frame = camera.read()
-        camera.close()
-        assert np.array_equal(frame.picture, library.picture)
-        assert frame.taken == 4.0
-        configuration = {
-            "main": {"size": (320, 240), "format": "RGB888"},
-            "controls": {"FrameRate": 4.0},
-            "buffer_count": 2,
-        }
-        assert library.made[0].calls == [configuration, "start", "main", "release", "close"]
-
-    @pytest.mark.parametrize(
-        ("stamp", "taken"),
-        [(3_930_000_000, 3.93), (None, 4.0), (4_100_000_000, 4.0), (1_000_000_000, 4.0)],
-        ids=["sensor", "none", "of the future", "old"],
-    )
-    def test_a_picture_has_the_time_of_the_sensor(
-        self, library: type[StandIn], stamp: int | None, taken: float
-    ) -> None:
-        library.stamp = stamp
-        assert PiCamera(320, 240, 4.0, SimulatedClock(4.0)).read().taken == pytest.approx(taken)
-
-    def test_exposure_gain_and_white_are_fixed_in_libcamera_s_units(self, library: type[StandIn]) -> None:
-        PiCamera(320, 240, 4.0, SimulatedClock(), FIXED)
-        assert library.made[0].calls[0]["controls"] == {
-            "FrameRate": 4.0,
-            "ExposureTime": 12500,
-            "AnalogueGain": 4.0,
-            "AwbEnable": False,
-            "ColourTemperature": 5500,
-        }
-
-    def test_a_control_that_libcamera_does_not_know_is_left_out_and_named(
-        self, library: type[StandIn]
-    ) -> None:
-        del library.camera_controls["ColourTemperature"]
-        camera = PiCamera(320, 240, 4.0, SimulatedClock(), FIXED)
-        assert "ColourTemperature" not in library.made[0].calls[0]["controls"]
-        assert str(camera) == "Pi camera (320 × 240; this libcamera does not know ColourTemperature)"
-
-    def test_a_missing_library_is_reported_with_its_installation(
-        self, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        monkeypatch.setitem(sys.modules, "picamera2", None)
-        with pytest.raises(CameraError, match=r"needs picamera2, which cannot be loaded .*sudo apt install"):
-            PiCamera(320, 240, 4.0, SimulatedClock())
-
-    def test_a_library_for_another_numpy_is_reported(
-        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        text = "numpy.dtype size changed, may indicate binary incompatibility"
-        (tmp_path / "picamera2.py").write_text(f"raise ValueError({text!r})")
-        monkeypatch.syspath_prepend(tmp_path)
-        monkeypatch.delitem(sys.modules, "picamera2", raising=False)
-        with pytest.raises(CameraError, match=r"another NumPy .*dtype size changed.*Raspberry Pi OS 13"):
-            PiCamera(320, 240, 4.0, SimulatedClock())
-
-    def test_a_missing_camera_is_reported(self, library: type[StandIn]) -> None:
-        library.cameras = []
-        with pytest.raises(CameraError, match=r"no camera is connected to the Pi: check its cable"):
-            PiCamera(320, 240, 4.0, SimulatedClock())
-        assert library.made == []
-
-    @pytest.mark.parametrize(
-        ("failure", "remedy"),
-        [
-            (RuntimeError("Failed to acquire camera: Device or resource busy"), "another program uses it"),
-            (PermissionError(13, "Permission denied"), "group video"),
-            (RuntimeError("Camera configuration failed"), "check its cable"),
-        ],
-    )
-    def test_a_camera_that_does_not_start_is_closed_and_reported(
-        self, library: type[StandIn], failure: Exception, remedy: str
-    ) -> None:
-        library.failure = failure
-        with pytest.raises(CameraError, match=rf"does not start .*; .*{remedy}"):
-            PiCamera(320, 240, 4.0, SimulatedClock())
-        assert library.made[0].calls[-1] == "close"
-
-    def test_a_disconnected_camera_is_reported(self, library: type[StandIn]) -> None:
-        camera = PiCamera(320, 240, 4.0, SimulatedClock())
-        library.failure = RuntimeError("timeout")
-        with pytest.raises(CameraError, match=r"gives no picture \(timeout\)"):
-            camera.read()
 
 
 @pytest.fixture
