@@ -6,7 +6,7 @@ Pictures of H.264 are only packed anew. JPEG files, which a robot without PyAV r
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from io import BytesIO
-from itertools import chain, dropwhile
+from itertools import chain, dropwhile, pairwise
 from math import inf
 from typing import IO, TYPE_CHECKING, Any
 
@@ -24,6 +24,8 @@ Picture = tuple[float, FilmPicture]
 """Its time (s, steady clock), and the picture."""
 
 PART_SECONDS_MAX = 60.0
+SPANS_SHOWN = 100
+"""Times of a film in one answer; beyond that the shortest pauses count as filmed."""
 GAP_SECONDS = 2.0
 """s between two pictures from which on the film counts as interrupted."""
 KEY_SECONDS_MAX = 5.0
@@ -71,20 +73,27 @@ class FilmDescription(BaseModel):
 
 def describe_film(recording: Recording) -> FilmDescription:
     """Return what there is of a film. Raise NoFilmError, CodecMissingError, StoreError, RecordingError."""
-    spans = list[FilmSpan]()
-    pictures = 0
-    for first, last, count in recording.spans(FILM.name):
-        start, end = first - recording.row.started_steady, last - recording.row.started_steady
-        pictures += count
-        if spans and start - spans[-1].end < GAP_SECONDS:
-            spans[-1].end = end
-        else:
-            spans.append(FilmSpan(start=start, end=end))
+    chunks = recording.spans(FILM.name)
+    spans = _join([(first, last) for first, last, _ in chunks], recording.row.started_steady)
     _, first_picture = next(film_from(recording, -inf, inf))
     (_, shown), *_ = as_h264([(0.0, first_picture)])
     if not shown.codec:
         raise ValueError("its first picture does not say how it is coded")
+    pictures = sum(count for _, _, count in chunks)
     return FilmDescription(spans=spans, pictures=pictures, codec=shown.codec)
+
+
+def _join(chunks: list[tuple[float, float]], zero: float) -> list[FilmSpan]:
+    """Return the times of chunks without the short pauses between them, s since `zero`."""
+    pauses = sorted((start - end for (_, end), (start, _) in pairwise(chunks)), reverse=True)
+    shortest = max([GAP_SECONDS, *pauses[SPANS_SHOWN - 1 : SPANS_SHOWN]])
+    spans = list[FilmSpan]()
+    for start, end in chunks:
+        if spans and start - zero - spans[-1].end <= shortest:
+            spans[-1].end = end - zero
+        else:
+            spans.append(FilmSpan(start=start - zero, end=end - zero))
+    return spans
 
 
 def film_from(recording: Recording, start: float, end: float) -> Iterator[Picture]:

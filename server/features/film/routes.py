@@ -42,9 +42,7 @@ def get_film(_: RecordingTurn, recording: OpenRecording) -> FilmDescription:
         return describe_film(recording)
 
 
-@router.operation(
-    "GET /sessions/{session}/film/part", Need.VIEWER, *_REFUSALS, media_type="video/mp4", linked=True
-)
+@router.operation("GET /sessions/{session}/film/part", Need.VIEWER, *_REFUSALS, media_type="video/mp4")
 def get_film_part(
     _: RecordingTurn,
     recording: OpenRecording,

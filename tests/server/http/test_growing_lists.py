@@ -28,6 +28,7 @@ from server.features.scenarios.runs import QUEUE_MAX
 from server.features.tuning.runs import LISTED_MOST as RUNS_LISTED
 from server.http.sign_in.devices import DEVICES_MAX
 from server.library.crafts import CRAFTS_MAX
+from server.library.film import SPANS_SHOWN
 from server.library.listing import COLUMNS_SHOWN, PAGE_MAX, TAGS_SHOWN
 from server.library.missions import MISSIONS_SHOWN
 from server.library.schemas import SHOWN_MAX
@@ -64,6 +65,7 @@ LIMITS = {
     "/api/sessions tags": TAGS_MAX,
     "/api/sessions/{session} crafts": CRAFTS_MAX,
     "/api/sessions/{session} gaps": SHOWN_MAX,
+    "/api/sessions/{session}/film spans": SPANS_SHOWN,
     "/api/sessions/{session} marks": SHOWN_MAX,
     "/api/sessions/{session} tags": TAGS_MAX,
     "/api/sessions/{session} topics": TOPICS_MAX,

@@ -63,6 +63,7 @@ def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -
         *("checkScenario", "checkMission", "readVision", "examineAgain"),
         *("getSession", "getTimeline", "getThumbnail", "listSessionMissions"),
         *("listSessionSnapshots", "getSnapshot"),
+        *("getFilm", "getFilmPart"),
     }
 
 

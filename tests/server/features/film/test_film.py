@@ -6,6 +6,7 @@ import json
 import sys
 import time
 from io import BytesIO
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -16,7 +17,7 @@ import pyarrow.parquet as pq
 import pytest
 from mcap.reader import make_reader
 
-from robot_runtime.clock import Clock
+from robot_runtime.clock import Clock, SimulatedClock
 from robot_runtime.contract.film_picture import FilmPicture
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
@@ -27,11 +28,14 @@ from server.features.exports.selection import ExportSelection
 from server.features.film import plug
 from server.features.film.config import FilmConfig
 from server.features.film.plug import LEASE_SECONDS
+from server.library.content import Recording
+from server.library.film import SPANS_SHOWN, describe_film
 from server.library.retention import RetentionWorker
+from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.recorder import Recorder
-from server.recording.session import find_row
+from server.recording.session import find_row, new_row
 from tests.film import HEIGHT, RATE, WIDTH, code_numbers, read_film, read_number
 from tests.server.blocks import depth_block, film_block
 from tests.server.serving import Served, serve
@@ -130,6 +134,22 @@ async def test_a_pause_of_the_film_parts_its_times(served: Served) -> None:
     await served.api.post(f"/sessions/{session}/stop")
     spans = (await served.api.get(f"/sessions/{session}/film")).json()["spans"]
     assert [span["end"] - span["start"] for span in spans] == pytest.approx([(COUNT - 1) / RATE] * 2)
+
+
+async def test_of_very_many_pauses_the_longest_are_told(store: Store, settings: Settings) -> None:
+    pauses = [3.0 + number % 2 * 7.0 for number in range(2 * SPANS_SHOWN - 10)]
+    starts = list(accumulate(pauses, initial=100.0))
+    key = code_numbers(open_coder(RATE, "low", (WIDTH, HEIGHT)), range(1), 0.0)[0][1]
+    clock = SimulatedClock(100.0)
+    recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
+    session = await recorder.start(new_row(settings, clock, "paused", "", "null"))
+    for number, start in enumerate(starts):
+        recorder.add(film_block(number, start, key))
+        await recorder.flush()
+    await recorder.stop(session.id)
+    spans = describe_film(Recording(store, find_row(store, session.id))).spans
+    assert len(spans) == (len(pauses) // 2) + 1
+    assert all(later.start - earlier.end == pytest.approx(10.0) for earlier, later in pairwise(spans))
 
 
 async def ask(served: Served, session: int) -> list[tuple[int, str]]:
